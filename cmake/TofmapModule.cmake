@@ -1,0 +1,50 @@
+# SPDX-FileCopyrightText: 2026 the tofmap authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+# Flags that every target of the project gets, privately: consumers inherit none.
+function(tofmap_private_flags target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
+  if(TOFMAP_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(TOFMAP_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${TOFMAP_SANITIZE} -fno-omit-frame-pointer
+                                             -fno-sanitize-recover=all)
+    target_link_options(${target} PUBLIC -fsanitize=${TOFMAP_SANITIZE})
+  endif()
+  if(TOFMAP_COVERAGE)
+    target_compile_options(${target} PRIVATE --coverage)
+    target_link_options(${target} PUBLIC --coverage)
+  endif()
+endfunction()
+
+# tofmap_add_module(NAME SOURCES a.cpp … [PUBLIC lib …] [PRIVATE lib …])
+#
+# Defines tofmap_<NAME>, alias tofmap::<NAME>, from modules/<NAME>/src, with the
+# public headers of modules/<NAME>/include, and registers both for installation.
+# Libraries of others are system headers: their warnings are not ours.
+function(tofmap_add_module name)
+  cmake_parse_arguments(MODULE "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  list(TRANSFORM MODULE_SOURCES PREPEND src/)
+  add_library(tofmap_${name} ${MODULE_SOURCES})
+  add_library(tofmap::${name} ALIAS tofmap_${name})
+  set_target_properties(tofmap_${name} PROPERTIES EXPORT_NAME ${name}
+    POSITION_INDEPENDENT_CODE ON VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+  target_include_directories(tofmap_${name}
+    PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+           $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+    PRIVATE src)
+  target_link_libraries(tofmap_${name} PUBLIC ${MODULE_PUBLIC} PRIVATE ${MODULE_PRIVATE})
+  tofmap_private_flags(tofmap_${name})
+  install(TARGETS tofmap_${name} EXPORT tofmapTargets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(DIRECTORY include/tofmap DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endfunction()
+
+# PCL without its directory-wide flags: a target that carries its include folders
+# (as system headers) and the libraries of the components that the project uses.
+function(tofmap_use_pcl target)
+  target_include_directories(${target} SYSTEM PUBLIC ${PCL_INCLUDE_DIRS})
+  target_link_libraries(${target} PUBLIC pcl_common pcl_io pcl_kdtree pcl_search)
+endfunction()

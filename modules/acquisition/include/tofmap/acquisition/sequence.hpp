@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tofmap/acquisition/frame_source.hpp>
+#include <tofmap/core/trajectory.hpp>
+
+namespace tofmap {
+
+/// One line of frames.txt; paths are relative to the sequence, empty for '-'.
+struct SequenceFrameFiles {
+  double timestamp_s = 0;
+  std::filesystem::path phase_a;
+  std::filesystem::path phase_b;
+  std::filesystem::path amplitude_a;
+  std::filesystem::path amplitude_b;
+  std::string damage;  ///< why the line cannot be used (time does not advance); empty if it can
+};
+
+/// Reads a sequence folder (docs/sequence-format.md) frame by frame, in any order.
+///
+/// What makes the whole recording unreadable throws InputError when it is opened: a missing or
+/// wrong sequence.yaml, a line of frames.txt that cannot be understood or that leads out of
+/// the folder. What spoils one frame makes that frame damaged: an image that is missing,
+/// truncated, of another size or depth, and a timestamp not later than the frame before.
+class SequenceReader final : public FrameSource {
+ public:
+  /// Opens the folder: reads sequence.yaml and frames.txt and checks them. Throws InputError
+  /// that names the file and the remedy if either is missing or wrong, or lists no frame.
+  explicit SequenceReader(std::filesystem::path folder);
+
+  const std::filesystem::path& folder() const { return folder_; }
+  const SensorModel& sensor() const override { return sensor_; }
+  std::optional<SourcedFrame> next() override;
+  std::optional<int> frame_count() const override { return static_cast<int>(files_.size()); }
+
+  /// The frame of this index, 0 … frame_count() − 1 (UsageError beyond). May be called from
+  /// several threads. Amplitudes are delivered if both images have one.
+  SourcedFrame read(int index) const;
+
+  const std::vector<SequenceFrameFiles>& files() const { return files_; }
+
+  /// Camera poses; empty if the sequence has no groundtruth.txt.
+  Trajectory ground_truth() const;
+
+  /// True radial ranges of a frame, metres, NaN where unknown; nothing if there is no file.
+  /// Throws InputError if the file is damaged or not of the camera's size.
+  std::optional<ImageF> range_truth(int index) const;
+
+ private:
+  const SequenceFrameFiles& files_at(int index) const;
+  DualFrequencyFrame read_frame(int index) const;
+
+  std::filesystem::path folder_;
+  SensorModel sensor_;
+  std::vector<SequenceFrameFiles> files_;
+  int next_index_ = 0;
+};
+
+/// Writes a sequence folder frame by frame. After every frame the folder is a whole, readable
+/// sequence of the frames so far: a recording can be stopped at any time.
+class SequenceWriter {
+ public:
+  /// Makes the folder, which must be new or empty, and writes sequence.yaml. Throws InputError
+  /// that names the file if that is not possible, and if `sensor` is not valid. Amplitudes are
+  /// multiplied by `amplitude_scale` before they are rounded to 16 bits.
+  SequenceWriter(std::filesystem::path folder, const SensorModel& sensor,
+                 double amplitude_scale = 1);
+
+  /// Adds one frame, with what is known of the truth. The frame's timestamp must be later than
+  /// the last one's and its images of the camera's size; phases must lie in [0, 1) or be
+  /// NaN, and scaled amplitudes and ranges (millimetres) must fit into 16 bits: all else is a
+  /// UsageError, not a clamp. Amplitudes above zero are written as at least 1, since zero
+  /// means no return. Throws InputError that names the file if it cannot be written.
+  void add(const DualFrequencyFrame& frame, const std::optional<Pose>& world_from_camera = {},
+           const std::optional<ImageF>& range_truth_m = {});
+
+  int count() const { return count_; }
+
+ private:
+  std::filesystem::path folder_;
+  SensorModel sensor_;
+  double amplitude_scale_;
+  std::ofstream frames_;
+  std::ofstream ground_truth_;  ///< opened by the first pose
+  double last_timestamp_s_;
+  int count_ = 0;
+};
+
+}  // namespace tofmap

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tofmap/acquisition/frame_source.hpp>
+#include <tofmap/acquisition/ray_scene.hpp>
+#include <tofmap/acquisition/scenes.hpp>
+#include <tofmap/core/option_table.hpp>
+
+namespace tofmap {
+
+struct SimulatorOptions {
+  int width_px = 176;
+  int height_px = 144;
+  double horizontal_fov_deg = 69;
+  double distortion_k1 = 0;
+  double distortion_k2 = 0;
+  double distortion_p1 = 0;
+  double distortion_p2 = 0;
+  double distortion_k3 = 0;
+  double frequency_a_hz = 29e6;
+  double frequency_b_hz = 31e6;
+  double range_noise_m = 0.02;
+  int subpixels = 3;
+  double b_delay_share = 0.1;
+  int frames = 0;
+  double frame_rate_hz = 15;
+  double max_step_m = 0.07;
+  double max_turn_deg = 3;
+  double max_range_m = 0;
+  std::string trajectory_file;
+  int seed = 1;
+  int threads = 0;
+
+  static std::vector<OptionField<SimulatorOptions>> fields();
+};
+
+/// The signal of a surface of reflectance ρ at range r under the incidence angle α is
+/// `amplitude_unit` ρ cos α / r² (r in metres); amplitudes end at 65535, where the sensor saturates.
+inline constexpr double amplitude_unit = 6000;
+
+/// One frame with the truth behind it.
+struct SimulatedFrame {
+  DualFrequencyFrame frame;
+  Pose world_from_camera;  ///< when A was taken
+  ImageF range_truth_m;    ///< along the ray of the pixel's centre; NaN where nothing is hit
+};
+
+/// A dual-frequency time-of-flight camera on a path through a scene (docs/simulator.md).
+///
+/// Each pixel is the mean of the complex signals of a grid of rays over its area, at each
+/// frequency, plus complex Gaussian noise of one strength: phase noise goes as 1 / amplitude,
+/// and pixels on an edge mix the surfaces on both sides, as in a real sensor. No ray hits, or
+/// an amplitude that rounds to zero: no return. The same scene, options and seed give the
+/// same bits, whatever the number of threads.
+class Simulator final : public FrameSource {
+ public:
+  /// Throws UsageError if an option is not allowed, InputError if the trajectory cannot be read.
+  Simulator(Scene scene, const SimulatorOptions& options);
+
+  const SensorModel& sensor() const override { return sensor_; }
+  std::optional<SourcedFrame> next() override;
+  std::optional<int> frame_count() const override {
+    return static_cast<int>(motion_.at_a.size());
+  }
+
+  /// The frame of this index, 0 … frame_count() − 1, in any order.
+  SimulatedFrame simulate(int index) const;
+
+  /// Camera poses at the instants of A.
+  const Trajectory& trajectory() const { return motion_.at_a; }
+
+  const TriangleMesh& surface() const { return scene_.surface; }
+  const RayScene& rays() const { return ray_scene_; }
+
+  /// Standard deviation of the noise of either component of the complex signal, in the units
+  /// of the amplitude; a pixel's phase noise is noise_sigma() / amplitude radians.
+  double noise_sigma() const { return noise_sigma_; }
+
+ private:
+  struct Exposure;
+  void expose(const Exposure& exposure, ImageF& phase, ImageF& amplitude) const;
+  ImageF cast_truth(const Pose& world_from_camera) const;
+
+  Scene scene_;
+  SimulatorOptions options_;
+  SensorModel sensor_;
+  RayScene ray_scene_;
+  CameraMotion motion_;
+  std::vector<Eigen::Vector3f> rays_;  ///< camera frame; all of a pixel's together, row by row
+  double noise_sigma_ = 0;
+  int next_index_ = 0;
+};
+
+/// Writes all frames with groundtruth.txt, range_truth/ and scene.ply into a new or empty folder.
+/// `keep_going(done, total)` is asked before each frame; when it returns false, what was finished
+/// stays as a whole sequence. Returns how many frames were written.
+int simulate_sequence(const Simulator& simulator, const std::filesystem::path& folder,
+                      const std::function<bool(int done, int total)>& keep_going = {});
+
+}  // namespace tofmap

@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "sequence_header.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include <tofmap/acquisition/png_image.hpp>
+#include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr std::uint16_t no_return = 65535;
+
+std::filesystem::path inner_path(const std::string& text, const std::string& place) {
+  const std::filesystem::path path = std::filesystem::path(text).lexically_normal();
+  if (path.is_absolute() || *path.begin() == "..") {
+    throw InputError(place + ": the path '" + text +
+                     "' leads out of the sequence; paths are relative to its folder");
+  }
+  return path;
+}
+
+std::vector<std::string> words_of(const std::string& line) {
+  std::istringstream in(line);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+SequenceFrameFiles parse_line(const std::vector<std::string>& words, const std::string& place) {
+  constexpr const char* expected =
+      ": expected 'timestamp phase_a phase_b [amplitude_a amplitude_b]'";
+  if (words.size() < 3 || words.size() > 5) {
+    throw InputError(place + expected + ", got " + std::to_string(words.size()) + " column(s)");
+  }
+  SequenceFrameFiles files;
+  const char* end = words[0].data() + words[0].size();
+  const auto [rest, error] = std::from_chars(words[0].data(), end, files.timestamp_s);
+  if (error != std::errc() || rest != end || !std::isfinite(files.timestamp_s)) {
+    throw InputError(place + ": the timestamp '" + words[0] + "' is no number of seconds");
+  }
+  if (words[1] == "-" || words[2] == "-") {
+    throw InputError(place + expected + "; only an amplitude may be '-'");
+  }
+  files.phase_a = inner_path(words[1], place);
+  files.phase_b = inner_path(words[2], place);
+  if (words.size() > 3 && words[3] != "-") files.amplitude_a = inner_path(words[3], place);
+  if (words.size() > 4 && words[4] != "-") files.amplitude_b = inner_path(words[4], place);
+  return files;
+}
+
+/// A frame that is not later than those before it cannot be placed in time: the first one
+/// stands, the later line is damaged.
+void mark_times_that_stand_still(std::vector<SequenceFrameFiles>& frames,
+                                 const std::filesystem::path& file) {
+  double latest_s = -std::numeric_limits<double>::infinity();
+  for (SequenceFrameFiles& frame : frames) {
+    if (frame.timestamp_s > latest_s) {
+      latest_s = frame.timestamp_s;
+    } else {
+      std::ostringstream text;
+      text << file.string() << ": the timestamp " << std::fixed << frame.timestamp_s << " of "
+           << frame.phase_a.string() << " is not later than " << latest_s << " before it";
+      frame.damage = text.str();
+    }
+  }
+}
+
+std::vector<SequenceFrameFiles> read_frame_list(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  if (!in) {
+    throw InputError(file.string() +
+                     ": cannot be read; a sequence folder holds sequence.yaml and frames.txt");
+  }
+  std::vector<SequenceFrameFiles> frames;
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    const std::vector<std::string> words = words_of(line);
+    if (words.empty() || words.front().starts_with('#')) continue;
+    frames.push_back(parse_line(words, file.string() + ":" + std::to_string(number)));
+  }
+  if (in.bad()) throw InputError(file.string() + ": cannot be read to its end");
+  if (frames.empty()) throw InputError(file.string() + ": lists no frames; record at least one");
+  mark_times_that_stand_still(frames, file);
+  return frames;
+}
+
+ImageU16 read_sized(const std::filesystem::path& file, const CameraModel& camera) {
+  ImageU16 image = read_png_16(file);
+  if (image.cols() != camera.width_px || image.rows() != camera.height_px) {
+    throw InputError(file.string() + ": is " + std::to_string(image.cols()) + " x " +
+                     std::to_string(image.rows()) + " pixels, but the camera of sequence.yaml " +
+                     "has " + std::to_string(camera.width_px) + " x " +
+                     std::to_string(camera.height_px));
+  }
+  return image;
+}
+
+ImageF phase_from_pixels(const ImageU16& pixels) {
+  return (pixels == no_return).select(nan, pixels.cast<float>() / 65535.0F);
+}
+
+}  // namespace
+
+SequenceReader::SequenceReader(std::filesystem::path folder) : folder_(std::move(folder)) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder_, ignored)) {
+    throw InputError(folder_.string() +
+                     ": no such folder; a sequence is a folder with sequence.yaml in it");
+  }
+  sensor_ = read_sequence_header(folder_ / "sequence.yaml");
+  files_ = read_frame_list(folder_ / "frames.txt");
+}
+
+std::optional<SourcedFrame> SequenceReader::next() {
+  if (next_index_ >= static_cast<int>(files_.size())) return std::nullopt;
+  return read(next_index_++);
+}
+
+const SequenceFrameFiles& SequenceReader::files_at(int index) const {
+  if (index < 0 || index >= static_cast<int>(files_.size())) {
+    throw UsageError("frame " + std::to_string(index) + " of " + folder_.string() +
+                     ": there are frames 0 to " + std::to_string(files_.size() - 1));
+  }
+  return files_[static_cast<std::size_t>(index)];
+}
+
+SourcedFrame SequenceReader::read(int index) const {
+  const SequenceFrameFiles& files = files_at(index);
+  SourcedFrame sourced;
+  sourced.index = index;
+  sourced.timestamp_s = files.timestamp_s;
+  sourced.damage = files.damage;
+  if (!files.damage.empty()) return sourced;
+  try {
+    sourced.frame = read_frame(index);
+  } catch (const InputError& error) {
+    sourced.damage = error.what();
+  }
+  return sourced;
+}
+
+DualFrequencyFrame SequenceReader::read_frame(int index) const {
+  const SequenceFrameFiles& files = files_at(index);
+  DualFrequencyFrame frame;
+  frame.index = index;
+  frame.timestamp_s = files.timestamp_s;
+  frame.phase_a = phase_from_pixels(read_sized(folder_ / files.phase_a, sensor_.camera));
+  frame.phase_b = phase_from_pixels(read_sized(folder_ / files.phase_b, sensor_.camera));
+  // One amplitude says nothing about the other image's noise: it counts as none.
+  if (files.amplitude_a.empty() || files.amplitude_b.empty()) return frame;
+  frame.amplitude_a = read_sized(folder_ / files.amplitude_a, sensor_.camera).cast<float>();
+  frame.amplitude_b = read_sized(folder_ / files.amplitude_b, sensor_.camera).cast<float>();
+  frame.phase_a = (frame.amplitude_a == 0).select(nan, frame.phase_a);
+  frame.phase_b = (frame.amplitude_b == 0).select(nan, frame.phase_b);
+  return frame;
+}
+
+Trajectory SequenceReader::ground_truth() const {
+  const std::filesystem::path file = folder_ / "groundtruth.txt";
+  if (!std::filesystem::exists(file)) return {};
+  return read_trajectory(file);
+}
+
+std::optional<ImageF> SequenceReader::range_truth(int index) const {
+  const std::filesystem::path file = folder_ / "range_truth" / files_at(index).phase_a.filename();
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  const ImageU16 range_mm = read_sized(file, sensor_.camera);
+  return (range_mm == 0).select(nan, range_mm.cast<float>() / 1000.0F);
+}
+
+}  // namespace tofmap

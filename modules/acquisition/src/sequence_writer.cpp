@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "sequence_header.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <iomanip>
+#include <limits>
+#include <sstream>
+
+#include <tofmap/acquisition/png_image.hpp>
+#include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr double full_scale = 65535;  // of 16 bits
+
+[[noreturn]] void fail_to_write(const std::filesystem::path& file) {
+  throw InputError(file.string() + ": cannot be written; is the disk full, is it allowed?");
+}
+
+void make_empty_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw InputError(folder.string() + ": cannot be made: " + error.message());
+  }
+  const bool empty = std::filesystem::is_empty(folder, error);
+  if (error) throw InputError(folder.string() + ": cannot be read: " + error.message());
+  if (!empty) {
+    throw InputError(folder.string() + ": is not empty; a sequence needs a folder of its own");
+  }
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directory(folder, error);
+  if (error) throw InputError(folder.string() + ": cannot be made: " + error.message());
+}
+
+/// Applies `encode`, which returns the 16-bit value as a double, and checks that it fits.
+template <class Encode>
+ImageU16 encoded(const ImageF& image, const char* what, const Encode& encode) {
+  ImageU16 pixels(image.rows(), image.cols());
+  for (Eigen::Index i = 0; i < image.size(); ++i) {
+    const double value = encode(static_cast<double>(image.data()[i]));
+    if (!(value >= 0 && value <= full_scale)) {
+      std::ostringstream message;
+      message << what << " " << image.data()[i] << " of pixel (" << i % image.cols() << ", "
+              << i / image.cols() << ") does not fit into 16 bits";
+      throw UsageError(message.str());
+    }
+    pixels.data()[i] = static_cast<std::uint16_t>(value);
+  }
+  return pixels;
+}
+
+ImageU16 phase_pixels(const ImageF& phase) {
+  return encoded(phase, "the phase", [](double cycles) {
+    if (std::isnan(cycles)) return full_scale;
+    if (!(cycles >= 0 && cycles < 1)) return -1.0;
+    const double value = std::round(cycles * full_scale);
+    return value < full_scale ? value : 0.0;  // the last half step is nearest to a whole cycle
+  });
+}
+
+ImageU16 amplitude_pixels(const ImageF& amplitude, double scale) {
+  return encoded(amplitude, "the amplitude", [&](double value) {
+    return value > 0 ? std::max(1.0, std::round(value * scale)) : value;
+  });
+}
+
+ImageU16 range_pixels(const ImageF& range_m) {
+  return encoded(range_m, "the range in millimetres of",
+                 [](double range) { return std::isnan(range) ? 0.0 : std::round(range * 1000); });
+}
+
+std::string image_name(int index) {
+  char name[24];
+  std::snprintf(name, sizeof name, "%06d.png", index);
+  return name;
+}
+
+void check_size(const ImageF& image, const CameraModel& camera, const char* what) {
+  if (image.cols() == camera.width_px && image.rows() == camera.height_px) return;
+  throw UsageError(std::string(what) + " is " + std::to_string(image.cols()) + " x " +
+                   std::to_string(image.rows()) + " pixels; the camera has " +
+                   std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px));
+}
+
+}  // namespace
+
+SequenceWriter::SequenceWriter(std::filesystem::path folder, const SensorModel& sensor,
+                               double amplitude_scale)
+    : folder_(std::move(folder)),
+      sensor_(sensor),
+      amplitude_scale_(amplitude_scale),
+      last_timestamp_s_(-std::numeric_limits<double>::infinity()) {
+  if (!(std::isfinite(amplitude_scale) && amplitude_scale > 0)) {
+    throw UsageError("amplitude_scale must be a positive number");
+  }
+  validate(sensor.camera);
+  validate(sensor.modulation);
+  make_empty_folder(folder_);
+  for (const char* name : {"phase_a", "phase_b"}) make_folder(folder_ / name);
+
+  const std::filesystem::path header = folder_ / "sequence.yaml";
+  std::ofstream out(header);
+  out << sequence_header_text(sensor_);
+  out.close();
+  if (!out) fail_to_write(header);
+
+  frames_.open(folder_ / "frames.txt");
+  frames_ << "# timestamp phase_a phase_b amplitude_a amplitude_b\n" << std::flush;
+  if (!frames_) fail_to_write(folder_ / "frames.txt");
+}
+
+void SequenceWriter::add(const DualFrequencyFrame& frame,
+                         const std::optional<Pose>& world_from_camera,
+                         const std::optional<ImageF>& range_truth_m) {
+  // Compared as written: frames less than a microsecond apart would read back as one instant.
+  const double timestamp_s = std::round(frame.timestamp_s * 1e6) / 1e6;
+  if (!(std::isfinite(timestamp_s) && timestamp_s > last_timestamp_s_)) {
+    throw UsageError("frame timestamps must increase: " + std::to_string(frame.timestamp_s) +
+                     " s follows " + std::to_string(last_timestamp_s_) + " s");
+  }
+  const std::string name = image_name(count_);
+  std::ostringstream line;
+  line << std::fixed << std::setprecision(6) << timestamp_s;
+  const auto write = [&](const char* kind, const ImageF& image, const ImageU16& pixels) {
+    check_size(image, sensor_.camera, kind);
+    make_folder(folder_ / kind);
+    write_png(folder_ / kind / name, pixels);
+    line << ' ' << kind << '/' << name;
+  };
+  write("phase_a", frame.phase_a, phase_pixels(frame.phase_a));
+  write("phase_b", frame.phase_b, phase_pixels(frame.phase_b));
+  if (frame.has_amplitude()) {
+    const auto pixels = [&](const ImageF& a) { return amplitude_pixels(a, amplitude_scale_); };
+    write("amplitude_a", frame.amplitude_a, pixels(frame.amplitude_a));
+    write("amplitude_b", frame.amplitude_b, pixels(frame.amplitude_b));
+  } else {
+    line << " - -";
+  }
+  const std::string listed = line.str();
+  if (range_truth_m) write("range_truth", *range_truth_m, range_pixels(*range_truth_m));
+
+  if (world_from_camera) {
+    const std::filesystem::path file = folder_ / "groundtruth.txt";
+    if (!ground_truth_.is_open()) {
+      ground_truth_.open(file);
+      ground_truth_ << "# timestamp tx ty tz qx qy qz qw\n";
+    }
+    write_pose(ground_truth_, {timestamp_s, *world_from_camera});
+    if (!ground_truth_.flush()) fail_to_write(file);
+  }
+  // The line goes last: a frame is listed only once all of it is there.
+  frames_ << listed << '\n' << std::flush;
+  if (!frames_) fail_to_write(folder_ / "frames.txt");
+  last_timestamp_s_ = timestamp_s;
+  ++count_;
+}
+
+}  // namespace tofmap

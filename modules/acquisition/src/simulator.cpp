@@ -1,0 +1,243 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/acquisition/simulator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+#include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/core/error.hpp>
+
+#include "noise.hpp"
+
+namespace tofmap {
+namespace {
+
+constexpr double two_pi = 2 * std::numbers::pi;
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr double max_amplitude = 65535;
+
+/// Checks every option as the command line would, for those who fill the struct in code.
+SimulatorOptions checked(SimulatorOptions options) {
+  OptionTable table;
+  SimulatorOptions copy = options;
+  table.bind("simulator", copy);
+  for (const OptionField<SimulatorOptions>& field : SimulatorOptions::fields()) {
+    if (const auto* whole = std::get_if<int SimulatorOptions::*>(&field.member)) {
+      table.set("simulator." + std::string(field.name), std::to_string(options.*(*whole)));
+    } else if (const auto* number = std::get_if<double SimulatorOptions::*>(&field.member)) {
+      const double value = options.*(*number);
+      if (!(value >= field.min && value <= field.max)) {
+        table.set("simulator." + std::string(field.name), std::to_string(value));
+      }
+    }
+  }
+  return options;
+}
+
+SensorModel sensor_model(const SimulatorOptions& options, double scene_max_range_m) {
+  SensorModel sensor;
+  const double half_fov_rad = options.horizontal_fov_deg / 2 * std::numbers::pi / 180;
+  CameraModel& camera = sensor.camera;
+  camera.width_px = options.width_px;
+  camera.height_px = options.height_px;
+  camera.fx_px = camera.fy_px = options.width_px / 2.0 / std::tan(half_fov_rad);
+  camera.cx_px = (options.width_px - 1) / 2.0;
+  camera.cy_px = (options.height_px - 1) / 2.0;
+  camera.distortion = {options.distortion_k1, options.distortion_k2, options.distortion_p1,
+                       options.distortion_p2, options.distortion_k3};
+  sensor.modulation = {options.frequency_a_hz, options.frequency_b_hz};
+  sensor.max_range_m = options.max_range_m > 0 ? options.max_range_m : scene_max_range_m;
+  validate(camera);
+  validate(sensor.modulation);
+  return sensor;
+}
+
+/// The rays of a grid of n x n points over each pixel's square.
+std::vector<Eigen::Vector3f> subpixel_rays(const CameraModel& camera, int n) {
+  std::vector<Eigen::Vector3f> rays;
+  rays.reserve(static_cast<std::size_t>(camera.width_px) * camera.height_px * n * n);
+  for (int v = 0; v < camera.height_px; ++v) {
+    for (int u = 0; u < camera.width_px; ++u) {
+      for (int i = 0; i < n * n; ++i) {
+        const double du = (i % n + 0.5) / n - 0.5;
+        const double dv = (i / n + 0.5) / n - 0.5;
+        rays.push_back(pixel_ray(camera, u + du, v + dv).cast<float>());
+      }
+    }
+  }
+  return rays;
+}
+
+CameraMotion camera_motion(const Scene& scene, const SimulatorOptions& options) {
+  if (!options.trajectory_file.empty()) {
+    const Trajectory poses = read_trajectory(options.trajectory_file);
+    if (poses.empty()) throw InputError(options.trajectory_file + ": holds no pose");
+    return replay_motion(poses, options.frames, options.b_delay_share);
+  }
+  const MotionLimits limits{options.max_step_m, options.max_turn_deg * std::numbers::pi / 180};
+  return plan_motion(scene.path, limits, options.frames, scene.min_frames, options.frame_rate_hz,
+                     options.b_delay_share);
+}
+
+/// The noise that gives `range_noise_m` at A on a surface of reflectance 0.5 that faces the
+/// camera at 5 m: σ_φ = 2π σ_r / λ_A = σ_n / a (docs/simulator.md, equation 4).
+double noise_strength(const SimulatorOptions& options, const Modulation& modulation) {
+  constexpr double reference_amplitude = amplitude_unit * 0.5 / (5.0 * 5.0);
+  return reference_amplitude * two_pi * options.range_noise_m / modulation.wavelength_a_m();
+}
+
+/// Cycles in [0, 1), also after rounding to float.
+float wrapped_cycles(double angle_rad) {
+  const double cycles = angle_rad / two_pi;
+  const auto wrapped = static_cast<float>(cycles - std::floor(cycles));
+  return wrapped < 1 ? wrapped : 0;
+}
+
+}  // namespace
+
+std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
+  using S = SimulatorOptions;
+  return {
+      {"width_px", &S::width_px, 8, 4096, "px", "image width"},
+      {"height_px", &S::height_px, 8, 4096, "px", "image height"},
+      {"horizontal_fov_deg", &S::horizontal_fov_deg, 1, 150, "deg", "horizontal field of view"},
+      {"distortion_k1", &S::distortion_k1, -10, 10, "", "radial distortion, as OpenCV's k1"},
+      {"distortion_k2", &S::distortion_k2, -10, 10, "", "radial distortion, as OpenCV's k2"},
+      {"distortion_p1", &S::distortion_p1, -1, 1, "", "tangential distortion, as OpenCV's p1"},
+      {"distortion_p2", &S::distortion_p2, -1, 1, "", "tangential distortion, as OpenCV's p2"},
+      {"distortion_k3", &S::distortion_k3, -10, 10, "", "radial distortion, as OpenCV's k3"},
+      {"frequency_a_hz", &S::frequency_a_hz, 1e6, 1e9, "Hz", "modulation frequency of image A"},
+      {"frequency_b_hz", &S::frequency_b_hz, 1e6, 1e9, "Hz", "modulation frequency of image B"},
+      {"range_noise_m", &S::range_noise_m, 0, 10, "m",
+       "standard deviation of A's range at 5 m on a surface of reflectance 0.5 facing the camera"},
+      {"subpixels", &S::subpixels, 1, 16, "", "rays a pixel, along each of its sides"},
+      {"b_delay_share", &S::b_delay_share, 0, 1, "", "B follows A by this share of a frame period"},
+      {"frames", &S::frames, 0, 1000000, "", "frames to record; 0: as many as the path needs"},
+      {"frame_rate_hz", &S::frame_rate_hz, 0.01, 10000, "Hz", "frames a second"},
+      {"max_step_m", &S::max_step_m, 0.001, 10, "m", "how far the camera moves a frame, at most"},
+      {"max_turn_deg", &S::max_turn_deg, 0.01, 90, "deg", "how far it turns a frame, at most"},
+      // Truth images hold millimetres in 16 bits.
+      {"max_range_m", &S::max_range_m, 0, 65.5, "m",
+       "surfaces beyond return nothing; 0: the scene's own limit"},
+      {"trajectory_file", &S::trajectory_file, 0, 0, "",
+       "camera poses in TUM form, one a frame; empty: the scene's path"},
+      {"seed", &S::seed, 0, 2147483647, "", "of the noise"},
+      {"threads", &S::threads, 0, 1024, "", "threads that cast rays; 0: all"},
+  };
+}
+
+Simulator::Simulator(Scene scene, const SimulatorOptions& options)
+    : scene_(std::move(scene)),
+      options_(checked(options)),
+      sensor_(sensor_model(options_, scene_.max_range_m)),
+      ray_scene_(scene_.surface),
+      motion_(camera_motion(scene_, options_)),
+      rays_(subpixel_rays(sensor_.camera, options_.subpixels)),
+      noise_sigma_(noise_strength(options_, sensor_.modulation)) {}
+
+std::optional<SourcedFrame> Simulator::next() {
+  if (next_index_ >= *frame_count()) return std::nullopt;
+  SourcedFrame sourced;
+  sourced.index = next_index_;
+  sourced.frame = simulate(next_index_++).frame;
+  sourced.timestamp_s = sourced.frame->timestamp_s;
+  return sourced;
+}
+
+/// What one image needs: where from, at which wavelength, and the key of its noise.
+struct Simulator::Exposure {
+  Pose world_from_camera;
+  double wavelength_m = 0;
+  std::uint64_t noise_key = 0;
+};
+
+SimulatedFrame Simulator::simulate(int index) const {
+  if (index < 0 || index >= *frame_count()) {
+    throw UsageError("frame " + std::to_string(index) + " of the simulation: there are frames 0 " +
+                     "to " + std::to_string(*frame_count() - 1));
+  }
+  const StampedPose& at_a = motion_.at_a[static_cast<std::size_t>(index)];
+  const StampedPose& at_b = motion_.at_b[static_cast<std::size_t>(index)];
+  const auto key = [&](int image) {
+    return mix(mix(static_cast<std::uint64_t>(options_.seed)) + 2 * static_cast<unsigned>(index) +
+               static_cast<unsigned>(image));
+  };
+  SimulatedFrame simulated;
+  DualFrequencyFrame& frame = simulated.frame;
+  frame.index = index;
+  frame.timestamp_s = at_a.timestamp_s;
+  expose({at_a.world_from_camera, sensor_.modulation.wavelength_a_m(), key(0)}, frame.phase_a,
+         frame.amplitude_a);
+  expose({at_b.world_from_camera, sensor_.modulation.wavelength_b_m(), key(1)}, frame.phase_b,
+         frame.amplitude_b);
+  simulated.world_from_camera = at_a.world_from_camera;
+  simulated.range_truth_m = cast_truth(at_a.world_from_camera);
+  return simulated;
+}
+
+void Simulator::expose(const Exposure& exposure, ImageF& phase, ImageF& amplitude) const {
+  const int rows = sensor_.camera.height_px;
+  const int cols = sensor_.camera.width_px;
+  const int rays_per_pixel = options_.subpixels * options_.subpixels;
+  const Eigen::Matrix3d turn = exposure.world_from_camera.linear();
+  const Eigen::Vector3d origin = exposure.world_from_camera.translation();
+  phase = ImageF::Constant(rows, cols, nan);
+  amplitude = ImageF::Zero(rows, cols);
+
+#pragma omp parallel for schedule(dynamic) num_threads(thread_count(options_.threads))
+  for (int v = 0; v < rows; ++v) {
+    for (int u = 0; u < cols; ++u) {
+      const std::size_t pixel = static_cast<std::size_t>(v) * cols + u;
+      std::complex<double> signal = 0;
+      bool any_hit = false;
+      for (int i = 0; i < rays_per_pixel; ++i) {
+        const Eigen::Vector3d ray = turn * rays_[pixel * rays_per_pixel + i].cast<double>();
+        const auto hit = ray_scene_.cast(origin, ray, sensor_.max_range_m);
+        if (!hit) continue;
+        any_hit = true;
+        const double strength =
+            amplitude_unit * hit->reflectance * hit->cos_incidence / (hit->range_m * hit->range_m);
+        signal += std::polar(strength, two_pi * hit->range_m / exposure.wavelength_m);
+      }
+      if (!any_hit) continue;
+      signal = signal / static_cast<double>(rays_per_pixel) +
+               noise_sigma_ * complex_noise(exposure.noise_key, pixel);
+      const double modulus = std::abs(signal);
+      if (modulus < 0.5) continue;  // rounds to zero: no return
+      amplitude(v, u) = static_cast<float>(std::min(modulus, max_amplitude));
+      phase(v, u) = wrapped_cycles(std::arg(signal));
+    }
+  }
+}
+
+ImageF Simulator::cast_truth(const Pose& world_from_camera) const {
+  ImageF range_m = ImageF::Constant(sensor_.camera.height_px, sensor_.camera.width_px, nan);
+  for (int v = 0; v < sensor_.camera.height_px; ++v) {
+    for (int u = 0; u < sensor_.camera.width_px; ++u) {
+      const Eigen::Vector3d ray = world_from_camera.linear() * pixel_ray(sensor_.camera, u, v);
+      const auto hit = ray_scene_.cast(world_from_camera.translation(), ray, sensor_.max_range_m);
+      if (hit) range_m(v, u) = static_cast<float>(hit->range_m);
+    }
+  }
+  return range_m;
+}
+
+int simulate_sequence(const Simulator& simulator, const std::filesystem::path& folder,
+                      const std::function<bool(int done, int total)>& keep_going) {
+  SequenceWriter writer(folder, simulator.sensor());
+  write_mesh_ply(folder / "scene.ply", simulator.surface());
+  const int total = *simulator.frame_count();
+  for (int i = 0; i < total; ++i) {
+    if (keep_going && !keep_going(i, total)) break;
+    const SimulatedFrame simulated = simulator.simulate(i);
+    writer.add(simulated.frame, simulated.world_from_camera, simulated.range_truth_m);
+  }
+  return writer.count();
+}
+
+}  // namespace tofmap

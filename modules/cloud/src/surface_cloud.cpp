@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/cloud/surface_cloud.hpp"
+
+#include "plane_fit.hpp"
+
+#include <limits>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+SurfacePoint point_on_ray(const PixelRays& rays, int row, int col, float range_m) {
+  SurfacePoint point;
+  point.x = range_m * rays.x(row, col);
+  point.y = range_m * rays.y(row, col);
+  point.z = range_m * rays.z(row, col);
+  point.data[3] = 1;
+  point.normal_x = point.normal_y = point.normal_z = nan;
+  point.data_n[3] = 0;
+  point.sigma_m = nan;
+  point.confidence = 0;
+  return point;
+}
+
+SurfaceCloud empty_cloud(const RangeImage& image) {
+  SurfaceCloud cloud;
+  cloud.width = static_cast<std::uint32_t>(image.cols());
+  cloud.height = static_cast<std::uint32_t>(image.rows());
+  cloud.points.resize(image.range_m.size());
+  cloud.is_dense = false;
+  return cloud;
+}
+
+void check_sizes(const RangeImage& image, const PixelRays& rays) {
+  if (!same_size(image.range_m, rays.x)) {
+    throw UsageError("range image and camera differ in size");
+  }
+}
+
+/// Standard deviation of the plane's normal, radians: the larger of its two tilts.
+float normal_sigma_rad(const InverseDepthPlane& plane, float incidence_cos) {
+  // A tilt by an angle changes the slope of q by angle · q / cos² of the incidence, to first order.
+  const float slope_sigma = std::sqrt(std::max(plane.covariance(1, 1), plane.covariance(2, 2)));
+  return slope_sigma / plane.q0 * incidence_cos * incidence_cos;
+}
+
+SurfacePoint surface_point(const InverseDepthImage& inverse, const RangeImage& image,
+                           const PixelRays& rays, int row, int col, const CloudOptions& options) {
+  SurfacePoint raw = point_on_ray(rays, row, col, image.range_m(row, col));
+  raw.sigma_m = image.sigma_m(row, col);
+  raw.confidence = image.confidence(row, col);
+  if (!image.valid(row, col)) return raw;
+
+  const InverseDepthPlane plane = fit_plane(inverse, row, col, options);
+  if (plane.neighbours < options.min_neighbours || !(plane.q0 > 0)) return raw;
+  // q = a (x − x0) + b (y − y0) + q0 = (a, b, q0 − a x0 − b y0) · (x, y, 1) is the plane's
+  // normal, pointing away from the camera, over its distance from the origin.
+  const float x0 = inverse.tangent_x(row, col);
+  const float y0 = inverse.tangent_y(row, col);
+  const Eigen::Vector3f away =
+      Eigen::Vector3f(plane.a, plane.b, plane.q0 - plane.a * x0 - plane.b * y0).normalized();
+  const float ray_z = rays.z(row, col);
+  const float incidence_cos = away.dot(Eigen::Vector3f(rays.x(row, col), rays.y(row, col), ray_z));
+  if (normal_sigma_rad(plane, incidence_cos) > options.max_normal_sigma_rad) return raw;
+
+  const float range_m = 1 / (plane.q0 * ray_z);
+  SurfacePoint point = point_on_ray(rays, row, col, range_m);
+  point.getNormalVector3fMap() = -away;
+  point.sigma_m = std::sqrt(plane.covariance(0, 0)) * range_m / plane.q0;
+  point.confidence = raw.confidence;
+  return point;
+}
+
+}  // namespace
+
+std::vector<OptionField<CloudOptions>> CloudOptions::fields() {
+  return {
+      {"window_radius_px", &CloudOptions::window_radius_px, 1, 15, "px",
+       "half width of the square window of the plane fit, without its centre"},
+      {"gate_sigmas", &CloudOptions::gate_sigmas, 1, 10, "",
+       "a neighbour belongs to the surface within this many standard deviations"},
+      {"min_neighbours", &CloudOptions::min_neighbours, 3, 961, "",
+       "pixels a plane needs; below, the point has no normal"},
+      {"max_normal_sigma_rad", &CloudOptions::max_normal_sigma_rad, 0.001, 3.2, "rad",
+       "normals less certain than this are left out"},
+  };
+}
+
+SurfaceCloud surface_cloud(const RangeImage& image, const PixelRays& rays,
+                           const CloudOptions& options) {
+  check_sizes(image, rays);
+  const InverseDepthImage inverse = inverse_depth_image(image, rays);
+  SurfaceCloud cloud = empty_cloud(image);
+  const int rows = static_cast<int>(image.rows());
+  const int cols = static_cast<int>(image.cols());
+#pragma omp parallel for schedule(dynamic, 4)
+  for (int row = 0; row < rows; ++row) {
+    for (int col = 0; col < cols; ++col) {
+      cloud.points[row * cols + col] = surface_point(inverse, image, rays, row, col, options);
+    }
+  }
+  return cloud;
+}
+
+SurfaceCloud raw_cloud(const RangeImage& image, const PixelRays& rays) {
+  check_sizes(image, rays);
+  SurfaceCloud cloud = empty_cloud(image);
+  const int cols = static_cast<int>(image.cols());
+  for (int row = 0; row < image.rows(); ++row) {
+    for (int col = 0; col < cols; ++col) {
+      SurfacePoint& point = cloud.points[row * cols + col];
+      point = point_on_ray(rays, row, col, image.range_m(row, col));
+      point.sigma_m = image.sigma_m(row, col);
+      point.confidence = image.confidence(row, col);
+    }
+  }
+  return cloud;
+}
+
+}  // namespace tofmap

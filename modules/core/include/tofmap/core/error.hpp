@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace tofmap {
+
+/// Wrong use: an argument or option that is not allowed. The message names the
+/// argument, the value given and what is allowed. The program exits with status 2.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Missing, damaged or contradictory input, or a place that cannot be written. The
+/// message names the file and the remedy. The program exits with status 3.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace tofmap

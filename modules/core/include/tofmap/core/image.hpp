@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include <Eigen/Core>
+
+namespace tofmap {
+
+/// A single-channel image: rows are image rows (v), columns are image columns (u),
+/// stored row by row; `image(v, u)` is one pixel. Pixel (0, 0) is the top left one.
+template <class Scalar>
+using Image = Eigen::Array<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+using ImageF = Image<float>;
+using ImageU8 = Image<std::uint8_t>;
+using ImageU16 = Image<std::uint16_t>;
+
+/// True if both images have the same width and height.
+template <class A, class B>
+bool same_size(const Eigen::DenseBase<A>& a, const Eigen::DenseBase<B>& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols();
+}
+
+}  // namespace tofmap

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+namespace tofmap {
+
+/// A rigid motion in double precision. Transforms are named so that products read by
+/// cancelling: world_from_b = world_from_a * a_from_b.
+using Pose = Eigen::Isometry3d;
+
+/// Where the camera was: camera (optical frame) to world, metres.
+struct StampedPose {
+  double timestamp_s = 0;
+  Pose world_from_camera = Pose::Identity();
+};
+
+using Trajectory = std::vector<StampedPose>;
+
+/// Angle of the rotation between two poses, radians, 0 … π.
+double rotation_angle_rad(const Pose& a, const Pose& b);
+
+/// The motion exp(ξ) of a twist ξ = (rotation vector in radians, translation in metres):
+/// rotation by the vector, then translation; the first-order model of the registration.
+Pose pose_from_twist(const Eigen::Matrix<double, 6, 1>& twist);
+
+/// Linear in translation, spherical in rotation; `share` 0 gives `a`, 1 gives `b`.
+/// Outside 0 … 1 it extrapolates.
+Pose interpolate(const Pose& a, const Pose& b, double share);
+
+/// Reads a trajectory in the form of the TUM RGB-D benchmark: a line a pose, `timestamp tx ty tz
+/// qx qy qz qw`, # starts a comment. Throws InputError that names file and line if a line
+/// does not hold eight numbers, or its quaternion is zero.
+Trajectory read_trajectory(const std::filesystem::path& file);
+
+/// Writes one line of that form; the caller checks the stream.
+void write_pose(std::ostream& out, const StampedPose& pose);
+
+/// Writes that form: six decimals for the time, nine for the pose. Throws InputError if the
+/// file cannot be written.
+void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory);
+
+}  // namespace tofmap

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/core/camera.hpp"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <Eigen/LU>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+bool is_distorted(const CameraModel& camera) {
+  for (const double k : camera.distortion) {
+    if (k != 0) return true;
+  }
+  return false;
+}
+
+struct Distorted {
+  Eigen::Vector2d point;     ///< distorted normalised coordinates
+  Eigen::Matrix2d jacobian;  ///< of the distorted by the undistorted ones
+};
+
+Distorted distort(const std::array<double, 5>& k, const Eigen::Vector2d& p) {
+  const auto [k1, k2, p1, p2, k3] = k;
+  const double x = p.x();
+  const double y = p.y();
+  const double r2 = x * x + y * y;
+  const double radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3));
+  const double slope = k1 + r2 * (2 * k2 + 3 * r2 * k3);  // d radial / d r²
+  Distorted out;
+  out.point = {x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
+               y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y};
+  const double cross = 2 * x * y * slope + 2 * p1 * x + 2 * p2 * y;
+  out.jacobian << radial + 2 * x * x * slope + 2 * p1 * y + 6 * p2 * x, cross, cross,
+      radial + 2 * y * y * slope + 6 * p1 * y + 2 * p2 * x;
+  return out;
+}
+
+Eigen::Vector2d undistort(const std::array<double, 5>& k, const Eigen::Vector2d& distorted) {
+  constexpr int max_iterations = 30;
+  constexpr double tolerance = 1e-12;
+  Eigen::Vector2d p = distorted;
+  for (int i = 0; i < max_iterations; ++i) {
+    const Distorted d = distort(k, p);
+    // Past the fold of the radial polynomial the inverse is another branch's.
+    if (d.jacobian.determinant() <= 0) return {nan, nan};
+    const Eigen::Vector2d error = d.point - distorted;
+    if (error.squaredNorm() < tolerance * tolerance) return p;
+    p -= d.jacobian.inverse() * error;
+  }
+  return {nan, nan};
+}
+
+}  // namespace
+
+void validate(const CameraModel& camera) {
+  const auto fail = [](const std::string& what) { throw InputError("camera: " + what); };
+  if (camera.width_px <= 0 || camera.height_px <= 0) {
+    fail("width and height must be positive, got " + std::to_string(camera.width_px) + " x " +
+         std::to_string(camera.height_px));
+  }
+  const bool focal_ok = std::isfinite(camera.fx_px) && std::isfinite(camera.fy_px) &&
+                        camera.fx_px > 0 && camera.fy_px > 0;
+  if (!focal_ok) fail("fx and fy must be positive");
+  if (!std::isfinite(camera.cx_px) || !std::isfinite(camera.cy_px))
+    fail("cx and cy must be finite");
+  for (const double k : camera.distortion) {
+    if (!std::isfinite(k)) fail("distortion must be five finite numbers: k1 k2 p1 p2 k3");
+  }
+  // The corners are the farthest from the axis: if they have rays, so have all pixels.
+  for (const double u : {0.0, camera.width_px - 1.0}) {
+    for (const double v : {0.0, camera.height_px - 1.0}) {
+      if (!pixel_ray(camera, u, v).allFinite()) {
+        fail("the distortion coefficients fold the image: its corners have no viewing ray");
+      }
+    }
+  }
+}
+
+Eigen::Vector3d pixel_ray(const CameraModel& camera, double u_px, double v_px) {
+  Eigen::Vector2d p((u_px - camera.cx_px) / camera.fx_px, (v_px - camera.cy_px) / camera.fy_px);
+  if (is_distorted(camera)) p = undistort(camera.distortion, p);
+  return Eigen::Vector3d(p.x(), p.y(), 1).normalized();
+}
+
+std::optional<Eigen::Vector2d> project(const CameraModel& camera, const Eigen::Vector3d& point_m) {
+  if (!(point_m.z() > 0)) return std::nullopt;
+  Eigen::Vector2d p = point_m.head<2>() / point_m.z();
+  if (is_distorted(camera)) {
+    const Distorted d = distort(camera.distortion, p);
+    if (d.jacobian.determinant() <= 0) return std::nullopt;
+    p = d.point;
+  }
+  return Eigen::Vector2d(camera.fx_px * p.x() + camera.cx_px, camera.fy_px * p.y() + camera.cy_px);
+}
+
+PixelRays pixel_rays(const CameraModel& camera) {
+  PixelRays rays;
+  for (ImageF* plane : {&rays.x, &rays.y, &rays.z}) {
+    plane->resize(camera.height_px, camera.width_px);
+  }
+  for (int v = 0; v < camera.height_px; ++v) {
+    for (int u = 0; u < camera.width_px; ++u) {
+      const Eigen::Vector3f ray = pixel_ray(camera, u, v).cast<float>();
+      rays.x(v, u) = ray.x();
+      rays.y(v, u) = ray.y();
+      rays.z(v, u) = ray.z();
+    }
+  }
+  return rays;
+}
+
+ImageF depth_from_range(const ImageF& range_m, const PixelRays& rays) { return range_m * rays.z; }
+
+ImageF range_from_depth(const ImageF& depth_m, const PixelRays& rays) { return depth_m / rays.z; }
+
+}  // namespace tofmap

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/core/modulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+
+void validate(const Modulation& modulation) {
+  const double a = modulation.frequency_a_hz;
+  const double b = modulation.frequency_b_hz;
+  if (!(std::isfinite(a) && std::isfinite(b) && a > 0 && b > 0)) {
+    std::ostringstream message;
+    message << "modulation: frequencies must be positive, got " << a << " and " << b << " Hz";
+    throw InputError(message.str());
+  }
+  if (std::abs(a - b) < 1e-6 * a) {
+    std::ostringstream message;
+    message << "modulation: frequency_a_hz and frequency_b_hz are equal (" << a
+            << " Hz); wraps can only be told apart by two different frequencies";
+    throw InputError(message.str());
+  }
+}
+
+double combined_range_m(const Modulation& modulation, double tolerance_cycles) {
+  const double longer = std::max(modulation.wavelength_a_m(), modulation.wavelength_b_m());
+  const double shorter = std::min(modulation.wavelength_a_m(), modulation.wavelength_b_m());
+  // The phase of the shorter advances by longer / shorter a wrap of the longer; by
+  // Dirichlet's theorem it returns within 1 / n after at most n wraps.
+  const int last = static_cast<int>(std::ceil(1 / std::max(tolerance_cycles, 1e-6)));
+  for (int n = 1; n < last; ++n) {
+    const double cycles = n * longer / shorter;
+    if (std::abs(cycles - std::round(cycles)) <= tolerance_cycles) return n * longer;
+  }
+  return last * longer;
+}
+
+WrapLimits wrap_limits(const Modulation& modulation, double max_range_m) {
+  if (!(std::isfinite(max_range_m) && max_range_m > 0)) {
+    throw UsageError("max_range_m must be a positive number of metres");
+  }
+  const auto count = [&](double wavelength_m) {
+    return static_cast<int>(std::ceil(max_range_m / wavelength_m - 1e-9));
+  };
+  return {count(modulation.wavelength_a_m()), count(modulation.wavelength_b_m())};
+}
+
+}  // namespace tofmap

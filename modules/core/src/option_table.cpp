@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/core/option_table.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include <yaml-cpp/yaml.h>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+template <class Number>
+std::optional<Number> parse_number(const std::string& text) {
+  Number number{};
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || rest != end) return std::nullopt;
+  return number;
+}
+
+std::optional<bool> parse_bool(const std::string& text) {
+  if (text == "true") return true;
+  if (text == "false") return false;
+  return std::nullopt;
+}
+
+/// The shortest text that reads back as the same number.
+std::string number_text(double number) {
+  char buffer[32];
+  const auto result = std::to_chars(buffer, buffer + sizeof buffer, number);
+  return {buffer, result.ptr};
+}
+
+std::string range_text(double min, double max) {
+  const bool from = std::isfinite(min);
+  const bool to = std::isfinite(max);
+  if (from && to) return number_text(min) + " … " + number_text(max);
+  if (from) return "at least " + number_text(min);
+  if (to) return "at most " + number_text(max);
+  return "any number";
+}
+
+/// Whether the word is one of "a | b | c".
+bool is_choice(const std::string& word, const std::string& choices) {
+  std::istringstream words(choices);
+  for (std::string choice; words >> choice;) {
+    if (choice != "|" && choice == word) return true;
+  }
+  return false;
+}
+
+std::string joined(const std::vector<std::string>& words, const char* separator) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
+  return text;
+}
+
+}  // namespace
+
+std::string OptionTable::Entry::allowed() const {
+  if (std::holds_alternative<bool*>(value)) return "true | false";
+  if (std::holds_alternative<std::string*>(value)) {
+    return choices.empty() ? "any text" : choices;
+  }
+  const bool whole = std::holds_alternative<int*>(value);
+  return (whole ? "whole number, " : "") + range_text(min, max);
+}
+
+std::string OptionTable::Entry::text() const {
+  if (const auto* flag = std::get_if<bool*>(&value)) return **flag ? "true" : "false";
+  if (const auto* whole = std::get_if<int*>(&value)) return std::to_string(**whole);
+  if (const auto* number = std::get_if<double*>(&value)) return number_text(**number);
+  return YAML::Dump(YAML::Node(*std::get<std::string*>(value)));
+}
+
+void OptionTable::Entry::set(const std::string& value_text) {
+  const auto refuse = [&] {
+    throw UsageError("option " + key() + ": '" + value_text +
+                     "' is not allowed; allowed: " + allowed() + (unit.empty() ? "" : " " + unit));
+  };
+  if (auto* flag = std::get_if<bool*>(&value)) {
+    const auto parsed = parse_bool(value_text);
+    if (!parsed) refuse();
+    **flag = *parsed;
+  } else if (auto* whole = std::get_if<int*>(&value)) {
+    const auto parsed = parse_number<int>(value_text);
+    if (!parsed || *parsed < min || *parsed > max) refuse();
+    **whole = *parsed;
+  } else if (auto* number = std::get_if<double*>(&value)) {
+    const auto parsed = parse_number<double>(value_text);
+    if (!parsed || !std::isfinite(*parsed) || *parsed < min || *parsed > max) refuse();
+    **number = *parsed;
+  } else {
+    if (!choices.empty() && !is_choice(value_text, choices)) refuse();
+    *std::get<std::string*>(value) = value_text;
+  }
+}
+
+void OptionTable::add(Entry entry) { entries_.push_back(std::move(entry)); }
+
+OptionTable::Entry& OptionTable::find(const std::string& key, const std::string& value) {
+  const auto found = std::ranges::find_if(entries_, [&](const Entry& e) { return e.key() == key; });
+  if (found != entries_.end()) return *found;
+  // Name what stands in the same group; if there is no such group, name the groups.
+  const std::string group = key.substr(0, key.find('.'));
+  std::vector<std::string> names;
+  std::vector<std::string> groups;
+  for (const Entry& entry : entries_) {
+    if (entry.group == group && key != group) names.push_back(entry.key());
+    const std::string top = entry.group.empty() ? entry.name : entry.group;
+    if (std::ranges::find(groups, top) == groups.end()) groups.push_back(top);
+  }
+  throw UsageError("unknown option " + key + " (value '" + value +
+                   "'); known: " + joined(names.empty() ? groups : names, ", "));
+}
+
+void OptionTable::set(const std::string& key, const std::string& value) {
+  find(key, value).set(value);
+}
+
+void OptionTable::assign(const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw UsageError("--set " + assignment + ": expected group.name=value");
+  }
+  set(assignment.substr(0, equals), assignment.substr(equals + 1));
+}
+
+void OptionTable::load(const std::filesystem::path& file) {
+  const auto scalar = [&](const std::string& key, const YAML::Node& node) {
+    if (!node.IsScalar()) {
+      throw UsageError(file.string() + ": option " + key + " must be a single value");
+    }
+    try {
+      set(key, node.Scalar());
+    } catch (const UsageError& error) {
+      throw UsageError(file.string() + ":" + std::to_string(node.Mark().line + 1) + ": " +
+                       error.what());
+    }
+  };
+  YAML::Node root;
+  try {
+    root = YAML::LoadFile(file.string());
+  } catch (const YAML::BadFile&) {
+    throw InputError(file.string() + ": cannot be read; is it there?");
+  } catch (const YAML::Exception& error) {
+    throw InputError(file.string() + ": no valid YAML: " + error.what());
+  }
+  if (root.IsNull()) return;  // an empty file sets nothing
+  if (!root.IsMap()) throw InputError(file.string() + ": expected a map of option groups");
+  for (const auto& group : root) {
+    const std::string name = group.first.as<std::string>();
+    if (group.second.IsMap()) {
+      for (const auto& option : group.second) {
+        const std::string key = name + "." + option.first.as<std::string>();
+        scalar(key, option.second);
+      }
+    } else {
+      scalar(name, group.second);
+    }
+  }
+}
+
+std::string OptionTable::to_yaml(bool with_comments) const {
+  std::ostringstream out;
+  std::string group;
+  for (const Entry& entry : entries_) {
+    if (entry.group != group) {
+      group = entry.group;
+      out << group << ":\n";
+    }
+    const std::string indent = group.empty() ? "" : "  ";
+    if (with_comments) {
+      out << indent << "# " << entry.meaning << " [" << entry.allowed()
+          << (entry.unit.empty() ? "" : ", " + entry.unit) << "]\n";
+    }
+    out << indent << entry.name << ": " << entry.text() << '\n';
+  }
+  return out.str();
+}
+
+}  // namespace tofmap

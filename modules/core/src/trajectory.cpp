@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/core/trajectory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+
+double rotation_angle_rad(const Pose& a, const Pose& b) {
+  return Eigen::Quaterniond(a.linear()).angularDistance(Eigen::Quaterniond(b.linear()));
+}
+
+Pose pose_from_twist(const Eigen::Matrix<double, 6, 1>& twist) {
+  const Eigen::Vector3d rotation = twist.head<3>();
+  const double angle = rotation.norm();
+  Pose pose = Pose::Identity();
+  if (angle > 0) pose.linear() = Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix();
+  pose.translation() = twist.tail<3>();
+  return pose;
+}
+
+Pose interpolate(const Pose& a, const Pose& b, double share) {
+  const Eigen::Quaterniond qa(a.linear());
+  const Eigen::AngleAxisd step(qa.conjugate() * Eigen::Quaterniond(b.linear()));
+  Pose pose = Pose::Identity();
+  pose.linear() = (qa * Eigen::AngleAxisd(share * step.angle(), step.axis())).toRotationMatrix();
+  pose.translation() = (1 - share) * a.translation() + share * b.translation();
+  return pose;
+}
+
+Trajectory read_trajectory(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  if (!in) throw InputError(file.string() + ": cannot be read; is it there?");
+  Trajectory trajectory;
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos || line[first] == '#') continue;
+    std::istringstream fields(line);
+    StampedPose pose;
+    Eigen::Vector3d t;
+    double x = 0;
+    double y = 0;
+    double z = 0;
+    double w = 0;
+    fields >> pose.timestamp_s >> t.x() >> t.y() >> t.z() >> x >> y >> z >> w;
+    const Eigen::Quaterniond q(w, x, y, z);
+    // A quaternion off unit length by rounding is mended; a zero one is no rotation.
+    if (!fields || !t.allFinite() || !std::isfinite(q.norm()) || q.norm() < 1e-3) {
+      throw InputError(file.string() + ":" + std::to_string(number) +
+                       ": expected 'timestamp tx ty tz qx qy qz qw', got '" + line + "'");
+    }
+    pose.world_from_camera.linear() = q.normalized().toRotationMatrix();
+    pose.world_from_camera.translation() = t;
+    trajectory.push_back(pose);
+  }
+  return trajectory;
+}
+
+void write_pose(std::ostream& out, const StampedPose& pose) {
+  const Eigen::Vector3d t = pose.world_from_camera.translation();
+  const Eigen::Quaterniond q(pose.world_from_camera.linear());
+  out << std::fixed << std::setprecision(6) << pose.timestamp_s << std::setprecision(9);
+  for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) out << ' ' << value;
+  out << '\n';
+}
+
+void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory) {
+  std::ofstream out(file);
+  out << "# timestamp tx ty tz qx qy qz qw\n";
+  for (const StampedPose& pose : trajectory) write_pose(out, pose);
+  out.close();
+  if (!out) throw InputError(file.string() + ": cannot be written; is the disk full?");
+}
+
+}  // namespace tofmap

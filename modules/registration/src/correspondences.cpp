@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "correspondences.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace tofmap {
+namespace {
+
+/// Variance of a point along a direction, from its standard deviation along its viewing ray.
+double variance_along(const SurfacePoint& point, const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d ray = point.getVector3fMap().cast<double>().normalized();
+  const double sigma = point.sigma_m * ray.dot(direction);
+  return sigma * sigma;
+}
+
+/// Where a point of the target's camera frame falls: the surface point at that pixel.
+const SurfacePoint* look_up(const SurfaceCloud& target, const CameraModel& camera,
+                            const Eigen::Vector3d& point_m) {
+  const std::optional<Eigen::Vector2d> pixel = project(camera, point_m);
+  if (!pixel) return nullptr;
+  const double u = std::round(pixel->x());
+  const double v = std::round(pixel->y());
+  if (!(u >= 0 && v >= 0 && u < target.width && v < target.height)) return nullptr;
+  const SurfacePoint& found =
+      target.points[static_cast<std::size_t>(v) * target.width + static_cast<std::size_t>(u)];
+  return found.has_normal() ? &found : nullptr;
+}
+
+struct Gates {
+  double max_gap_m;
+  double min_normal_cos;
+  double systematic_variance_m2;
+
+  explicit Gates(const RegistrationOptions& options)
+      : max_gap_m(options.max_point_gap_m),
+        min_normal_cos(std::cos(options.max_normal_angle_rad)),
+        systematic_variance_m2(options.systematic_sigma_m * options.systematic_sigma_m) {}
+};
+
+/// The pair of a source point with what it falls on, in the target's frame.
+std::optional<Correspondence> correspondence(const SurfacePoint& source,
+                                             const Pose& target_from_source,
+                                             const SurfaceCloud& target, const CameraModel& camera,
+                                             const Gates& gates) {
+  const Eigen::Vector3d point = target_from_source * source.getVector3fMap().cast<double>();
+  const SurfacePoint* found = look_up(target, camera, point);
+  if (found == nullptr) return std::nullopt;
+  const Eigen::Vector3d gap = point - found->getVector3fMap().cast<double>();
+  if (gap.squaredNorm() > gates.max_gap_m * gates.max_gap_m) return std::nullopt;
+
+  const Eigen::Vector3d normal = found->getNormalVector3fMap().cast<double>();
+  const Eigen::Vector3d source_normal = source.getNormalVector3fMap().cast<double>();
+  if (normal.dot(target_from_source.linear() * source_normal) < gates.min_normal_cos) {
+    return std::nullopt;
+  }
+  Correspondence pair;
+  pair.point_m = point;
+  pair.normal = normal;
+  pair.residual_m = normal.dot(gap);
+  const Eigen::Vector3d normal_in_source = target_from_source.linear().transpose() * normal;
+  pair.variance_m2 = variance_along(*found, normal) + variance_along(source, normal_in_source) +
+                     gates.systematic_variance_m2;
+  return pair;
+}
+
+}  // namespace
+
+std::vector<const SurfacePoint*> select_points(const SurfaceCloud& source, int stride_px) {
+  std::vector<const SurfacePoint*> points;
+  for (std::uint32_t row = 0; row < source.height; row += stride_px) {
+    for (std::uint32_t col = 0; col < source.width; col += stride_px) {
+      const SurfacePoint& point = source.points[row * source.width + col];
+      if (point.has_normal()) points.push_back(&point);
+    }
+  }
+  return points;
+}
+
+Correspondences find_correspondences(const std::vector<const SurfacePoint*>& points,
+                                     const Pose& world_from_source,
+                                     std::span<const RegistrationTarget> targets,
+                                     const CameraModel& camera,
+                                     const RegistrationOptions& options) {
+  const Gates gates(options);
+  const Eigen::Vector3d origin = world_from_source.translation();
+  const int count = static_cast<int>(points.size());
+  std::vector<std::optional<Correspondence>> found(points.size() * targets.size());
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    const Pose& world_from_target = targets[t].world_from_camera;
+    const Pose target_from_source = world_from_target.inverse() * world_from_source;
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < count; ++i) {
+      auto pair = correspondence(*points[i], target_from_source, *targets[t].cloud, camera, gates);
+      if (!pair) continue;
+      pair->point_m = world_from_target * pair->point_m - origin;
+      pair->normal = world_from_target.linear() * pair->normal;
+      found[t * points.size() + i] = pair;
+    }
+  }
+  Correspondences out;
+  std::vector<bool> is_matched(points.size(), false);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (!found[i]) continue;
+    out.pairs.push_back(*found[i]);
+    is_matched[i % points.size()] = true;
+  }
+  const auto matched = static_cast<double>(std::ranges::count(is_matched, true));
+  if (!points.empty()) out.overlap = matched / static_cast<double>(points.size());
+  return out;
+}
+
+}  // namespace tofmap

@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/registration/projective_icp.hpp"
+
+#include "correspondences.hpp"
+#include "normal_equations.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr double rotation_tolerance_rad = 2e-5;
+constexpr double translation_tolerance_m = 5e-5;
+
+bool is_below_tolerance(const Vector6d& twist) {
+  return twist.head<3>().norm() < rotation_tolerance_rad &&
+         twist.tail<3>().norm() < translation_tolerance_m;
+}
+
+/// Rotation about the camera's centre, then translation, both in world axes.
+Pose moved(const Pose& world_from_camera, const Vector6d& twist) {
+  const Pose step = pose_from_twist(twist);
+  Pose pose = world_from_camera;
+  pose.linear() = step.linear() * world_from_camera.linear();
+  pose.translation() += step.translation();
+  return pose;
+}
+
+/// The twist that moves `from` to `to`.
+Vector6d twist_between(const Pose& from, const Pose& to) {
+  const Eigen::AngleAxisd rotation(to.linear() * from.linear().transpose());
+  Vector6d twist;
+  twist << rotation.angle() * rotation.axis(), to.translation() - from.translation();
+  return twist;
+}
+
+double median_range_m(const std::vector<const SurfacePoint*>& points) {
+  std::vector<float> ranges(points.size());
+  std::ranges::transform(points, ranges.begin(),
+                         [](const SurfacePoint* point) { return point->getVector3fMap().norm(); });
+  const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
+  std::ranges::nth_element(ranges, middle);
+  return *middle;
+}
+
+/// The system at one pose, open directions left to the prior.
+struct System {
+  NormalEquations equations;
+  ResidualStatistics statistics;
+  Observability seen;
+  int open_directions = 0;
+};
+
+System build_system(const std::vector<Correspondence>& pairs, const Pose& pose, double lever_m,
+                    const MotionPrior& prior, const RegistrationOptions& options) {
+  System system;
+  const double scale = robust_scale(pairs);
+  const double width = options.kernel_width * scale;
+  system.equations = build_equations(pairs, width);
+  system.statistics = residual_statistics(pairs, scale, width);
+  // Points whose plane fits share pixels are no independent observations, and residuals
+  // above the predicted noise tell of less information than predicted.
+  const double independent = 1 / (options.correlated_observations * scale * scale);
+  system.equations.information *= independent;
+  system.equations.gradient *= independent;
+  system.equations.weight_sum *= independent;
+
+  system.seen = observability(system.equations, lever_m);
+  system.open_directions =
+      drop_open_directions(system.equations, system.seen, options.min_direction_share);
+  Vector6d sigmas;
+  sigmas << Eigen::Vector3d::Constant(prior.rotation_sigma_rad),
+      Eigen::Vector3d::Constant(prior.translation_sigma_m);
+  add_prior(system.equations, twist_between(pose, prior.world_from_camera), sigmas);
+  return system;
+}
+
+RegistrationStatus verdict(const RegistrationResult& result, bool has_converged,
+                           const RegistrationOptions& options) {
+  if (result.overlap < options.min_overlap) return RegistrationStatus::low_overlap;
+  if (result.inlier_share < options.min_inlier_share) return RegistrationStatus::low_inliers;
+  return has_converged ? RegistrationStatus::converged : RegistrationStatus::iteration_limit;
+}
+
+}  // namespace
+
+std::vector<OptionField<RegistrationOptions>> RegistrationOptions::fields() {
+  using O = RegistrationOptions;
+  return {
+      {"source_stride_px", &O::source_stride_px, 1, 16, "px",
+       "every how manieth pixel of a frame, in both axes, is registered"},
+      {"max_iterations", &O::max_iterations, 1, 200, "", "Gauss-Newton steps at the most"},
+      {"max_point_gap_m", &O::max_point_gap_m, 0.01, 5, "m",
+       "points farther apart than this are no correspondence"},
+      {"max_normal_angle_rad", &O::max_normal_angle_rad, 0.01, 1.57, "rad",
+       "normals that differ by more are no correspondence"},
+      {"kernel_width", &O::kernel_width, 0.5, 100, "",
+       "width of the Geman-McClure kernel, in robust standard deviations of the residuals"},
+      {"systematic_sigma_m", &O::systematic_sigma_m, 0, 1, "m",
+       "error of a point that averaging does not lower, added to its predicted noise"},
+      {"correlated_observations", &O::correlated_observations, 1, 1000, "",
+       "how many correspondences count as one independent observation"},
+      {"min_direction_share", &O::min_direction_share, 0, 1, "",
+       "share of the observations a direction of motion needs; else the motion prior decides"},
+      {"min_correspondences", &O::min_correspondences, 6, 1000000, "",
+       "a frame with fewer is not registered"},
+      {"min_overlap", &O::min_overlap, 0, 1, "",
+       "share of a frame's points that must fall onto known surface"},
+      {"min_inlier_share", &O::min_inlier_share, 0, 1, "",
+       "share of the correspondences that must agree with the pose"},
+  };
+}
+
+bool succeeded(RegistrationStatus status) {
+  return status == RegistrationStatus::converged || status == RegistrationStatus::iteration_limit;
+}
+
+const char* status_name(RegistrationStatus status) {
+  switch (status) {
+    case RegistrationStatus::converged:
+      return "converged";
+    case RegistrationStatus::iteration_limit:
+      return "iteration_limit";
+    case RegistrationStatus::few_correspondences:
+      return "few_correspondences";
+    case RegistrationStatus::low_overlap:
+      return "low_overlap";
+    case RegistrationStatus::low_inliers:
+      return "low_inliers";
+  }
+  return "unknown";
+}
+
+RegistrationResult register_to_targets(const SurfaceCloud& source,
+                                       std::span<const RegistrationTarget> targets,
+                                       const CameraModel& camera, const MotionPrior& prior,
+                                       const RegistrationOptions& options) {
+  if (!(prior.rotation_sigma_rad > 0 && prior.translation_sigma_m > 0)) {
+    throw UsageError("motion prior: the standard deviations must be positive");
+  }
+  RegistrationResult result;
+  result.world_from_camera = prior.world_from_camera;
+  const auto points = select_points(source, options.source_stride_px);
+  if (points.empty() || targets.empty()) return result;
+  const double lever_m = median_range_m(points);
+
+  bool has_converged = false;
+  while (result.iterations < options.max_iterations && !has_converged) {
+    const auto [pairs, overlap] =
+        find_correspondences(points, result.world_from_camera, targets, camera, options);
+    result.correspondences = static_cast<int>(pairs.size());
+    if (result.correspondences < options.min_correspondences) {
+      result.status = RegistrationStatus::few_correspondences;
+      return result;
+    }
+    const System system = build_system(pairs, result.world_from_camera, lever_m, prior, options);
+    const Eigen::LDLT<Matrix6d> solver(system.equations.information);
+    const Vector6d twist = -solver.solve(system.equations.gradient);
+    result.world_from_camera = moved(result.world_from_camera, twist);
+    result.covariance = solver.solve(Matrix6d::Identity());
+    result.overlap = overlap;
+    result.inlier_share = system.statistics.inlier_share;
+    result.rmse_m = system.statistics.rmse_m;
+    result.residual_scale = system.statistics.scale;
+    result.degenerate_directions = system.open_directions;
+    result.direction_shares = system.seen.shares;
+    has_converged = is_below_tolerance(twist);
+    ++result.iterations;
+  }
+  result.status = verdict(result, has_converged, options);
+  return result;
+}
+
+double overlap_share(const SurfaceCloud& source, const Pose& world_from_source,
+                     const RegistrationTarget& target, const CameraModel& camera,
+                     const RegistrationOptions& options) {
+  constexpr int sparse_stride_px = 8;
+  const auto points = select_points(source, sparse_stride_px);
+  if (points.empty()) return 0;
+  return find_correspondences(points, world_from_source, {&target, 1}, camera, options).overlap;
+}
+
+}  // namespace tofmap

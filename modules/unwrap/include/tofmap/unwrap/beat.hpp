@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <tofmap/core/frame.hpp>
+#include <tofmap/core/image.hpp>
+#include <tofmap/unwrap/phase_noise.hpp>
+
+namespace tofmap {
+
+/// What bounds the wrap counts of a frame: count_a is the number of counts n_A = 0 … count_a − 1.
+struct BeatLimits {
+  double wavelength_a_m = 0;
+  double wavelength_b_m = 0;
+  double max_range_m = 0;
+  int count_a = 0;
+};
+
+/// Limits for ranges up to `max_range_m`; 0 means the sensor's, and if that is 0 too, what the
+/// pair can tell apart at a noise of 0.05 cycles (29 and 31 MHz: 72.4 m).
+/// Throws UsageError if that takes more than 255 counts, which wrap images cannot hold.
+BeatLimits beat_limits(const SensorModel& sensor, double max_range_m);
+
+/// The beat: range at A minus the nearest range that B allows, metres, for one pixel and one
+/// count n_A; at most λ_B / 2 in size, and near zero for the true count.
+/// B's count is not bounded by itself: near both ends of the range noise may carry B across
+/// a wrap boundary that A has not crossed.
+float beat_residual_m(const BeatLimits& limits, float phase_a, float phase_b, int n_a);
+
+/// True if the count puts A's range within 0 … max_range_m. A twentieth of a wavelength is
+/// tolerated above for noise at the limit; count 0 is always within.
+bool count_within_limits(const BeatLimits& limits, float phase_a, int n_a);
+
+/// Equation 2 for any number of wraps: per pixel the n_A of the nearest pair, i.e. the least
+/// |beat residual|; invalid_wrap_count where either phase is NaN. Equal residuals: the smaller.
+/// For two counts it is the paper's threshold at τ = |λ_A − λ_B| / 2.
+ImageU8 nearest_pair_counts(const DualFrequencyFrame& frame, const BeatLimits& limits);
+
+/// R̂ of equation 2: phase_a + n_A, cycles; NaN where the count is invalid.
+ImageF reconstruct_cycles(const ImageF& phase_a, const ImageU8& counts);
+
+/// How badly a count fits the beat of each pixel, in nats: half the squared residual over its
+/// variance, bounded so that flying pixels and multipath cannot outvote a surface.
+class BeatCost {
+ public:
+  BeatCost(const DualFrequencyFrame& frame, const BeatLimits& limits, const PhaseNoise& noise);
+
+  /// The cost of n_A at the pixel, 0 … bound; the bound outside the limits.
+  float operator()(Eigen::Index row, Eigen::Index col, int n_a) const;
+
+  int count_a() const { return limits_.count_a; }
+
+  static constexpr float bound = 4.5F;  ///< three standard deviations
+
+ private:
+  const DualFrequencyFrame& frame_;
+  BeatLimits limits_;
+  ImageF half_inverse_variance_;  ///< of the residual, 1 / (2 m²)
+};
+
+}  // namespace tofmap

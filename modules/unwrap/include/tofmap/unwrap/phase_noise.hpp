@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <tofmap/core/frame.hpp>
+#include <tofmap/core/image.hpp>
+
+namespace tofmap {
+
+/// The scale of the phase noise: σ_phase = scale / amplitude, in cycles. For a frame without
+/// amplitudes it is the same σ_phase for all pixels.
+struct PhaseNoise {
+  double scale_a = 0;
+  double scale_b = 0;
+};
+
+/// Estimates the noise from one frame: the median absolute second difference of the wrapped
+/// phase along rows and columns, each divided by what amplitudes predict for it.
+///
+/// A second difference cancels planes to first order and needs no unwrapping; the median
+/// passes over edges. (The residual between A and B, the obvious other source, is bounded by
+/// half a beat step and so saturates just when the noise is large.)
+/// The result is at least the quantisation of 16-bit phases; where too few pixels have
+/// neighbours to tell (fewer than 16 triples), it is a noise of 0.01 cycles at the median
+/// amplitude.
+PhaseNoise estimate_phase_noise(const DualFrequencyFrame& frame);
+
+/// σ_phase of every pixel, cycles; NaN where phase is NaN. `amplitude` may be empty.
+ImageF phase_sigma_cycles(const ImageF& phase, const ImageF& amplitude, double scale);
+
+}  // namespace tofmap

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/unwrap/unwrap.hpp"
+
+#include "confidence.hpp"
+#include "tofmap/unwrap/beat.hpp"
+#include "tofmap/unwrap/jump_evidence.hpp"
+#include "tofmap/unwrap/jump_integration.hpp"
+#include "tofmap/unwrap/jump_propagation.hpp"
+#include "tofmap/unwrap/phase_noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+void check(const DualFrequencyFrame& frame) {
+  const bool agree = same_size(frame.phase_a, frame.phase_b) &&
+                     (!frame.has_amplitude() || (same_size(frame.phase_a, frame.amplitude_a) &&
+                                                 same_size(frame.phase_a, frame.amplitude_b)));
+  if (!agree) {
+    throw UsageError("unwrap: frame " + std::to_string(frame.index) +
+                     ": images differ in size; phases and amplitudes must have one size, or "
+                     "amplitudes be empty");
+  }
+}
+
+/// Not 0 where both frequencies have a return (and a positive amplitude, if there is one).
+ImageU8 pixels_with_return(const DualFrequencyFrame& frame) {
+  ImageU8 valid = (frame.phase_a.isFinite() && frame.phase_b.isFinite()).cast<std::uint8_t>();
+  if (frame.has_amplitude()) {
+    valid *= (frame.amplitude_a > 0 && frame.amplitude_b > 0).cast<std::uint8_t>();
+  }
+  return valid;
+}
+
+/// The frame with NaN phases wherever a return is missing, so that no stage asks again.
+DualFrequencyFrame with_returns_only(const DualFrequencyFrame& frame, const ImageU8& valid) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  DualFrequencyFrame out = frame;
+  out.phase_a = (valid != 0).select(frame.phase_a, nan);
+  out.phase_b = (valid != 0).select(frame.phase_b, nan);
+  return out;
+}
+
+/// The image of counts that are known: ranges, their noise, and confidences.
+RangeImage make_range_image(const DualFrequencyFrame& frame, const ImageU8& counts,
+                            const ImageF& confidence, const BeatLimits& limits,
+                            const PhaseNoise& noise) {
+  const ImageF sigma = phase_sigma_cycles(frame.phase_a, frame.amplitude_a, noise.scale_a);
+  const auto wavelength_m = static_cast<float>(limits.wavelength_a_m);
+  RangeImage image(frame.phase_a.rows(), frame.phase_a.cols());
+  for (Eigen::Index v = 0; v < image.rows(); ++v) {
+    for (Eigen::Index u = 0; u < image.cols(); ++u) {
+      if (counts(v, u) == invalid_wrap_count) continue;
+      image.range_m(v, u) = (frame.phase_a(v, u) + counts(v, u)) * wavelength_m;
+      image.sigma_m(v, u) = sigma(v, u) * wavelength_m;
+      image.wrap_count(v, u) = counts(v, u);
+      image.confidence(v, u) = confidence(v, u);
+      image.reason(v, u) = static_cast<std::uint8_t>(InvalidReason::none);
+    }
+  }
+  return image;
+}
+
+/// relative + offset, kept within what the scene can hold; invalid where there is no region.
+ImageU8 absolute_counts(const RelativeCounts& relative, const Anchors& anchors, int count_a) {
+  ImageU8 counts =
+      ImageU8::Constant(relative.count.rows(), relative.count.cols(), invalid_wrap_count);
+  for (Eigen::Index i = 0; i < counts.size(); ++i) {
+    const int region = relative.region.data()[i];
+    if (region == RelativeCounts::no_region) continue;
+    const int n = relative.count.data()[i] + anchors.offset[static_cast<std::size_t>(region)];
+    counts.data()[i] = static_cast<std::uint8_t>(std::clamp(n, 0, count_a - 1));
+  }
+  return counts;
+}
+
+JumpProbabilities jump_evidence(const DualFrequencyFrame& frame, const BeatLimits& limits,
+                                const UnwrapOptions& options) {
+  const JumpProbabilities f_d = discontinuity_term(frame.phase_a, options.sigma_cycles);
+  if (unwrap_method(options) == UnwrapMethod::single) {
+    return fuse(f_d, f_d, options.trust_discontinuity, 0);
+  }
+  const ImageF reconstruction =
+      reconstruct_cycles(frame.phase_a, nearest_pair_counts(frame, limits));
+  const JumpProbabilities f_f =
+      frequency_term(frame.phase_a, reconstruction, options.window_px, options.sigma_cycles);
+  return fuse(f_d, f_f, options.trust_discontinuity, options.trust_frequency);
+}
+
+/// The paper: evidence, propagation, integration, anchors.
+UnwrapResult unwrap_by_jumps(const DualFrequencyFrame& frame, const ImageU8& valid,
+                             const BeatLimits& limits, const PhaseNoise& noise,
+                             const UnwrapOptions& options) {
+  const bool two_frequencies = unwrap_method(options) == UnwrapMethod::jump;
+  const JumpBeliefs beliefs =
+      propagate_jump_beliefs(jump_evidence(frame, limits, options), options.iterations);
+  const BeatCost beat(frame, limits, noise);
+  RelativeCounts relative =
+      integrate_jumps(beliefs.marginals, valid, two_frequencies ? options.least_certainty : 0);
+  if (two_frequencies) {
+    relative = join_regions(relative, beliefs.marginals, beat, options.objection_nats);
+  }
+  const Anchors anchors =
+      two_frequencies ? anchor_by_beat(relative, beat) : anchor_at_zero(relative);
+  const ImageU8 counts = absolute_counts(relative, anchors, limits.count_a);
+  const ImageF confidence = two_frequencies
+                                ? jump_and_beat_confidence(counts, beliefs.marginals, beat)
+                                : jump_confidence(counts, beliefs.marginals);
+
+  UnwrapResult result;
+  result.image = make_range_image(frame, counts, confidence, limits, noise);
+  result.iterations = beliefs.iterations;
+  result.curl_violations = beliefs.curl_violations;
+  result.converged = beliefs.converged;
+  result.largest_message_change = beliefs.largest_message_change;
+  result.regions = relative.region_count;
+  return result;
+}
+
+UnwrapResult unwrap_by_pixel(const DualFrequencyFrame& frame, const BeatLimits& limits,
+                             const PhaseNoise& noise) {
+  const ImageU8 counts = nearest_pair_counts(frame, limits);
+  const ImageF confidence = beat_confidence(counts, BeatCost(frame, limits, noise));
+  return {.image = make_range_image(frame, counts, confidence, limits, noise)};
+}
+
+/// Count 0, as confident as the beat is of that.
+UnwrapResult leave_wrapped(const DualFrequencyFrame& frame, const ImageU8& valid,
+                           const BeatLimits& limits, const PhaseNoise& noise) {
+  const ImageU8 counts =
+      (valid != 0).select(ImageU8::Zero(valid.rows(), valid.cols()), invalid_wrap_count);
+  const ImageF confidence = beat_confidence(counts, BeatCost(frame, limits, noise));
+  return {.image = make_range_image(frame, counts, confidence, limits, noise)};
+}
+
+double median_phase_noise_cycles(const DualFrequencyFrame& frame, const PhaseNoise& noise) {
+  std::vector<float> sigmas;
+  const ImageF sigma = phase_sigma_cycles(frame.phase_a, frame.amplitude_a, noise.scale_a);
+  for (const float s : sigma.reshaped()) {
+    if (std::isfinite(s)) sigmas.push_back(s);
+  }
+  if (sigmas.empty()) return 0;
+  const auto middle = sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2);
+  std::nth_element(sigmas.begin(), middle, sigmas.end());
+  return *middle;
+}
+
+}  // namespace
+
+std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
+  using O = UnwrapOptions;
+  return {
+      {"method", &O::method, 0, 0, "", "how wraps are found", "jump | single | pixel | none"},
+      {"max_range_m", &O::max_range_m, 0, 100000, "m",
+       "farthest range that the scene can hold; 0: the recording's, else what the pair can tell "
+       "apart"},
+      {"iterations", &O::iterations, 1, 1000, "", "most iterations of belief propagation"},
+      {"trust_discontinuity", &O::trust_discontinuity, 0, 1, "",
+       "c_d: trust in phases of neighbours being close"},
+      {"trust_frequency", &O::trust_frequency, 0, 1, "",
+       "c_f: trust in the difference of the two frequencies"},
+      {"window_px", &O::window_px, 1, 99, "px", "k: pixels on each side of a jump in the medians"},
+      {"sigma_cycles", &O::sigma_cycles, 0.001, 10, "cycles",
+       "sigma of the phase difference of neighbours"},
+      {"least_certainty", &O::least_certainty, 0, 1, "",
+       "jumps less certain than this join regions only where the beat agrees"},
+      {"objection_nats", &O::objection_nats, 0, 1e6, "",
+       "by how many times a bridge's log odds the beat must object to cut it"},
+  };
+}
+
+UnwrapMethod unwrap_method(const UnwrapOptions& options) {
+  if (options.method == "none") return UnwrapMethod::none;
+  if (options.method == "pixel") return UnwrapMethod::pixel;
+  if (options.method == "single") return UnwrapMethod::single;
+  if (options.method == "jump") return UnwrapMethod::jump;
+  throw UsageError("option unwrap.method: '" + options.method +
+                   "' is not allowed; allowed: jump | single | pixel | none");
+}
+
+UnwrapResult unwrap(const DualFrequencyFrame& frame, const SensorModel& sensor,
+                    const UnwrapOptions& options) {
+  check(frame);
+  const UnwrapMethod method = unwrap_method(options);
+  const BeatLimits limits = beat_limits(sensor, options.max_range_m);
+  const ImageU8 valid = pixels_with_return(frame);
+  const DualFrequencyFrame returns = with_returns_only(frame, valid);
+  const PhaseNoise noise = estimate_phase_noise(returns);
+
+  UnwrapResult result = method == UnwrapMethod::none ? leave_wrapped(returns, valid, limits, noise)
+                        : method == UnwrapMethod::pixel
+                            ? unwrap_by_pixel(returns, limits, noise)
+                            : unwrap_by_jumps(returns, valid, limits, noise, options);
+  result.phase_noise_cycles = median_phase_noise_cycles(returns, noise);
+  return result;
+}
+
+}  // namespace tofmap

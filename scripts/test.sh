@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 the tofmap authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Installs what is missing, builds tofmap with warnings as errors, and runs all tests.
+# BUILD_DIR chooses the build folder (default: build).
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+bash scripts/packages.sh
+build=${BUILD_DIR:-build}
+
+cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+  -DTOFMAP_WARNINGS_AS_ERRORS=ON -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
+cmake --build "$build"
+ctest --test-dir "$build" --output-on-failure -j "$(nproc)"

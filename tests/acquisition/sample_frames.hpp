@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+
+#include <tofmap/core/frame.hpp>
+#include <tofmap/core/trajectory.hpp>
+
+namespace tofmap::test {
+
+/// A small camera with odd numbers in every field, so that a mix-up shows.
+inline SensorModel sample_sensor() {
+  SensorModel sensor;
+  sensor.camera = {7, 5, 6.1234567890123, 6.25, 3.1, 1.9, {0.01, -0.002, 0.0003, -0.0004, 0.005}};
+  sensor.modulation = {29e6, 31e6};
+  sensor.max_range_m = 12.75;
+  return sensor;
+}
+
+/// Phases on the 16-bit grid, so that they are kept to the bit; a missing return at A in
+/// pixel (0, 0), at B in pixel (1, 1).
+inline DualFrequencyFrame sample_frame(int index) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  DualFrequencyFrame frame;
+  frame.index = index;
+  frame.timestamp_s = 1305031229.528784 + index / 15.0;
+  frame.phase_a.resize(5, 7);
+  frame.phase_b.resize(5, 7);
+  frame.amplitude_a.resize(5, 7);
+  frame.amplitude_b.resize(5, 7);
+  for (int i = 0; i < 35; ++i) {
+    frame.phase_a.data()[i] = static_cast<float>(1870 * i + index) / 65535.0F;
+    frame.phase_b.data()[i] = static_cast<float>(65534 - 1000 * i) / 65535.0F;
+    frame.amplitude_a.data()[i] = static_cast<float>(1 + 1900 * i);
+    frame.amplitude_b.data()[i] = static_cast<float>(65535 - 1900 * i);
+  }
+  frame.phase_a(0, 0) = nan;
+  frame.amplitude_a(0, 0) = 0;
+  frame.phase_b(1, 1) = nan;
+  frame.amplitude_b(1, 1) = 0;
+  return frame;
+}
+
+inline ImageF sample_range_truth() {
+  ImageF range_m(5, 7);
+  for (int i = 0; i < 35; ++i) range_m.data()[i] = static_cast<float>(1000 + 1800 * i) / 1000.0F;
+  range_m(2, 3) = std::numeric_limits<float>::quiet_NaN();
+  return range_m;
+}
+
+inline Pose sample_pose(int index) {
+  Pose pose = Pose::Identity();
+  pose.linear() =
+      Eigen::AngleAxisd(0.1 + 0.2 * index, Eigen::Vector3d(1, 2, 3).normalized()).matrix();
+  pose.translation() = Eigen::Vector3d(0.25 * index, -1.5, 1.25);
+  return pose;
+}
+
+/// Equal, with NaN equal to NaN.
+inline bool same_values(const ImageF& a, const ImageF& b) {
+  return same_size(a, b) && ((a == b) || (a.isNaN() && b.isNaN())).all();
+}
+
+}  // namespace tofmap::test

@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "sample_frames.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <support/temporary_folder.hpp>
+
+#include <tofmap/acquisition/png_image.hpp>
+#include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+using test::same_values;
+
+std::filesystem::path write_sample(const std::filesystem::path& folder, int frames) {
+  SequenceWriter writer(folder, test::sample_sensor());
+  for (int i = 0; i < frames; ++i) {
+    writer.add(test::sample_frame(i), test::sample_pose(i), test::sample_range_truth());
+  }
+  return folder;
+}
+
+TEST(Sequence, ReadsBackTheSensorToTheBit) {
+  const test::TemporaryFolder folder;
+  const SequenceReader reader(write_sample(folder.path() / "seq", 1));
+  const SensorModel expected = test::sample_sensor();
+  const SensorModel& read = reader.sensor();
+  EXPECT_EQ(read.camera.width_px, expected.camera.width_px);
+  EXPECT_EQ(read.camera.height_px, expected.camera.height_px);
+  EXPECT_EQ(read.camera.fx_px, expected.camera.fx_px);
+  EXPECT_EQ(read.camera.fy_px, expected.camera.fy_px);
+  EXPECT_EQ(read.camera.cx_px, expected.camera.cx_px);
+  EXPECT_EQ(read.camera.cy_px, expected.camera.cy_px);
+  EXPECT_EQ(read.camera.distortion, expected.camera.distortion);
+  EXPECT_EQ(read.modulation.frequency_a_hz, expected.modulation.frequency_a_hz);
+  EXPECT_EQ(read.modulation.frequency_b_hz, expected.modulation.frequency_b_hz);
+  EXPECT_EQ(read.max_range_m, expected.max_range_m);
+}
+
+TEST(Sequence, ReadsBackEveryFrameToTheBit) {
+  const test::TemporaryFolder folder;
+  SequenceReader reader(write_sample(folder.path() / "seq", 3));
+  ASSERT_EQ(reader.frame_count(), 3);
+  for (int i = 0; i < 3; ++i) {
+    const DualFrequencyFrame expected = test::sample_frame(i);
+    const auto sourced = reader.next();
+    ASSERT_TRUE(sourced && sourced->frame) << (sourced ? sourced->damage : "no frame");
+    EXPECT_EQ(sourced->index, i);
+    EXPECT_EQ(sourced->frame->index, i);
+    EXPECT_NEAR(sourced->timestamp_s, expected.timestamp_s, 5.1e-7);  // six decimals
+    EXPECT_TRUE(same_values(sourced->frame->phase_a, expected.phase_a));
+    EXPECT_TRUE(same_values(sourced->frame->phase_b, expected.phase_b));
+    EXPECT_TRUE(same_values(sourced->frame->amplitude_a, expected.amplitude_a));
+    EXPECT_TRUE(same_values(sourced->frame->amplitude_b, expected.amplitude_b));
+  }
+  EXPECT_FALSE(reader.next());
+}
+
+TEST(Sequence, ReadsBackTheTruth) {
+  const test::TemporaryFolder folder;
+  const SequenceReader reader(write_sample(folder.path() / "seq", 2));
+  const Trajectory poses = reader.ground_truth();
+  ASSERT_EQ(poses.size(), 2U);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(poses[i].timestamp_s, reader.files()[i].timestamp_s);
+    EXPECT_TRUE(poses[i].world_from_camera.isApprox(test::sample_pose(i), 1e-8));  // 9 decimals
+    const auto range_m = reader.range_truth(i);
+    ASSERT_TRUE(range_m);
+    EXPECT_TRUE(same_values(*range_m, test::sample_range_truth()));
+  }
+}
+
+TEST(Sequence, IsReadableAfterEveryFrameThatWasWritten) {
+  const test::TemporaryFolder folder;
+  SequenceWriter writer(folder.path() / "seq", test::sample_sensor());
+  for (int i = 0; i < 2; ++i) {
+    writer.add(test::sample_frame(i), test::sample_pose(i));
+    const SequenceReader reader(folder.path() / "seq");
+    EXPECT_EQ(reader.frame_count(), i + 1);
+    EXPECT_TRUE(reader.read(i).frame) << reader.read(i).damage;
+    EXPECT_EQ(reader.ground_truth().size(), i + 1U);
+  }
+}
+
+TEST(Sequence, WithoutTruthHasNone) {
+  const test::TemporaryFolder folder;
+  SequenceWriter(folder.path(), test::sample_sensor()).add(test::sample_frame(0));
+  const SequenceReader reader(folder.path());
+  EXPECT_TRUE(reader.ground_truth().empty());
+  EXPECT_FALSE(reader.range_truth(0));
+}
+
+TEST(Sequence, WithoutAmplitudesReadsBackWithoutAmplitudes) {
+  const test::TemporaryFolder folder;
+  DualFrequencyFrame frame = test::sample_frame(0);
+  frame.amplitude_a.resize(0, 0);
+  frame.amplitude_b.resize(0, 0);
+  SequenceWriter(folder.path(), test::sample_sensor()).add(frame);
+  const SequenceReader reader(folder.path());
+  const SourcedFrame read = reader.read(0);
+  ASSERT_TRUE(read.frame) << read.damage;
+  EXPECT_FALSE(read.frame->has_amplitude());
+  EXPECT_TRUE(same_values(read.frame->phase_a, frame.phase_a));
+}
+
+TEST(Sequence, WithOneAmplitudeOnlyCountsAsWithoutAmplitudes) {
+  const test::TemporaryFolder folder;
+  write_sample(folder.path() / "seq", 1);
+  std::ofstream(folder.path() / "seq/frames.txt")
+      << "0 phase_a/000000.png phase_b/000000.png amplitude_a/000000.png -\n"
+      << "1 phase_a/000000.png phase_b/000000.png amplitude_a/000000.png\n"
+      << "2 phase_a/000000.png phase_b/000000.png\n";
+  const SequenceReader reader(folder.path() / "seq");
+  for (int i = 0; i < 3; ++i) {
+    const SourcedFrame read = reader.read(i);
+    ASSERT_TRUE(read.frame) << read.damage;
+    EXPECT_FALSE(read.frame->has_amplitude());
+  }
+}
+
+TEST(Sequence, AmplitudeZeroMeansNoReturnAtThatFrequency) {
+  const test::TemporaryFolder folder;
+  write_sample(folder.path() / "seq", 1);
+  ImageU16 dark = ImageU16::Constant(5, 7, 100);
+  dark(4, 6) = 0;
+  write_png(folder.path() / "seq/amplitude_a/000000.png", dark);
+  const SequenceReader reader(folder.path() / "seq");
+  const SourcedFrame read = reader.read(0);
+  ASSERT_TRUE(read.frame) << read.damage;
+  EXPECT_TRUE(std::isnan(read.frame->phase_a(4, 6)));
+  EXPECT_FALSE(std::isnan(read.frame->phase_b(4, 6)));
+}
+
+TEST(Sequence, ListMayHoldCommentsBlankLinesAndWindowsLineEnds) {
+  const test::TemporaryFolder folder;
+  write_sample(folder.path() / "seq", 1);
+  std::ofstream(folder.path() / "seq/frames.txt", std::ios::binary)
+      << "# a comment\r\n\r\n   \n  # another\n"
+      << "0.5\tphase_a/000000.png  phase_b/000000.png - -\r\n";
+  const SequenceReader reader(folder.path() / "seq");
+  ASSERT_EQ(reader.frame_count(), 1);
+  EXPECT_TRUE(reader.read(0).frame) << reader.read(0).damage;
+}
+
+TEST(Sequence, AcceptsALongerWavelengthAtB) {
+  const test::TemporaryFolder folder;
+  SensorModel sensor = test::sample_sensor();
+  std::swap(sensor.modulation.frequency_a_hz, sensor.modulation.frequency_b_hz);
+  SequenceWriter(folder.path(), sensor).add(test::sample_frame(0));
+  const SequenceReader reader(folder.path());
+  EXPECT_LT(reader.sensor().modulation.wavelength_a_m(),
+            reader.sensor().modulation.wavelength_b_m());
+}
+
+TEST(SequenceWriter, RoundsPhasesToTheNearestStepOfTheCircle) {
+  const test::TemporaryFolder folder;
+  DualFrequencyFrame frame = test::sample_frame(0);
+  frame.phase_a.setConstant(0.25F);
+  frame.phase_a(0, 0) = std::nextafter(1.0F, 0.0F);  // nearest is a whole cycle, not 'no return'
+  frame.amplitude_a.setConstant(1);
+  SequenceWriter(folder.path(), test::sample_sensor()).add(frame);
+  const ImageU16 pixels = read_png_16(folder.path() / "phase_a/000000.png");
+  EXPECT_EQ(pixels(0, 0), 0);
+  EXPECT_EQ(pixels(1, 1), 16384);
+}
+
+TEST(SequenceWriter, NeverWritesAWeakReturnAsNone) {
+  const test::TemporaryFolder folder;
+  DualFrequencyFrame frame = test::sample_frame(0);
+  frame.amplitude_a.setConstant(1e-3F);
+  frame.amplitude_b.setConstant(100.0F);
+  SequenceWriter(folder.path(), test::sample_sensor(), 0.5).add(frame);
+  EXPECT_EQ(read_png_16(folder.path() / "amplitude_a/000000.png")(0, 0), 1);
+  EXPECT_EQ(read_png_16(folder.path() / "amplitude_b/000000.png")(0, 0), 50);
+}
+
+TEST(SequenceWriter, RefusesWhatDoesNotFit) {
+  const test::TemporaryFolder folder;
+  SequenceWriter writer(folder.path(), test::sample_sensor());
+  const auto refused = [&](const auto& change) {
+    DualFrequencyFrame frame = test::sample_frame(0);
+    change(frame);
+    EXPECT_THROW(writer.add(frame), UsageError);
+  };
+  refused([](DualFrequencyFrame& frame) { frame.phase_a(2, 2) = 1.0F; });
+  refused([](DualFrequencyFrame& frame) { frame.phase_b(2, 2) = -0.1F; });
+  refused([](DualFrequencyFrame& frame) { frame.amplitude_a(2, 2) = 65536.0F; });
+  refused([](DualFrequencyFrame& frame) { frame.amplitude_b(2, 2) = -1.0F; });
+  refused([](DualFrequencyFrame& frame) { frame.phase_a.resize(5, 6); });
+  EXPECT_THROW(writer.add(test::sample_frame(0), {}, ImageF(ImageF::Constant(5, 7, 65.6F))),
+               UsageError);
+  EXPECT_EQ(writer.count(), 0);
+}
+
+TEST(SequenceWriter, RefusesTimesThatDoNotAdvance) {
+  const test::TemporaryFolder folder;
+  SequenceWriter writer(folder.path(), test::sample_sensor());
+  writer.add(test::sample_frame(1));
+  EXPECT_THROW(writer.add(test::sample_frame(1)), UsageError);
+  EXPECT_THROW(writer.add(test::sample_frame(0)), UsageError);
+}
+
+TEST(SequenceWriter, RefusesAFolderThatHoldsSomethingOrCannotBeMade) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path() / "letter.txt") << "mine\n";
+  EXPECT_THROW(SequenceWriter(folder.path(), test::sample_sensor()), InputError);
+  EXPECT_THROW(SequenceWriter(folder.path() / "letter.txt", test::sample_sensor()), InputError);
+  EXPECT_THROW(SequenceWriter("/proc/seq", test::sample_sensor()), InputError);
+}
+
+TEST(SequenceWriter, NamesTheFileThatCannotBeWritten) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  const test::TemporaryFolder folder;
+  SequenceWriter writer(folder.path() / "seq", test::sample_sensor());
+  std::filesystem::create_symlink("/dev/full", folder.path() / "seq/phase_b/000000.png");
+  try {
+    writer.add(test::sample_frame(0));
+    FAIL() << "written to a full disk";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("phase_b/000000.png"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_THROW(SequenceReader(folder.path() / "seq"), InputError) << "lists the unfinished frame";
+}
+
+}  // namespace
+}  // namespace tofmap

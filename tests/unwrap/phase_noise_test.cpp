@@ -1,0 +1,3 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
