@@ -46,9 +46,8 @@ bool shrink_to_triangle(RTCPointQueryFunctionArguments* arguments) {
   const auto& triangle = mesh.triangles[arguments->primID];
   RTCPointQuery& query = *arguments->query;
   const Vector3f p(query.x, query.y, query.z);
-  const Vector3f nearest =
-      nearest_on_triangle(p, mesh.vertices[triangle[0]], mesh.vertices[triangle[1]],
-                          mesh.vertices[triangle[2]]);
+  const Vector3f nearest = nearest_on_triangle(
+      p, mesh.vertices[triangle[0]], mesh.vertices[triangle[1]], mesh.vertices[triangle[2]]);
   const float reach = (nearest - p).norm();
   if (reach >= query.radius) return false;
   query.radius = reach;

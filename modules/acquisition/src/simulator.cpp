@@ -3,16 +3,17 @@
 
 #include "tofmap/acquisition/simulator.hpp"
 
+#include "noise.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <tuple>
 
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/core/error.hpp>
-
-#include "noise.hpp"
 
 namespace tofmap {
 namespace {
@@ -127,7 +128,6 @@ std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
       {"trajectory_file", &S::trajectory_file, 0, 0, "",
        "camera poses in TUM form, one a frame; empty: the scene's path"},
       {"seed", &S::seed, 0, 2147483647, "", "of the noise"},
-      {"threads", &S::threads, 0, 1024, "", "threads that cast rays; 0: all"},
   };
 }
 
@@ -171,25 +171,25 @@ SimulatedFrame Simulator::simulate(int index) const {
   DualFrequencyFrame& frame = simulated.frame;
   frame.index = index;
   frame.timestamp_s = at_a.timestamp_s;
-  expose({at_a.world_from_camera, sensor_.modulation.wavelength_a_m(), key(0)}, frame.phase_a,
-         frame.amplitude_a);
-  expose({at_b.world_from_camera, sensor_.modulation.wavelength_b_m(), key(1)}, frame.phase_b,
-         frame.amplitude_b);
+  std::tie(frame.phase_a, frame.amplitude_a) =
+      expose({at_a.world_from_camera, sensor_.modulation.wavelength_a_m(), key(0)});
+  std::tie(frame.phase_b, frame.amplitude_b) =
+      expose({at_b.world_from_camera, sensor_.modulation.wavelength_b_m(), key(1)});
   simulated.world_from_camera = at_a.world_from_camera;
   simulated.range_truth_m = cast_truth(at_a.world_from_camera);
   return simulated;
 }
 
-void Simulator::expose(const Exposure& exposure, ImageF& phase, ImageF& amplitude) const {
+std::pair<ImageF, ImageF> Simulator::expose(const Exposure& exposure) const {
   const int rows = sensor_.camera.height_px;
   const int cols = sensor_.camera.width_px;
   const int rays_per_pixel = options_.subpixels * options_.subpixels;
   const Eigen::Matrix3d turn = exposure.world_from_camera.linear();
   const Eigen::Vector3d origin = exposure.world_from_camera.translation();
-  phase = ImageF::Constant(rows, cols, nan);
-  amplitude = ImageF::Zero(rows, cols);
+  ImageF phase = ImageF::Constant(rows, cols, nan);
+  ImageF amplitude = ImageF::Zero(rows, cols);
 
-#pragma omp parallel for schedule(dynamic) num_threads(thread_count(options_.threads))
+#pragma omp parallel for schedule(dynamic)
   for (int v = 0; v < rows; ++v) {
     for (int u = 0; u < cols; ++u) {
       const std::size_t pixel = static_cast<std::size_t>(v) * cols + u;
@@ -213,6 +213,7 @@ void Simulator::expose(const Exposure& exposure, ImageF& phase, ImageF& amplitud
       phase(v, u) = wrapped_cycles(std::arg(signal));
     }
   }
+  return {std::move(phase), std::move(amplitude)};
 }
 
 ImageF Simulator::cast_truth(const Pose& world_from_camera) const {

@@ -14,8 +14,8 @@ namespace tofmap {
 /// A place to record, and the way through it.
 struct Scene {
   std::string name;
-  TriangleMesh surface;
-  CameraPath path;
+  TriangleMesh surface = {};
+  CameraPath path = {};
   int min_frames = 0;
   double max_range_m = 0;  ///< no surface is farther from a camera on the path
 };

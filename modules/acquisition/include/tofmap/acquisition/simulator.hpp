@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tofmap/acquisition/frame_source.hpp>
@@ -36,7 +37,6 @@ struct SimulatorOptions {
   double max_range_m = 0;
   std::string trajectory_file;
   int seed = 1;
-  int threads = 0;
 
   static std::vector<OptionField<SimulatorOptions>> fields();
 };
@@ -85,7 +85,7 @@ class Simulator final : public FrameSource {
 
  private:
   struct Exposure;
-  void expose(const Exposure& exposure, ImageF& phase, ImageF& amplitude) const;
+  std::pair<ImageF, ImageF> expose(const Exposure& exposure) const;  ///< phase, amplitude
   ImageF cast_truth(const Pose& world_from_camera) const;
 
   Scene scene_;

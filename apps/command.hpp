@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <tofmap/core/option_table.hpp>
+
+namespace CLI {
+class App;
+}
+
+namespace tofmap::app {
+
+/// Exit status of the program (docs/commands.md).
+namespace exit_status {
+inline constexpr int done = 0;
+inline constexpr int own_fault = 1;
+inline constexpr int bad_use = 2;
+inline constexpr int bad_input = 3;
+inline constexpr int interrupted = 130;
+}  // namespace exit_status
+
+/// Options that every command has.
+struct RunOptions {
+  int threads = 0;
+
+  static std::vector<OptionField<RunOptions>> fields();
+};
+
+/// What every command takes from the command line: --config, --set, --threads, --quiet.
+struct CommonArguments {
+  std::filesystem::path config;
+  std::vector<std::string> assignments;
+  int threads = -1;  ///< −1: as the configuration says
+  bool quiet = false;
+
+  void add_to(CLI::App& command);
+
+  /// Sets the table's options from the file, then from --set; then applies the threads.
+  /// The table must hold `run` at its top level.
+  void resolve(OptionTable& table, RunOptions& run) const;
+};
+
+/// Where commands leave their exit status.
+struct Outcome {
+  int status = exit_status::done;
+};
+
+void add_simulate_command(CLI::App& program, Outcome& outcome);
+void add_info_command(CLI::App& program, Outcome& outcome);
+void add_unwrap_command(CLI::App& program, Outcome& outcome);
+void add_map_command(CLI::App& program, Outcome& outcome);
+void add_config_command(CLI::App& program, Outcome& outcome);
+
+/// Every option of a command with its default, unit, range and meaning, as YAML; of all
+/// commands, if none is named. Throws UsageError for a command that has none.
+std::string command_options_yaml(const std::string& command);
+
+}  // namespace tofmap::app

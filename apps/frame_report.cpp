@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "frame_report.hpp"
+
+#include <functional>
+
+#include <nlohmann/json.hpp>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json times_json(const StageTimes& times) {
+  return {{"unwrap", times.unwrap_ms},
+          {"filter", times.filter_ms},
+          {"cloud", times.cloud_ms},
+          {"register", times.register_ms},
+          {"map", times.map_ms}};
+}
+
+Json tracking_json(const TrackingResult& tracking) {
+  const RegistrationResult& registration = tracking.registration;
+  return {{"status", status_name(tracking.status)},
+          {"is_keyframe", tracking.is_keyframe},
+          {"registration", status_name(registration.status)},
+          {"iterations", registration.iterations},
+          {"overlap", registration.overlap},
+          {"inlier_share", registration.inlier_share},
+          {"rmse_m", registration.rmse_m},
+          {"residual_scale", registration.residual_scale},
+          {"degenerate_directions", registration.degenerate_directions}};
+}
+
+/// Mean over the frames that were read.
+double mean_of(const RoomMap& map, const std::function<double(const FrameRecord&)>& value) {
+  double sum = 0;
+  int count = 0;
+  for (const FrameRecord& record : map.frames) {
+    if (!record.damage.empty()) continue;
+    sum += value(record);
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+}  // namespace
+
+Json damaged_json(const SourcedFrame& frame) {
+  return {{"index", frame.index}, {"timestamp", frame.timestamp_s}, {"damage", frame.damage}};
+}
+
+Json frame_json(const FrameRecord& record) {
+  Json json = {{"index", record.index}, {"timestamp", record.timestamp_s}};
+  if (!record.damage.empty()) {
+    json["damage"] = record.damage;
+    return json;
+  }
+  json["iterations"] = record.iterations;
+  json["curl_violations"] = record.curl_violations;
+  json["phase_noise_cycles"] = record.phase_noise_cycles;
+  json["valid_pixels"] = record.valid_pixels;
+  json["kept_pixels"] = record.kept_pixels;
+  json["tracking"] = tracking_json(record.tracking);
+  json["milliseconds"] = times_json(record.times);
+  return json;
+}
+
+Json summary_json(const RoomMap& map) {
+  StageTimes mean;
+  mean.unwrap_ms = mean_of(map, [](const FrameRecord& r) { return r.times.unwrap_ms; });
+  mean.filter_ms = mean_of(map, [](const FrameRecord& r) { return r.times.filter_ms; });
+  mean.cloud_ms = mean_of(map, [](const FrameRecord& r) { return r.times.cloud_ms; });
+  mean.register_ms = mean_of(map, [](const FrameRecord& r) { return r.times.register_ms; });
+  mean.map_ms = mean_of(map, [](const FrameRecord& r) { return r.times.map_ms; });
+  int degenerate = 0;
+  for (const FrameRecord& record : map.frames) {
+    degenerate += record.tracking.registration.degenerate_directions > 0 ? 1 : 0;
+  }
+  return {{"frames", map.frames.size()},
+          {"damaged", map.damaged()},
+          {"registered", map.trajectory.size()},
+          {"keyframes", map.keyframes.size()},
+          {"frames_with_degenerate_directions", degenerate},
+          {"map_points", map.surface.size()},
+          {"interrupted", map.interrupted},
+          {"milliseconds_per_frame", mean.total_ms()},
+          {"milliseconds", times_json(mean)}};
+}
+
+void refuse_mostly_damaged(int damaged, int total, const std::string& first_damage) {
+  if (2 * damaged <= total) return;
+  throw InputError(
+      std::to_string(damaged) + " of " + std::to_string(total) +
+      " frames are damaged, more than half; nothing was written. The first: " + first_damage);
+}
+
+}  // namespace tofmap::app

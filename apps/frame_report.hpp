@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <tofmap/acquisition/frame_source.hpp>
+#include <tofmap/pipeline/pipeline.hpp>
+
+namespace tofmap::app {
+
+/// {"index", "timestamp", "damage"} of a frame that could not be read.
+nlohmann::ordered_json damaged_json(const SourcedFrame& frame);
+
+/// One frame of a map's report: unwrapping, filtering, tracking and times.
+nlohmann::ordered_json frame_json(const FrameRecord& record);
+
+/// Totals and means over a run.
+nlohmann::ordered_json summary_json(const RoomMap& map);
+
+/// Throws InputError that names the first damaged frame if more than half are damaged.
+void refuse_mostly_damaged(int damaged, int total, const std::string& first_damage);
+
+}  // namespace tofmap::app

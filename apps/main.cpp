@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "command.hpp"
+#include "interruption.hpp"
+
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include <tofmap/core/error.hpp>
+
+namespace {
+
+namespace exit_status = tofmap::app::exit_status;
+
+int fail(int status, const std::string& message) {
+  std::fprintf(stderr, "tofmap: %s\n", message.c_str());
+  return status;
+}
+
+int run(int argc, char** argv) {
+  using namespace tofmap::app;
+  CLI::App program("Maps of large rooms from dual-frequency time-of-flight cameras", "tofmap");
+  program.set_version_flag("--version", TOFMAP_VERSION);
+  program.require_subcommand(1);
+  program.failure_message(CLI::FailureMessage::simple);
+  Outcome outcome;
+  add_simulate_command(program, outcome);
+  add_info_command(program, outcome);
+  add_unwrap_command(program, outcome);
+  add_map_command(program, outcome);
+  add_config_command(program, outcome);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const bool asked_for_text = program.exit(error) == 0;
+    return asked_for_text ? exit_status::done : exit_status::bad_use;
+  }
+  return outcome.status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  tofmap::app::watch_for_interruption();
+  try {
+    return run(argc, argv);
+  } catch (const tofmap::UsageError& error) {
+    return fail(exit_status::bad_use, error.what());
+  } catch (const tofmap::InputError& error) {
+    return fail(exit_status::bad_input, error.what());
+  } catch (const std::exception& error) {
+    return fail(exit_status::own_fault, std::string("internal error: ") + error.what());
+  }
+}

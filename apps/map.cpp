@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "command.hpp"
+#include "frame_report.hpp"
+#include "interruption.hpp"
+#include "output_folder.hpp"
+#include "progress.hpp"
+
+#include <cstdio>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/core/error.hpp>
+#include <tofmap/pipeline/pipeline.hpp>
+
+namespace tofmap::app {
+namespace {
+
+struct MapArguments {
+  std::filesystem::path sequence;
+  std::filesystem::path out;
+  std::string method;
+  CommonArguments common;
+};
+
+void check_result(const RoomMap& map) {
+  std::string first_damage;
+  for (const FrameRecord& record : map.frames) {
+    if (first_damage.empty()) first_damage = record.damage;
+  }
+  refuse_mostly_damaged(map.damaged(), static_cast<int>(map.frames.size()), first_damage);
+  if (map.trajectory.empty() && !map.interrupted) {
+    throw InputError(
+        "no frame has enough surface to start a map from; is the camera covered, or "
+        "the phase images mislabelled? 'tofmap info' tells more");
+  }
+}
+
+void write_result(const OutputFolder& out, const RoomMap& map, const std::string& options_yaml) {
+  write_map(out.path() / "map.ply", map.surface);
+  write_trajectory(out.path() / "trajectory.txt", map.trajectory);
+  write_trajectory(out.path() / "keyframes.txt", map.keyframes);
+  nlohmann::ordered_json report;
+  report["summary"] = summary_json(map);
+  for (const FrameRecord& record : map.frames) report["frames"].push_back(frame_json(record));
+  out.write_text("report.json", report.dump(1) + "\n");
+  out.write_text("options.yaml", options_yaml);
+}
+
+void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
+  std::printf("%zu of %zu frames registered, %zu keyframes, %zu map points\n",
+              map.trajectory.size(), map.frames.size(), map.keyframes.size(), map.surface.size());
+  if (map.damaged() > 0) std::printf("%d frames were damaged, see report.json\n", map.damaged());
+  std::printf("map: %s\n", (folder / "map.ply").c_str());
+}
+
+int run_map(const MapArguments& arguments) {
+  RunOptions run;
+  PipelineOptions options;
+  OptionTable table;
+  table.bind("", run);
+  bind_options(table, options);
+  arguments.common.resolve(table, run);
+  if (!arguments.method.empty()) table.set("unwrap.method", arguments.method);
+
+  SequenceReader source(arguments.sequence);
+  OutputFolder out(arguments.out);
+  RoomMap map;
+  {
+    Progress progress("mapping frame", source.frame_count(), arguments.common.quiet);
+    map = map_room(source, options, [&](int done) {
+      progress.show(done);
+      return !is_interrupted();
+    });
+  }
+  check_result(map);
+  write_result(out, map, table.to_yaml(false));
+  out.commit();
+  if (!arguments.common.quiet) print_summary(map, out.final_path());
+  return map.interrupted ? exit_status::interrupted : exit_status::done;
+}
+
+}  // namespace
+
+void add_map_command(CLI::App& program, Outcome& outcome) {
+  auto arguments = std::make_shared<MapArguments>();
+  CLI::App* app = program.add_subcommand("map", "make a map of the room from a recording");
+  app->add_option("SEQ", arguments->sequence, "folder of the recording")->required();
+  app->add_option("--out", arguments->out, "folder for the result")->required();
+  app->add_option("--method", arguments->method, "how to unwrap: jump, single, pixel, none");
+  arguments->common.add_to(*app);
+  app->callback([arguments, &outcome] { outcome.status = run_map(*arguments); });
+}
+
+}  // namespace tofmap::app

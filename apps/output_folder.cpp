@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "output_folder.hpp"
+
+#include <fstream>
+
+#include <unistd.h>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap::app {
+namespace fs = std::filesystem;
+namespace {
+
+/// "results/" and "results" are one folder, "." is where we stand.
+fs::path normalised(const fs::path& folder) {
+  fs::path path = fs::absolute(folder).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();
+  return path;
+}
+
+fs::path sibling(const fs::path& folder, const std::string& suffix) {
+  return folder.parent_path() / (folder.filename().string() + suffix + std::to_string(getpid()));
+}
+
+void refuse_foreign(const fs::path& folder) {
+  if (!fs::exists(folder)) return;
+  if (!fs::is_directory(folder)) {
+    throw InputError(folder.string() + ": is a file; choose another output folder");
+  }
+  if (!fs::is_empty(folder) && !fs::exists(folder / "options.yaml")) {
+    throw InputError(folder.string() +
+                     ": holds files that are no result of tofmap; choose another output folder, "
+                     "or empty it");
+  }
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(fs::path folder)
+    : folder_(normalised(folder)), partial_(sibling(folder_, ".partial-")) {
+  std::error_code error;
+  if (fs::exists(folder_, error)) refuse_foreign(folder_);
+  fs::create_directories(folder_.parent_path(), error);
+  if (!error) {
+    fs::remove_all(partial_, error);
+    fs::create_directory(partial_, error);
+  }
+  if (error) {
+    throw InputError(folder_.string() + ": cannot be made (" + error.message() +
+                     "); choose an output folder that can be written");
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;
+  if (!is_committed_) fs::remove_all(partial_, ignored);
+}
+
+fs::path OutputFolder::make(const std::string& name) const {
+  const fs::path path = partial_ / name;
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) throw InputError(path.string() + ": cannot be made (" + error.message() + ")");
+  return path;
+}
+
+void OutputFolder::write_text(const std::string& name, const std::string& text) const {
+  const fs::path path = partial_ / name;
+  std::ofstream out(path);
+  out << text;
+  out.close();
+  if (!out) throw InputError(path.string() + ": cannot be written; is the disk full?");
+}
+
+void OutputFolder::commit() {
+  refuse_foreign(folder_);
+  const fs::path earlier = sibling(folder_, ".replaced-");
+  std::error_code error;
+  const bool replaces = fs::exists(folder_);
+  if (replaces) fs::rename(folder_, earlier, error);
+  if (!error) fs::rename(partial_, folder_, error);
+  if (error) {
+    std::error_code ignored;
+    if (replaces && !fs::exists(folder_)) fs::rename(earlier, folder_, ignored);
+    throw InputError(folder_.string() + ": the result cannot be moved there (" + error.message() +
+                     ")");
+  }
+  is_committed_ = true;
+  if (replaces) fs::remove_all(earlier, error);
+}
+
+}  // namespace tofmap::app

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace tofmap::app {
+
+/// A result folder that appears only when it is whole: files are written into a folder beside
+/// it, which `commit` moves into place. Without commit nothing is left.
+///
+/// An existing folder is replaced if it is empty or holds an earlier result of this program
+/// (it has an options.yaml); anything else is refused, so that no data of others is lost.
+class OutputFolder {
+ public:
+  /// Throws InputError that names the folder and the remedy if it cannot be made, or is in use.
+  explicit OutputFolder(std::filesystem::path folder);
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  ~OutputFolder();
+
+  /// Where to write until commit.
+  const std::filesystem::path& path() const { return partial_; }
+  /// Where the result will be.
+  const std::filesystem::path& final_path() const { return folder_; }
+
+  /// Makes a folder inside and returns its path.
+  std::filesystem::path make(const std::string& name) const;
+
+  /// Writes a text file inside. Throws InputError if it cannot be written whole.
+  void write_text(const std::string& name, const std::string& text) const;
+
+  /// Moves everything into place.
+  void commit();
+
+ private:
+  std::filesystem::path folder_;
+  std::filesystem::path partial_;
+  bool is_committed_ = false;
+};
+
+}  // namespace tofmap::app

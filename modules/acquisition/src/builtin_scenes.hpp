@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <tofmap/acquisition/scenes.hpp>
+
+namespace tofmap {
+
+// The scenes of docs/simulator.md, one function each.
+Scene wall_scene();
+Scene slope_scene();
+Scene beyond_scene();
+Scene corridor_scene();
+Scene room_scene();
+Scene flat_scene();
+
+/// Floor, ceiling and four walls of a room with one corner at the origin.
+void add_hull(TriangleMesh& mesh, const Eigen::Vector3d& size_m, double floor, double ceiling,
+              double walls);
+
+}  // namespace tofmap

@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Furnished places, to be mapped.
+
+#include "builtin_scenes.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace tofmap {
+
+using Eigen::Vector3d;
+
+namespace {
+
+/// A table top on four legs, between two opposite corners on the floor.
+void add_table(TriangleMesh& mesh, const Vector3d& min, const Vector3d& max, double reflectance) {
+  constexpr double top = 0.05;
+  constexpr double leg = 0.08;
+  add_box(mesh, {min.x(), min.y(), max.z() - top}, max, reflectance);
+  for (const double x : {min.x(), max.x() - leg}) {
+    for (const double y : {min.y(), max.y() - leg}) {
+      add_box(mesh, {x, y, 0}, {x + leg, y + leg, max.z() - top}, 0.7 * reflectance);
+    }
+  }
+}
+
+void add_chair(TriangleMesh& mesh, const Vector3d& seat, double yaw_rad, double reflectance) {
+  const Vector3d half(0.22, 0.22, 0);
+  add_turned_box(mesh, seat - half + Vector3d(0, 0, 0.40), seat + half + Vector3d(0, 0, 0.46),
+                 yaw_rad, reflectance);
+  const Vector3d back = seat + Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()) * Vector3d(-0.2, 0, 0);
+  add_turned_box(mesh, back + Vector3d(-0.03, -0.22, 0.46), back + Vector3d(0.03, 0.22, 0.95),
+                 yaw_rad, reflectance);
+  add_cylinder(mesh, seat, 0.05, 0.4, reflectance);
+}
+
+/// Open shelves: a back, two sides and boards, the open side towards +y if `faces_y`, else −y.
+void add_shelf(TriangleMesh& mesh, const Vector3d& min, const Vector3d& max, bool faces_y,
+               double reflectance) {
+  constexpr double board = 0.03;
+  const double back = faces_y ? min.y() : max.y() - board;
+  add_box(mesh, {min.x(), back, min.z()}, {max.x(), back + board, max.z()}, 0.8 * reflectance);
+  add_box(mesh, min, {min.x() + board, max.y(), max.z()}, reflectance);
+  add_box(mesh, {max.x() - board, min.y(), min.z()}, max, reflectance);
+  constexpr int boards = 5;
+  for (int i = 0; i < boards; ++i) {
+    const double z = min.z() + i * (max.z() - min.z() - board) / (boards - 1);
+    add_box(mesh, {min.x(), min.y(), z}, {max.x(), max.y(), z + board}, reflectance);
+  }
+}
+
+void add_sofa(TriangleMesh& mesh, const Vector3d& min, const Vector3d& max, double reflectance) {
+  add_box(mesh, min, {max.x(), max.y(), 0.42}, reflectance);
+  add_box(mesh, {min.x(), min.y(), 0.42}, {max.x(), min.y() + 0.22, max.z()}, reflectance);
+  add_box(mesh, {min.x(), min.y(), 0.42}, {min.x() + 0.2, max.y(), 0.6}, reflectance);
+  add_box(mesh, {max.x() - 0.2, min.y(), 0.42}, {max.x(), max.y(), 0.6}, reflectance);
+}
+
+void furnish_room(TriangleMesh& mesh) {
+  add_shelf(mesh, {0.6, 0.02, 0}, {2.6, 0.42, 2.1}, true, 0.6);
+  add_shelf(mesh, {8.6, 8.58, 0}, {10.8, 8.98, 2.2}, false, 0.5);
+  add_box(mesh, {3.4, 0.02, 0}, {4.6, 0.62, 1.9}, 0.75);
+  add_sofa(mesh, {5.4, 0.05, 0}, {7.6, 0.95, 0.85}, 0.35);
+  add_box(mesh, {8.4, 0.02, 0}, {9.6, 0.5, 0.9}, 0.65);
+  add_box(mesh, {11.35, 1.5, 0}, {11.98, 3.1, 1.3}, 0.55);
+  add_box(mesh, {11.5, 5.2, 0.7}, {11.98, 7.0, 0.76}, 0.8);
+  add_box(mesh, {11.6, 5.6, 0.76}, {11.8, 6.4, 1.3}, 0.15);
+  add_box(mesh, {0.02, 5.6, 0}, {0.6, 7.6, 2.0}, 0.7);
+  add_turned_box(mesh, {0.5, 2.2, 0}, {1.2, 2.9, 0.7}, 0.5, 0.45);
+  add_turned_box(mesh, {0.55, 2.3, 0.7}, {1.05, 2.8, 1.1}, 0.9, 0.5);
+  add_turned_box(mesh, {10.6, 7.2, 0}, {11.3, 8.0, 0.9}, 0.35, 0.4);
+  add_box(mesh, {2.2, 8.4, 0}, {4.4, 8.98, 0.8}, 0.6);
+  add_box(mesh, {2.6, 8.6, 0.8}, {3.9, 8.75, 1.55}, 0.12);
+  add_box(mesh, {5.6, 8.7, 0}, {6.6, 8.98, 2.1}, 0.3);
+
+  add_table(mesh, {4.9, 3.9, 0}, {7.1, 5.1, 0.75}, 0.6);
+  add_chair(mesh, {5.4, 3.6, 0}, 1.4, 0.45);
+  add_chair(mesh, {6.6, 3.55, 0}, 1.7, 0.45);
+  add_chair(mesh, {5.5, 5.45, 0}, -1.5, 0.45);
+  add_chair(mesh, {6.7, 5.4, 0}, -1.9, 0.45);
+  add_box(mesh, {5.7, 4.3, 0.75}, {6.0, 4.6, 1.0}, 0.85);
+  // Pillars, a floor lamp and a beam under the ceiling.
+  add_box(mesh, {3.0, 4.2, 0}, {3.4, 4.6, 3}, 0.7);
+  add_cylinder(mesh, {8.8, 4.6, 0}, 0.22, 3, 0.65);
+  add_cylinder(mesh, {1.0, 8.2, 0}, 0.03, 1.6, 0.5);
+  add_cylinder(mesh, {1.0, 8.2, 1.6}, 0.2, 0.3, 0.9);
+  add_box(mesh, {7.8, 0, 2.7}, {8.1, 9, 3}, 0.7);
+}
+
+/// Three waypoints in line: the spline passes through the middle one, straight.
+void pass_through(std::vector<Waypoint>& waypoints, const Vector3d& middle,
+                  const Vector3d& direction) {
+  for (const double offset : {-0.6, 0.0, 0.6}) {
+    waypoints.push_back({middle + offset * direction, direction});
+  }
+}
+
+void add_flat_walls(TriangleMesh& mesh) {
+  constexpr double height = 2.6;
+  add_hull(mesh, {10, 8, height}, 0.5, 0.8, 0.75);
+  // Inner walls along x = 5 and y = 4; a door of 1.1 x 2.1 m from each room to the next.
+  add_wall(mesh, {5, 0, 0}, {5, 4, 0}, height, 0.12, {{1.5, 2.6, 0, 2.1}}, 0.7);
+  add_wall(mesh, {5, 4, 0}, {5, 8, 0}, height, 0.12, {{1.5, 2.6, 0, 2.1}}, 0.65);
+  add_wall(mesh, {0, 4, 0}, {5, 4, 0}, height, 0.12, {{2.0, 3.1, 0, 2.1}}, 0.7);
+  add_wall(mesh, {5, 4, 0}, {10, 4, 0}, height, 0.12, {{2.0, 3.1, 0, 2.1}}, 0.65);
+}
+
+void furnish_flat(TriangleMesh& mesh) {
+  // Living room, lower left.
+  add_sofa(mesh, {0.8, 0.05, 0}, {2.8, 0.9, 0.8}, 0.35);
+  add_table(mesh, {0.9, 1.3, 0}, {1.7, 1.8, 0.45}, 0.6);
+  add_box(mesh, {0.02, 2.4, 0}, {0.42, 3.8, 1.0}, 0.55);
+  add_shelf(mesh, {3.4, 0.02, 0}, {4.7, 0.37, 2.0}, true, 0.55);
+  add_cylinder(mesh, {4.5, 3.5, 0}, 0.18, 1.5, 0.5);
+  // Kitchen, lower right.
+  add_box(mesh, {6.2, 0.02, 0}, {9.98, 0.62, 0.9}, 0.75);
+  add_box(mesh, {7.4, 0.02, 1.45}, {9.98, 0.37, 2.2}, 0.7);
+  add_box(mesh, {9.3, 0.62, 0}, {9.98, 1.3, 1.9}, 0.85);
+  add_table(mesh, {8.7, 2.3, 0}, {9.9, 3.2, 0.75}, 0.6);
+  add_chair(mesh, {8.4, 2.7, 0}, 0.2, 0.45);
+  add_box(mesh, {5.25, 3.3, 0}, {6.0, 3.85, 1.2}, 0.45);
+  // Study, upper right.
+  add_table(mesh, {8.6, 7.2, 0}, {9.95, 7.95, 0.75}, 0.55);
+  add_box(mesh, {9.0, 7.6, 0.75}, {9.6, 7.7, 1.2}, 0.12);
+  add_shelf(mesh, {5.4, 7.6, 0}, {7.4, 7.97, 2.1}, false, 0.5);
+  add_box(mesh, {9.4, 4.6, 0}, {9.98, 6.0, 1.8}, 0.7);
+  add_turned_box(mesh, {5.5, 4.4, 0}, {6.2, 5.0, 0.6}, 0.4, 0.4);
+  // Bedroom, upper left.
+  add_box(mesh, {0.05, 5.0, 0}, {1.5, 7.0, 0.5}, 0.8);
+  add_box(mesh, {0.02, 5.0, 0.5}, {0.1, 7.0, 1.1}, 0.4);
+  add_box(mesh, {0.4, 7.4, 0}, {2.6, 7.97, 2.1}, 0.65);
+  add_box(mesh, {3.9, 4.2, 0}, {4.8, 4.75, 0.9}, 0.5);
+  add_box(mesh, {4.1, 7.3, 0}, {4.85, 7.95, 1.3}, 0.6);
+}
+
+}  // namespace
+
+Scene room_scene() {
+  Scene scene{.name = "room", .min_frames = 150, .max_range_m = 15.5};
+  add_hull(scene.surface, {12, 9, 3}, 0.45, 0.8, 0.7);
+  furnish_room(scene.surface);
+  // A closed loop around the middle; the camera looks across it, at the far side.
+  const Vector3d middle(6, 4.5, 1.4);
+  std::vector<Waypoint> waypoints;
+  constexpr int count = 14;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * std::numbers::pi * i / count;
+    const double height = 0.12 * std::sin(2 * angle);
+    const Vector3d place = middle + Vector3d(4.1 * std::cos(angle), 2.8 * std::sin(angle), height);
+    const Vector3d ahead(-0.5 * std::sin(angle), 0.5 * std::cos(angle), 0.05 * std::cos(3 * angle));
+    waypoints.push_back({place, (middle - place).normalized() + ahead - Vector3d(0, 0, 0.1)});
+  }
+  scene.path = CameraPath(std::move(waypoints), true);
+  return scene;
+}
+
+Scene flat_scene() {
+  Scene scene{.name = "flat", .min_frames = 300, .max_range_m = 13};
+  add_flat_walls(scene.surface);
+  furnish_flat(scene.surface);
+  constexpr double eye = 1.4;
+  std::vector<Waypoint> waypoints;
+  pass_through(waypoints, {5, 2.05, eye}, Vector3d::UnitX());
+  waypoints.push_back({{7.0, 2.05, eye}, {1, 0.2, -0.05}});
+  waypoints.push_back({{7.55, 2.5, eye}, {0.4, 1, -0.05}});
+  pass_through(waypoints, {7.55, 4, eye}, Vector3d::UnitY());
+  waypoints.push_back({{7.55, 5.6, eye}, {-0.2, 1, -0.05}});
+  waypoints.push_back({{7.0, 6.05, eye}, {-1, 0.4, -0.05}});
+  pass_through(waypoints, {5, 6.05, eye}, -Vector3d::UnitX());
+  waypoints.push_back({{3.1, 6.05, eye}, {-1, -0.2, -0.05}});
+  waypoints.push_back({{2.55, 5.5, eye}, {-0.4, -1, -0.05}});
+  pass_through(waypoints, {2.55, 4, eye}, -Vector3d::UnitY());
+  waypoints.push_back({{2.55, 2.5, eye}, {0.2, -1, -0.05}});
+  waypoints.push_back({{3.1, 2.05, eye}, {1, -0.4, -0.05}});
+  scene.path = CameraPath(std::move(waypoints), true);
+  return scene;
+}
+
+}  // namespace tofmap

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/acquisition/scenes.hpp"
+
+#include "builtin_scenes.hpp"
+
+#include <array>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+struct NamedScene {
+  const char* name;
+  Scene (*make)();
+};
+
+constexpr std::array<NamedScene, 6> builtin{{{"wall", wall_scene},
+                                             {"slope", slope_scene},
+                                             {"beyond", beyond_scene},
+                                             {"corridor", corridor_scene},
+                                             {"room", room_scene},
+                                             {"flat", flat_scene}}};
+
+bool is_mesh_name(const std::string& text) {
+  const std::string ending = std::filesystem::path(text).extension().string();
+  return ending == ".ply" || ending == ".obj" || ending == ".PLY" || ending == ".OBJ";
+}
+
+}  // namespace
+
+const std::vector<std::string>& scene_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const NamedScene& scene : builtin) all.emplace_back(scene.name);
+    return all;
+  }();
+  return names;
+}
+
+Scene make_scene(const std::string& name) {
+  for (const NamedScene& scene : builtin) {
+    if (name == scene.name) return scene.make();
+  }
+  std::string known;
+  for (const std::string& other : scene_names()) known += (known.empty() ? "" : ", ") + other;
+  throw UsageError("'" + name + "' is no scene; there are: " + known +
+                   ", or a mesh file (.ply, .obj)");
+}
+
+Scene find_scene(const std::string& name_or_file) {
+  return is_mesh_name(name_or_file) ? make_mesh_scene(name_or_file) : make_scene(name_or_file);
+}
+
+}  // namespace tofmap

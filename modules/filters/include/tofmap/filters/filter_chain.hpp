@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <tofmap/core/camera.hpp>
+#include <tofmap/core/frame.hpp>
+#include <tofmap/core/option_table.hpp>
+#include <tofmap/core/range_image.hpp>
+
+namespace tofmap {
+
+struct FilterOptions {
+  std::string chain = "amplitude confidence jump_edge";
+  double min_amplitude = 0;
+  double min_confidence = 0;
+  double max_edge_angle_deg = 170;
+
+  static std::vector<OptionField<FilterOptions>> fields();
+};
+
+/// What one filter of the chain did.
+struct FilterCount {
+  std::string name;
+  InvalidReason reason = InvalidReason::none;
+  int removed = 0;
+};
+
+struct FilterResult {
+  RangeImage image;
+  std::vector<FilterCount> counts;  ///< in the order of the chain
+};
+
+/// Applies the filters named in `options.chain`, in that order. Throws UsageError for a name
+/// that is none: amplitude, confidence, jump_edge.
+FilterResult apply_filters(const RangeImage& image, const DualFrequencyFrame& frame,
+                           const PixelRays& rays, const FilterOptions& options);
+
+}  // namespace tofmap

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/filters/gates.hpp"
+
+#include <algorithm>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+
+RangeImage drop_low_amplitude(const RangeImage& image, const DualFrequencyFrame& frame,
+                              double min_amplitude) {
+  RangeImage out = image;
+  if (!frame.has_amplitude()) return out;
+  if (!same_size(image.range_m, frame.amplitude_a)) {
+    throw UsageError("amplitude filter: range image and frame differ in size");
+  }
+  for (Eigen::Index row = 0; row < out.rows(); ++row) {
+    for (Eigen::Index col = 0; col < out.cols(); ++col) {
+      const float weaker = std::min(frame.amplitude_a(row, col), frame.amplitude_b(row, col));
+      if (out.valid(row, col) && weaker < min_amplitude) {
+        out.invalidate(row, col, InvalidReason::low_amplitude);
+      }
+    }
+  }
+  return out;
+}
+
+RangeImage drop_low_confidence(const RangeImage& image, double min_confidence) {
+  RangeImage out = image;
+  for (Eigen::Index row = 0; row < out.rows(); ++row) {
+    for (Eigen::Index col = 0; col < out.cols(); ++col) {
+      if (out.valid(row, col) && out.confidence(row, col) < min_confidence) {
+        out.invalidate(row, col, InvalidReason::low_confidence);
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace tofmap

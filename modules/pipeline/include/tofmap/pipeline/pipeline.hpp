@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <tofmap/acquisition/frame_source.hpp>
+#include <tofmap/cloud/cloud_file.hpp>
+#include <tofmap/cloud/surface_cloud.hpp>
+#include <tofmap/core/trajectory.hpp>
+#include <tofmap/filters/filter_chain.hpp>
+#include <tofmap/mapping/odometry.hpp>
+#include <tofmap/mapping/surface_map.hpp>
+#include <tofmap/unwrap/unwrap.hpp>
+
+namespace tofmap {
+
+/// The options of all stages, from phases to map.
+struct PipelineOptions {
+  UnwrapOptions unwrap;
+  FilterOptions filters;
+  CloudOptions cloud;
+  RegistrationOptions registration;
+  OdometryOptions odometry;
+  SurfaceMapOptions map;
+};
+
+/// Adds every stage's options to a table, under the stage's name.
+void bind_options(OptionTable& table, PipelineOptions& options);
+
+/// Wall-clock time of each stage, milliseconds.
+struct StageTimes {
+  double unwrap_ms = 0;
+  double filter_ms = 0;
+  double cloud_ms = 0;
+  double register_ms = 0;
+  double map_ms = 0;
+
+  double total_ms() const { return unwrap_ms + filter_ms + cloud_ms + register_ms + map_ms; }
+};
+
+/// A frame on its way, up to the point where it needs the frames before it.
+struct PreparedFrame {
+  int index = 0;
+  double timestamp_s = 0;
+  UnwrapResult unwrapped;
+  FilterResult filtered;
+  std::shared_ptr<const SurfaceCloud> cloud;
+  StageTimes times;
+};
+
+/// Phases to surface: a pure function, so that frames can be prepared side by side.
+PreparedFrame prepare_frame(const DualFrequencyFrame& frame, const SensorModel& sensor,
+                            const PixelRays& rays, const PipelineOptions& options);
+
+/// What became of one frame.
+struct FrameRecord {
+  int index = 0;
+  double timestamp_s = 0;
+  std::string damage;  ///< not empty: the frame could not be read, and nothing else holds
+  int iterations = 0;
+  int curl_violations = 0;
+  double phase_noise_cycles = 0;
+  int valid_pixels = 0;  ///< after unwrapping
+  int kept_pixels = 0;   ///< after filtering
+  TrackingResult tracking;
+  StageTimes times;
+};
+
+/// A room as the camera saw it. The world is the frame of the first placed camera.
+struct RoomMap {
+  Trajectory trajectory;  ///< every frame that was placed
+  Trajectory keyframes;
+  MapCloud surface;
+  std::vector<FrameRecord> frames;  ///< all, in order
+  bool interrupted = false;
+
+  int damaged() const;
+};
+
+/// Asked before each frame with the number done so far; false ends the run early.
+using KeepGoing = std::function<bool(int frames_done)>;
+
+/// Frames in, a map out: the whole job. Frames that are damaged or cannot be placed are
+/// skipped, and said so in their record. Frames are prepared in parallel and registered in
+/// order; the result is the same for any number of threads.
+RoomMap map_room(FrameSource& source, const PipelineOptions& options,
+                 const KeepGoing& keep_going = {});
+
+}  // namespace tofmap

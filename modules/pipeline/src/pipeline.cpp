@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/pipeline/pipeline.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <optional>
+
+#include <omp.h>
+
+namespace tofmap {
+namespace {
+
+/// Runs a step and adds its duration, in milliseconds, to `spent_ms`.
+template <class Step>
+auto timed(double& spent_ms, const Step& step) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  auto result = step();
+  spent_ms += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  return result;
+}
+
+/// Up to `count` frames from the source, fewer at its end.
+std::vector<SourcedFrame> take(FrameSource& source, int count) {
+  std::vector<SourcedFrame> frames;
+  while (static_cast<int>(frames.size()) < count) {
+    std::optional<SourcedFrame> frame = source.next();
+    if (!frame) break;
+    frames.push_back(std::move(*frame));
+  }
+  return frames;
+}
+
+/// Prepares frames side by side; damaged ones stay empty.
+std::vector<std::optional<PreparedFrame>> prepare_all(const std::vector<SourcedFrame>& frames,
+                                                      const SensorModel& sensor,
+                                                      const PixelRays& rays,
+                                                      const PipelineOptions& options) {
+  std::vector<std::optional<PreparedFrame>> prepared(frames.size());
+  std::vector<std::exception_ptr> errors(frames.size());
+  const int count = static_cast<int>(frames.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int i = 0; i < count; ++i) {
+    try {
+      if (frames[i].frame) prepared[i] = prepare_frame(*frames[i].frame, sensor, rays, options);
+    } catch (...) {
+      errors[i] = std::current_exception();
+    }
+  }
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+  return prepared;
+}
+
+FrameRecord damaged_record(const SourcedFrame& frame) {
+  FrameRecord record;
+  record.index = frame.index;
+  record.timestamp_s = frame.timestamp_s;
+  record.damage = frame.damage;
+  return record;
+}
+
+FrameRecord prepared_record(const PreparedFrame& frame) {
+  FrameRecord record;
+  record.index = frame.index;
+  record.timestamp_s = frame.timestamp_s;
+  record.iterations = frame.unwrapped.iterations;
+  record.curl_violations = frame.unwrapped.curl_violations;
+  record.phase_noise_cycles = frame.unwrapped.phase_noise_cycles;
+  record.valid_pixels = frame.unwrapped.image.count_valid();
+  record.kept_pixels = frame.filtered.image.count_valid();
+  record.times = frame.times;
+  return record;
+}
+
+/// Places one frame and, if that succeeds, adds it to the map.
+FrameRecord place(const PreparedFrame& frame, Odometry& odometry, SurfaceMap& surface,
+                  Trajectory& trajectory) {
+  FrameRecord record = prepared_record(frame);
+  record.tracking = timed(record.times.register_ms, [&] {
+    return odometry.track(frame.index, frame.timestamp_s, frame.cloud);
+  });
+  if (!record.tracking.placed()) return record;
+  trajectory.push_back({frame.timestamp_s, record.tracking.world_from_camera});
+  timed(record.times.map_ms, [&] {
+    surface.integrate(*frame.cloud, record.tracking.world_from_camera);
+    return surface.size();
+  });
+  return record;
+}
+
+}  // namespace
+
+void bind_options(OptionTable& table, PipelineOptions& options) {
+  table.bind("unwrap", options.unwrap);
+  table.bind("filters", options.filters);
+  table.bind("cloud", options.cloud);
+  table.bind("registration", options.registration);
+  table.bind("odometry", options.odometry);
+  table.bind("map", options.map);
+}
+
+int RoomMap::damaged() const {
+  return static_cast<int>(std::ranges::count_if(
+      frames, [](const FrameRecord& record) { return !record.damage.empty(); }));
+}
+
+PreparedFrame prepare_frame(const DualFrequencyFrame& frame, const SensorModel& sensor,
+                            const PixelRays& rays, const PipelineOptions& options) {
+  PreparedFrame out;
+  out.index = frame.index;
+  out.timestamp_s = frame.timestamp_s;
+  out.unwrapped = timed(out.times.unwrap_ms, [&] { return unwrap(frame, sensor, options.unwrap); });
+  out.filtered = timed(out.times.filter_ms, [&] {
+    return apply_filters(out.unwrapped.image, frame, rays, options.filters);
+  });
+  out.cloud = timed(out.times.cloud_ms, [&] {
+    return std::make_shared<const SurfaceCloud>(
+        surface_cloud(out.filtered.image, rays, options.cloud));
+  });
+  return out;
+}
+
+RoomMap map_room(FrameSource& source, const PipelineOptions& options, const KeepGoing& keep_going) {
+  const SensorModel& sensor = source.sensor();
+  const PixelRays rays = pixel_rays(sensor.camera);
+  Odometry odometry(sensor.camera, options.odometry, options.registration);
+  SurfaceMap surface(options.map);
+  RoomMap map;
+
+  const auto may_go_on = [&] {
+    map.interrupted = keep_going && !keep_going(static_cast<int>(map.frames.size()));
+    return !map.interrupted;
+  };
+  while (may_go_on()) {
+    const std::vector<SourcedFrame> frames = take(source, omp_get_max_threads());
+    if (frames.empty()) break;
+    const auto prepared = prepare_all(frames, sensor, rays, options);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      map.frames.push_back(prepared[i] ? place(*prepared[i], odometry, surface, map.trajectory)
+                                       : damaged_record(frames[i]));
+    }
+  }
+  map.keyframes = odometry.keyframe_trajectory();
+  map.surface = surface.extract();
+  return map;
+}
+
+}  // namespace tofmap
