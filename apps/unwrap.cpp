@@ -23,6 +23,7 @@
 #include <tofmap/core/error.hpp>
 #include <tofmap/filters/filter_chain.hpp>
 #include <tofmap/filters/gates.hpp>
+#include <tofmap/unwrap/beat.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap::app {
@@ -62,6 +63,14 @@ ImageU16 range_mm(const RangeImage& image, const std::string& name) {
 
 ImageU16 confidence_u16(const ImageF& confidence) {
   return (confidence.max(0).min(1) * 65535.0F).round().cast<std::uint16_t>();
+}
+
+/// Where neither options nor recording tell how far the scene reaches, no farther than 16 bits of
+/// millimetres do, with room for the noise.
+void limit_to_image_format(UnwrapOptions& options, const SensorModel& sensor) {
+  constexpr double reach_m = 65;
+  const bool is_told = options.max_range_m > 0 || sensor.max_range_m > 0;
+  if (!is_told && beat_limits(sensor, 0).max_range_m > reach_m) options.max_range_m = reach_m;
 }
 
 struct UnwrappedFrame {
@@ -157,6 +166,7 @@ int run_unwrap(const UnwrapArguments& arguments) {
   if (!arguments.method.empty()) table.set("unwrap.method", arguments.method);
 
   const SequenceReader source(arguments.sequence);
+  limit_to_image_format(options.unwrap, source.sensor());
   OutputFolder out(arguments.out);
   for (const char* name : {"range", "wraps", "confidence"}) out.make(name);
   if (arguments.with_filters) out.make("reason");

@@ -30,7 +30,8 @@ FilterStep apply_filter(const std::string& name, const RangeImage& image,
   }
   if (name == "jump_edge") {
     const double max_angle_rad = options.max_edge_angle_deg * std::numbers::pi / 180;
-    return {drop_jump_edges(image, rays, max_angle_rad), InvalidReason::jump_edge};
+    return {drop_jump_edges(image, rays, max_angle_rad, options.min_edge_gap_sigmas),
+            InvalidReason::jump_edge};
   }
   throw UsageError("option filters.chain: '" + name +
                    "' is no filter; allowed: amplitude, confidence, jump_edge");
@@ -48,6 +49,8 @@ std::vector<OptionField<FilterOptions>> FilterOptions::fields() {
       {"min_confidence", &O::min_confidence, 0, 1, "", "pixels less sure than this are dropped"},
       {"max_edge_angle_deg", &O::max_edge_angle_deg, 90, 180, "deg",
        "a pixel with a neighbour this straight behind it is a flying one"},
+      {"min_edge_gap_sigmas", &O::min_edge_gap_sigmas, 0, 100, "",
+       "neighbours closer than this many standard deviations of the noise are no edge"},
   };
 }
 

@@ -15,9 +15,14 @@ Eigen::Vector3f ray_at(const PixelRays& rays, Eigen::Index row, Eigen::Index col
   return {rays.x(row, col), rays.y(row, col), rays.z(row, col)};
 }
 
-/// True if some neighbour's angle exceeds the threshold, given by its cosine.
+struct EdgeLimits {
+  float min_cos;          ///< of the angle at the point
+  float min_gap_sigmas2;  ///< squared
+};
+
+/// True if some neighbour lies behind the pixel, as the limits have it.
 bool has_neighbour_behind(const RangeImage& image, const PixelRays& rays, Eigen::Index row,
-                          Eigen::Index col, float min_cos) {
+                          Eigen::Index col, const EdgeLimits& limits) {
   const Eigen::Vector3f ray = ray_at(rays, row, col);
   const Eigen::Vector3f point = image.range_m(row, col) * ray;
   for (Eigen::Index r = std::max<Eigen::Index>(0, row - 1);
@@ -26,7 +31,12 @@ bool has_neighbour_behind(const RangeImage& image, const PixelRays& rays, Eigen:
          c <= std::min(image.cols() - 1, col + 1); ++c) {
       if ((r == row && c == col) || !image.valid(r, c)) continue;
       const Eigen::Vector3f line = image.range_m(r, c) * ray_at(rays, r, c) - point;
-      if (-ray.dot(line) < min_cos * line.norm()) return true;
+      const float sigma = std::hypot(image.sigma_m(r, c), image.sigma_m(row, col));
+      const float gap2 = line.squaredNorm();
+      if (gap2 > limits.min_gap_sigmas2 * sigma * sigma &&
+          -ray.dot(line) < limits.min_cos * std::sqrt(gap2)) {
+        return true;
+      }
     }
   }
   return false;
@@ -34,15 +44,17 @@ bool has_neighbour_behind(const RangeImage& image, const PixelRays& rays, Eigen:
 
 }  // namespace
 
-RangeImage drop_jump_edges(const RangeImage& image, const PixelRays& rays, double max_angle_rad) {
+RangeImage drop_jump_edges(const RangeImage& image, const PixelRays& rays, double max_angle_rad,
+                           double min_gap_sigmas) {
   if (!same_size(image.range_m, rays.x)) {
     throw UsageError("jump-edge filter: range image and camera differ in size");
   }
-  const auto min_cos = static_cast<float>(std::cos(max_angle_rad));
+  const EdgeLimits limits{static_cast<float>(std::cos(max_angle_rad)),
+                          static_cast<float>(min_gap_sigmas * min_gap_sigmas)};
   RangeImage out = image;
   for (Eigen::Index row = 0; row < image.rows(); ++row) {
     for (Eigen::Index col = 0; col < image.cols(); ++col) {
-      if (image.valid(row, col) && has_neighbour_behind(image, rays, row, col, min_cos)) {
+      if (image.valid(row, col) && has_neighbour_behind(image, rays, row, col, limits)) {
         out.invalidate(row, col, InvalidReason::jump_edge);
       }
     }

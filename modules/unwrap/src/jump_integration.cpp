@@ -84,124 +84,116 @@ RelativeCounts read_forest(OffsetUnion& forest, const ImageU8& valid) {
 struct RegionBeat {
   int base = 0;
   std::vector<float> cost;
+  float bound = 0;  ///< what any other count costs: every pixel is out of its limits
 
   float least() const { return *std::min_element(cost.begin(), cost.end()); }
 };
 
-/// Sums the beat of all pixels of each region. Offsets that carry a pixel out of its limits
-/// cost the bound; offsets are tried as long as at least one pixel can be within.
-std::vector<RegionBeat> region_beats(const RelativeCounts& counts, const BeatCost& beat) {
-  const auto regions = static_cast<std::size_t>(counts.region_count);
-  std::vector<int> low(regions, std::numeric_limits<int>::max());
-  std::vector<int> high(regions, std::numeric_limits<int>::min());
-  for (Eigen::Index i = 0; i < counts.region.size(); ++i) {
-    const int region = counts.region.data()[i];
-    if (region == RelativeCounts::no_region) continue;
-    auto& lowest = low[static_cast<std::size_t>(region)];
-    auto& highest = high[static_cast<std::size_t>(region)];
-    lowest = std::min(lowest, counts.count.data()[i]);
-    highest = std::max(highest, counts.count.data()[i]);
-  }
-  std::vector<RegionBeat> beats(regions);
-  for (std::size_t r = 0; r < regions; ++r) {
-    beats[r].base = -high[r];
-    beats[r].cost.assign(static_cast<std::size_t>(high[r] - low[r] + beat.count_a()), 0);
-  }
-  for (Eigen::Index v = 0; v < counts.region.rows(); ++v) {
-    for (Eigen::Index u = 0; u < counts.region.cols(); ++u) {
-      const int region = counts.region(v, u);
-      if (region == RelativeCounts::no_region) continue;
-      RegionBeat& sum = beats[static_cast<std::size_t>(region)];
-      for (std::size_t o = 0; o < sum.cost.size(); ++o) {
-        const int n = counts.count(v, u) + sum.base + static_cast<int>(o);
-        sum.cost[o] += n < 0 ? BeatCost::bound : beat(v, u, n);
-      }
+/// The beats of regions of one pixel each; empty where there is no return.
+std::vector<RegionBeat> pixel_beats(const ImageU8& valid, const BeatCost& beat) {
+  std::vector<RegionBeat> beats(static_cast<std::size_t>(valid.size()));
+  for (Eigen::Index v = 0; v < valid.rows(); ++v) {
+    for (Eigen::Index u = 0; u < valid.cols(); ++u) {
+      if (!valid(v, u)) continue;
+      RegionBeat& own = beats[static_cast<std::size_t>(v * valid.cols() + u)];
+      own.bound = BeatCost::bound;
+      own.cost.resize(static_cast<std::size_t>(beat.count_a()));
+      for (int n = 0; n < beat.count_a(); ++n)
+        own.cost[static_cast<std::size_t>(n)] = beat(v, u, n);
     }
   }
   return beats;
 }
 
-/// Adds the beats of a region whose root's count is that of `into` plus `offset`. Where only
-/// one of them was tried, the other would be wholly out of its limits.
-RegionBeat joined(const RegionBeat& into, const RegionBeat& other, int offset, float into_bound,
-                  float other_bound) {
+/// Adds the beats of a region whose root's count is that of `into` plus `offset`.
+RegionBeat joined(const RegionBeat& into, const RegionBeat& other, int offset) {
   const int into_end = into.base + static_cast<int>(into.cost.size());
   const int other_base = other.base - offset;
   const int other_end = other_base + static_cast<int>(other.cost.size());
   RegionBeat sum;
+  sum.bound = into.bound + other.bound;
   sum.base = std::min(into.base, other_base);
   const int end = std::max(into_end, other_end);
+  sum.cost.reserve(static_cast<std::size_t>(end - sum.base));
   for (int n = sum.base; n < end; ++n) {
     const float a = n >= into.base && n < into_end
                         ? into.cost[static_cast<std::size_t>(n - into.base)]
-                        : into_bound;
+                        : into.bound;
     const float b = n >= other_base && n < other_end
                         ? other.cost[static_cast<std::size_t>(n - other_base)]
-                        : other_bound;
+                        : other.bound;
     sum.cost.push_back(a + b);
   }
   return sum;
 }
 
-}  // namespace
+/// Adds a pixel whose count is that of the region's root plus `count`.
+template <class Cost>
+void add_pixel(RegionBeat& region, int count, const Cost& cost, int count_a) {
+  RegionBeat pixel;
+  pixel.bound = BeatCost::bound;
+  for (int n = 0; n < count_a; ++n) pixel.cost.push_back(cost(n));
+  region = region.cost.empty()
+               ? joined(RegionBeat{-count, std::vector<float>(pixel.cost.size()), 0}, pixel, count)
+               : joined(region, pixel, count);
+}
 
-RelativeCounts integrate_jumps(const JumpProbabilities& marginals, const ImageU8& valid,
-                               double least_certainty) {
+/// ln(P / (1 − P)), never negative; certainties round to 1 in float, so it is bounded at 1 − 1e-6.
+float log_odds(float certainty) {
+  return std::max(std::log(certainty / std::max(1 - certainty, 1e-6F)), 0.0F);
+}
+
+/// Grows the forest over all bridges, from the most certain to the least. `may_join(p, q, offset,
+/// bridge)` is asked before two trees with the roots p and q become one, and may note it.
+template <class MayJoin>
+RelativeCounts grow_forest(const JumpProbabilities& marginals, const ImageU8& valid,
+                           const MayJoin& may_join) {
   OffsetUnion forest(static_cast<int>(valid.size()));
   for (const Bridge& bridge : sorted_bridges(marginals, static_cast<int>(valid.cols()))) {
-    if (bridge.certainty < least_certainty) continue;
     const OffsetUnion::Place p = forest.find(bridge.p);
     const OffsetUnion::Place q = forest.find(bridge.q);
-    if (p.root == q.root) continue;
-    forest.join(p.root, q.root, p.offset + bridge.step - q.offset);
+    const int offset = p.offset + bridge.step - q.offset;
+    if (p.root != q.root && may_join(p.root, q.root, offset, bridge)) {
+      forest.join(p.root, q.root, offset);
+    }
   }
   return read_forest(forest, valid);
 }
 
-RelativeCounts join_regions(const RelativeCounts& parts, const JumpProbabilities& marginals,
-                            const BeatCost& beat, double objection_nats) {
-  std::vector<RegionBeat> beats = region_beats(parts, beat);
-  std::vector<float> bounds(beats.size(), 0);
-  for (Eigen::Index i = 0; i < parts.region.size(); ++i) {
-    const int region = parts.region.data()[i];
-    if (region != RelativeCounts::no_region)
-      bounds[static_cast<std::size_t>(region)] += BeatCost::bound;
-  }
-  OffsetUnion regions(parts.region_count);
-  for (const Bridge& bridge : sorted_bridges(marginals, static_cast<int>(parts.region.cols()))) {
-    const OffsetUnion::Place p = regions.find(parts.region.data()[bridge.p]);
-    const OffsetUnion::Place q = regions.find(parts.region.data()[bridge.q]);
-    if (p.root == q.root) continue;
-    const int offset = parts.count.data()[bridge.p] + p.offset + bridge.step -
-                       parts.count.data()[bridge.q] - q.offset;
-    const auto a = static_cast<std::size_t>(p.root);
-    const auto b = static_cast<std::size_t>(q.root);
-    RegionBeat both = joined(beats[a], beats[b], offset, bounds[a], bounds[b]);
-    const float objection = both.least() - beats[a].least() - beats[b].least();
-    const float log_odds = std::log(bridge.certainty / std::max(1 - bridge.certainty, 1e-6F));
-    if (objection > objection_nats * std::max(log_odds, 0.0F)) continue;
-    regions.join(p.root, q.root, offset);
-    beats[a] = std::move(both);
-    bounds[a] += bounds[b];
-    beats[b] = {};
-  }
-  RelativeCounts out = parts;
-  std::vector<int> number(static_cast<std::size_t>(parts.region_count), RelativeCounts::no_region);
-  out.region_count = 0;
-  for (Eigen::Index i = 0; i < out.region.size(); ++i) {
-    if (parts.region.data()[i] == RelativeCounts::no_region) continue;
-    const OffsetUnion::Place place = regions.find(parts.region.data()[i]);
-    int& region = number[static_cast<std::size_t>(place.root)];
-    if (region == RelativeCounts::no_region) region = out.region_count++;
-    out.count.data()[i] += place.offset;
-    out.region.data()[i] = region;
-  }
-  return out;
+}  // namespace
+
+RelativeCounts integrate_jumps(const JumpProbabilities& marginals, const ImageU8& valid) {
+  return grow_forest(marginals, valid, [](int, int, int, const Bridge&) { return true; });
+}
+
+RelativeCounts integrate_jumps_with_beat(const JumpProbabilities& marginals, const ImageU8& valid,
+                                         const BeatCost& beat, double objection_share) {
+  std::vector<RegionBeat> beats = pixel_beats(valid, beat);
+  const auto may_join = [&](int p, int q, int offset, const Bridge& bridge) {
+    RegionBeat& into = beats[static_cast<std::size_t>(p)];
+    RegionBeat& other = beats[static_cast<std::size_t>(q)];
+    RegionBeat both = joined(into, other, offset);
+    const float objection = both.least() - into.least() - other.least();
+    if (objection > objection_share * log_odds(bridge.certainty)) return false;
+    into = std::move(both);
+    other = {};
+    return true;
+  };
+  return grow_forest(marginals, valid, may_join);
 }
 
 Anchors anchor_by_beat(const RelativeCounts& counts, const BeatCost& beat) {
+  std::vector<RegionBeat> regions(static_cast<std::size_t>(counts.region_count));
+  for (Eigen::Index v = 0; v < counts.region.rows(); ++v) {
+    for (Eigen::Index u = 0; u < counts.region.cols(); ++u) {
+      if (counts.region(v, u) == RelativeCounts::no_region) continue;
+      add_pixel(
+          regions[static_cast<std::size_t>(counts.region(v, u))], counts.count(v, u),
+          [&](int n) { return beat(v, u, n); }, beat.count_a());
+    }
+  }
   Anchors anchors;
-  for (const RegionBeat& region : region_beats(counts, beat)) {
+  for (const RegionBeat& region : regions) {
     const auto best = std::min_element(region.cost.begin(), region.cost.end());
     float sum = 0;
     for (const float cost : region.cost) sum += std::exp(*best - cost);

@@ -102,11 +102,10 @@ UnwrapResult unwrap_by_jumps(const DualFrequencyFrame& frame, const ImageU8& val
   const JumpBeliefs beliefs =
       propagate_jump_beliefs(jump_evidence(frame, limits, options), options.iterations);
   const BeatCost beat(frame, limits, noise);
-  RelativeCounts relative =
-      integrate_jumps(beliefs.marginals, valid, two_frequencies ? options.least_certainty : 0);
-  if (two_frequencies) {
-    relative = join_regions(relative, beliefs.marginals, beat, options.objection_nats);
-  }
+  const RelativeCounts relative =
+      two_frequencies
+          ? integrate_jumps_with_beat(beliefs.marginals, valid, beat, options.objection_share)
+          : integrate_jumps(beliefs.marginals, valid);
   const Anchors anchors =
       two_frequencies ? anchor_by_beat(relative, beat) : anchor_at_zero(relative);
   const ImageU8 counts = absolute_counts(relative, anchors, limits.count_a);
@@ -169,10 +168,8 @@ std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
       {"window_px", &O::window_px, 1, 99, "px", "k: pixels on each side of a jump in the medians"},
       {"sigma_cycles", &O::sigma_cycles, 0.001, 10, "cycles",
        "sigma of the phase difference of neighbours"},
-      {"least_certainty", &O::least_certainty, 0, 1, "",
-       "jumps less certain than this join regions only where the beat agrees"},
-      {"objection_nats", &O::objection_nats, 0, 1e6, "",
-       "by how many times a bridge's log odds the beat must object to cut it"},
+      {"objection_share", &O::objection_share, 0, 1e6, "",
+       "regions stay apart where the beat objects by more than this share of a jump's log odds"},
   };
 }
 

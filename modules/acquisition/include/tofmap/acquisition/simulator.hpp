@@ -42,7 +42,8 @@ struct SimulatorOptions {
 };
 
 /// The signal of a surface of reflectance ρ at range r under the incidence angle α is
-/// `amplitude_unit` ρ cos α / r² (r in metres); amplitudes end at 65535, where the sensor saturates.
+/// `amplitude_unit` ρ cos α / r² (r in metres); amplitudes end at 65535, where the sensor
+/// saturates.
 inline constexpr double amplitude_unit = 6000;
 
 /// One frame with the truth behind it.
@@ -66,9 +67,7 @@ class Simulator final : public FrameSource {
 
   const SensorModel& sensor() const override { return sensor_; }
   std::optional<SourcedFrame> next() override;
-  std::optional<int> frame_count() const override {
-    return static_cast<int>(motion_.at_a.size());
-  }
+  std::optional<int> frame_count() const override { return static_cast<int>(motion_.at_a.size()); }
 
   /// The frame of this index, 0 … frame_count() − 1, in any order.
   SimulatedFrame simulate(int index) const;

@@ -35,8 +35,8 @@ void add_turned_box(TriangleMesh& mesh, const Eigen::Vector3d& min, const Eigen:
                     double yaw_rad, double reflectance);
 
 /// An upright cylinder with closed ends.
-void add_cylinder(TriangleMesh& mesh, const Eigen::Vector3d& base, double radius_m,
-                  double height_m, double reflectance);
+void add_cylinder(TriangleMesh& mesh, const Eigen::Vector3d& base, double radius_m, double height_m,
+                  double reflectance);
 
 /// A hole in a wall: `from_m` … `to_m` along it, `bottom_m` … `top_m` above its foot.
 struct WallOpening {

@@ -17,6 +17,7 @@ struct FilterOptions {
   double min_amplitude = 0;
   double min_confidence = 0;
   double max_edge_angle_deg = 170;
+  double min_edge_gap_sigmas = 5;
 
   static std::vector<OptionField<FilterOptions>> fields();
 };

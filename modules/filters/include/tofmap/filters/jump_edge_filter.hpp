@@ -18,8 +18,13 @@ namespace tofmap {
 /// stays. Every pixel is judged by the image as it came in. Neighbours outside the image or
 /// invalid say nothing.
 ///
+/// Where pixels are dense, noise alone puts neighbours behind one another, and the filter as
+/// published eats far surfaces. So neighbours whose gap to p_i is less than `min_gap_sigmas`
+/// standard deviations of the range noise of both say nothing either; 0 is the filter as published.
+///
 /// To be used after unwrapping: before, every wrap boundary looks like an edge.
 /// Throws UsageError if image and rays differ in size.
-RangeImage drop_jump_edges(const RangeImage& image, const PixelRays& rays, double max_angle_rad);
+RangeImage drop_jump_edges(const RangeImage& image, const PixelRays& rays, double max_angle_rad,
+                           double min_gap_sigmas);
 
 }  // namespace tofmap

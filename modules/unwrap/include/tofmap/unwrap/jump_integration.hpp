@@ -21,17 +21,15 @@ struct RelativeCounts {
 
 /// Integrates jumps into counts along the most certain paths: a spanning forest is grown over
 /// the pixels (where `valid` is not 0) from the jump node whose most likely configuration is
-/// the most certain to the least; n(q) = n(p) − i. Nodes less certain than `least_certainty`
-/// join nothing, so that a region ends where only a doubtful bridge leads on; 0 joins all.
-/// If no curl is left, the result is independent of the paths within any region without holes.
-RelativeCounts integrate_jumps(const JumpProbabilities& marginals, const ImageU8& valid,
-                               double least_certainty);
+/// the most certain to the least; n(q) = n(p) − i. If no curl is left, the result is
+/// independent of the paths within any region without holes.
+RelativeCounts integrate_jumps(const JumpProbabilities& marginals, const ImageU8& valid);
 
-/// Joins neighbouring regions, again from the most certain jump node to the least, except
-/// where the beat of the two regions objects: the joint fit costs more than both fits apart by
-/// more than `objection_nats` times the log odds of the bridge.
-RelativeCounts join_regions(const RelativeCounts& parts, const JumpProbabilities& marginals,
-                            const BeatCost& beat, double objection_nats);
+/// The same, except that the beat may object to any join: two regions stay apart where their
+/// joint fit to the beat costs more than both fits apart by more than `objection_share` times
+/// the log odds of the jump node between them. So one wrong node cannot carry a whole region.
+RelativeCounts integrate_jumps_with_beat(const JumpProbabilities& marginals, const ImageU8& valid,
+                                         const BeatCost& beat, double objection_share);
 
 /// A count for each region that makes its relative counts absolute.
 struct Anchors {

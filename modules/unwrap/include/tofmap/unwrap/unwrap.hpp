@@ -27,8 +27,7 @@ struct UnwrapOptions {
   double trust_frequency = 0.5;      ///< c_f
   int window_px = 5;                 ///< k
   double sigma_cycles = 0.15;        ///< σ of f_d and f_f
-  double least_certainty = 0.9;
-  double objection_nats = 1;
+  double objection_share = 0.3;
 
   static std::vector<OptionField<UnwrapOptions>> fields();
 };
