@@ -54,6 +54,7 @@ void add_simulate_command(CLI::App& program, Outcome& outcome);
 void add_info_command(CLI::App& program, Outcome& outcome);
 void add_unwrap_command(CLI::App& program, Outcome& outcome);
 void add_map_command(CLI::App& program, Outcome& outcome);
+void add_evaluate_command(CLI::App& program, Outcome& outcome);
 void add_config_command(CLI::App& program, Outcome& outcome);
 
 /// Every option of a command with its default, unit, range and meaning, as YAML; of all

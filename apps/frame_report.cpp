@@ -3,6 +3,7 @@
 
 #include "frame_report.hpp"
 
+#include <algorithm>
 #include <functional>
 
 #include <nlohmann/json.hpp>
@@ -96,6 +97,13 @@ void refuse_mostly_damaged(int damaged, int total, const std::string& first_dama
   throw InputError(
       std::to_string(damaged) + " of " + std::to_string(total) +
       " frames are damaged, more than half; nothing was written. The first: " + first_damage);
+}
+
+void refuse_mostly_damaged(const RoomMap& map) {
+  const auto first = std::ranges::find_if(
+      map.frames, [](const FrameRecord& record) { return !record.damage.empty(); });
+  if (first == map.frames.end()) return;
+  refuse_mostly_damaged(map.damaged(), static_cast<int>(map.frames.size()), first->damage);
 }
 
 }  // namespace tofmap::app

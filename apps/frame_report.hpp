@@ -21,4 +21,7 @@ nlohmann::ordered_json summary_json(const RoomMap& map);
 /// Throws InputError that names the first damaged frame if more than half are damaged.
 void refuse_mostly_damaged(int damaged, int total, const std::string& first_damage);
 
+/// The same for all frames of a map.
+void refuse_mostly_damaged(const RoomMap& map);
+
 }  // namespace tofmap::app

@@ -32,6 +32,7 @@ int run(int argc, char** argv) {
   add_info_command(program, outcome);
   add_unwrap_command(program, outcome);
   add_map_command(program, outcome);
+  add_evaluate_command(program, outcome);
   add_config_command(program, outcome);
   try {
     program.parse(argc, argv);

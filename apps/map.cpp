@@ -28,11 +28,7 @@ struct MapArguments {
 };
 
 void check_result(const RoomMap& map) {
-  std::string first_damage;
-  for (const FrameRecord& record : map.frames) {
-    if (first_damage.empty()) first_damage = record.damage;
-  }
-  refuse_mostly_damaged(map.damaged(), static_cast<int>(map.frames.size()), first_damage);
+  refuse_mostly_damaged(map);
   if (map.trajectory.empty() && !map.interrupted) {
     throw InputError(
         "no frame has enough surface to start a map from; is the camera covered, or "
@@ -72,10 +68,12 @@ int run_map(const MapArguments& arguments) {
   RoomMap map;
   {
     Progress progress("mapping frame", source.frame_count(), arguments.common.quiet);
-    map = map_room(source, options, [&](int done) {
+    MapHooks hooks;
+    hooks.keep_going = [&](int done) {
       progress.show(done);
       return !is_interrupted();
-    });
+    };
+    map = map_room(source, options, hooks);
   }
   check_result(map);
   write_result(out, map, table.to_yaml(false));

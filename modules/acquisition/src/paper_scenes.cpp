@@ -86,13 +86,13 @@ Scene corridor_scene() {
   add_quad(mesh, {0, -0.4, height}, {length, 0, 0}, {0, width + 0.8, 0}, 0.8);
   add_quad(mesh, {0, -0.4, 0}, {0, width + 0.8, 0}, {0, 0, height}, 0.7);
   add_quad(mesh, {length, -0.4, 0}, {0, width + 0.8, 0}, {0, 0, height}, 0.8);
-  // Door niches 0.3 m deep: openings in the walls, closed by a leaf behind.
+  // Door niches 0.3 m deep: openings in walls of that thickness, closed by a leaf behind.
   const std::vector<WallOpening> left{
       {2, 2.95, 0, 2.1}, {7, 7.95, 0, 2.1}, {12.5, 13.45, 0, 2.1}, {17, 17.95, 0, 2.1}};
   const std::vector<WallOpening> right{
       {4.5, 5.45, 0, 2.1}, {10, 11.6, 0, 2.3}, {15.2, 16.15, 0, 2.1}};
-  add_wall(mesh, {0, width, 0}, {length, width, 0}, height, 0.15, left, 0.75);
-  add_wall(mesh, {length, 0, 0}, {0, 0, 0}, height, 0.15,
+  add_wall(mesh, {0, width, 0}, {length, width, 0}, height, 0.3, left, 0.75);
+  add_wall(mesh, {length, 0, 0}, {0, 0, 0}, height, 0.3,
            {{length - 16.15, length - 15.2, 0, 2.1},
             {length - 11.6, length - 10, 0, 2.3},
             {length - 5.45, length - 4.5, 0, 2.1}},

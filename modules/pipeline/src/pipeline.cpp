@@ -125,7 +125,7 @@ PreparedFrame prepare_frame(const DualFrequencyFrame& frame, const SensorModel& 
   return out;
 }
 
-RoomMap map_room(FrameSource& source, const PipelineOptions& options, const KeepGoing& keep_going) {
+RoomMap map_room(FrameSource& source, const PipelineOptions& options, const MapHooks& hooks) {
   const SensorModel& sensor = source.sensor();
   const PixelRays rays = pixel_rays(sensor.camera);
   Odometry odometry(sensor.camera, options.odometry, options.registration);
@@ -133,7 +133,7 @@ RoomMap map_room(FrameSource& source, const PipelineOptions& options, const Keep
   RoomMap map;
 
   const auto may_go_on = [&] {
-    map.interrupted = keep_going && !keep_going(static_cast<int>(map.frames.size()));
+    map.interrupted = hooks.keep_going && !hooks.keep_going(static_cast<int>(map.frames.size()));
     return !map.interrupted;
   };
   while (may_go_on()) {
@@ -141,6 +141,7 @@ RoomMap map_room(FrameSource& source, const PipelineOptions& options, const Keep
     if (frames.empty()) break;
     const auto prepared = prepare_all(frames, sensor, rays, options);
     for (std::size_t i = 0; i < frames.size(); ++i) {
+      if (prepared[i] && hooks.on_frame) hooks.on_frame(*prepared[i]);
       map.frames.push_back(prepared[i] ? place(*prepared[i], odometry, surface, map.trajectory)
                                        : damaged_record(frames[i]));
     }

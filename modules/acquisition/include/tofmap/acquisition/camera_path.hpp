@@ -36,7 +36,10 @@ class CameraPath {
   /// Throws UsageError with fewer than two way points (three for a closed path).
   CameraPath(std::vector<Waypoint> waypoints, bool closed);
 
+  bool empty() const { return waypoints_.empty(); }
   bool closed() const { return closed_; }
+
+  /// How far the spline parameter runs.
   double end() const;
 
   /// The pose at the spline parameter u, 0 … end(); clamped on an open path, periodic on a

@@ -53,9 +53,9 @@ void add_wall(TriangleMesh& mesh, const Eigen::Vector3d& from, const Eigen::Vect
               double reflectance);
 
 /// Reads a PLY or OBJ mesh (by the file's ending; PLY with vertex colours: their mean is
-/// the reflectance times 255; without colours the reflectance is 0.5). Polygons are cut into
-/// triangles. Throws InputError that names the file if it is missing or damaged, of another kind,
-/// holds no triangle, or spans over a kilometre (then it is hardly in metres).
+/// the reflectance times 255; without colours the reflectance is 0.5). Polygons (convex) are cut
+/// into triangles. Throws InputError that names the file if it is missing or damaged, of another
+/// kind, holds no triangle, or spans over a kilometre (then it is hardly in metres).
 TriangleMesh read_mesh(const std::filesystem::path& file);
 
 /// Writes binary PLY with the reflectance as gray vertex colours. Throws InputError that names the

@@ -81,13 +81,18 @@ struct RoomMap {
   int damaged() const;
 };
 
-/// Asked before each frame with the number done so far; false ends the run early.
-using KeepGoing = std::function<bool(int frames_done)>;
+/// What a caller may hang into a run; any may be empty.
+struct MapHooks {
+  /// Asked before each batch of frames with the number done so far; false ends the run early.
+  std::function<bool(int frames_done)> keep_going;
+  /// Shown every frame that could be read, in order, before it is placed.
+  std::function<void(const PreparedFrame&)> on_frame;
+};
 
 /// Frames in, a map out: the whole job. Frames that are damaged or cannot be placed are
 /// skipped, and said so in their record. Frames are prepared in parallel and registered in
 /// order; the result is the same for any number of threads.
 RoomMap map_room(FrameSource& source, const PipelineOptions& options,
-                 const KeepGoing& keep_going = {});
+                 const MapHooks& hooks = {});
 
 }  // namespace tofmap

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include <tofmap/cloud/cloud_file.hpp>
+#include <tofmap/core/camera.hpp>
+#include <tofmap/core/image.hpp>
+#include <tofmap/core/trajectory.hpp>
+
+namespace tofmap {
+
+/// The true surface as the camera could see it: true ranges, put where the camera truly was, one
+/// point a voxel of 4 cm (the first), in the world frame of the true poses.
+class ReferenceSurface {
+ public:
+  /// Adds every second pixel, in both axes, of a frame's true radial ranges.
+  void add(const ImageF& range_truth_m, const PixelRays& rays, const Pose& world_from_camera);
+
+  const std::vector<Eigen::Vector3f>& points() const { return points_; }
+
+ private:
+  std::unordered_map<std::int64_t, std::size_t> voxels_;
+  std::vector<Eigen::Vector3f> points_;
+};
+
+/// How right a map is.
+struct MapScore {
+  double accuracy_m = 0;   ///< mean distance of map points to the true surface, each at most 5 m
+  double far_percent = 0;  ///< map points more than 0.2 m off
+  double completeness_percent = 0;  ///< true points with a map point within 0.1 m
+};
+
+/// Scores a map that `truth_from_map` moves into the frame of the reference. Near the reference
+/// (0.1 m) the distance is taken along its normal, so that its sampling does not count as error.
+/// An empty map has an accuracy of NaN. Throws UsageError if the reference is empty.
+MapScore score_map(const MapCloud& map, const Pose& truth_from_map,
+                   const ReferenceSurface& reference);
+
+}  // namespace tofmap

@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/evaluation/map_score.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Eigenvalues>
+#include <pcl/kdtree/impl/kdtree_flann.hpp>
+#include <pcl/kdtree/kdtree_flann.h>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+using Tree = pcl::KdTreeFLANN<pcl::PointXYZ>;
+
+constexpr double voxel_m = 0.04;
+constexpr double near_m = 0.1;
+constexpr double far_m = 0.2;
+constexpr double worst_m = 5;
+
+std::int64_t voxel_key(const Eigen::Vector3d& point) {
+  constexpr std::int64_t half = std::int64_t{1} << 20;
+  std::int64_t key = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto cell = static_cast<std::int64_t>(std::floor(point[axis] / voxel_m));
+    key = (key << 21) | (std::clamp(cell, -half, half - 1) + half);
+  }
+  return key;
+}
+
+/// Normal of the plane through a point's neighbours within 12 cm, at most 24 of them.
+Eigen::Vector3f plane_normal(const Cloud& cloud, const Tree& tree, int index) {
+  constexpr double radius_m = 0.12;
+  constexpr unsigned max_neighbours = 24;
+  std::vector<int> neighbours;
+  std::vector<float> squares;
+  tree.radiusSearch(cloud, index, radius_m, neighbours, squares, max_neighbours);
+  Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+  for (const int i : neighbours) mean += cloud[i].getVector3fMap();
+  mean /= static_cast<float>(neighbours.size());
+  Eigen::Matrix3f scatter = Eigen::Matrix3f::Zero();
+  for (const int i : neighbours) {
+    const Eigen::Vector3f d = cloud[i].getVector3fMap() - mean;
+    scatter += d * d.transpose();
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f>(scatter).eigenvectors().col(0);
+}
+
+Tree make_tree(const Cloud::ConstPtr& cloud) {
+  constexpr bool sorted = true;
+  Tree tree(sorted);
+  tree.setInputCloud(cloud);
+  return tree;
+}
+
+struct Nearest {
+  int index = 0;
+  double gap_m = 0;
+};
+
+Nearest nearest(const Tree& tree, const pcl::PointXYZ& point) {
+  std::vector<int> index(1);
+  std::vector<float> square(1);
+  tree.nearestKSearch(point, 1, index, square);
+  return {index[0], std::sqrt(square[0])};
+}
+
+}  // namespace
+
+void ReferenceSurface::add(const ImageF& range_truth_m, const PixelRays& rays,
+                           const Pose& world_from_camera) {
+  constexpr int stride = 2;
+  for (Eigen::Index v = 0; v < range_truth_m.rows(); v += stride) {
+    for (Eigen::Index u = 0; u < range_truth_m.cols(); u += stride) {
+      const double range = range_truth_m(v, u);
+      if (!std::isfinite(range)) continue;
+      const Eigen::Vector3d point =
+          world_from_camera * (range * Eigen::Vector3d(rays.x(v, u), rays.y(v, u), rays.z(v, u)));
+      if (voxels_.emplace(voxel_key(point), points_.size()).second) {
+        points_.push_back(point.cast<float>());
+      }
+    }
+  }
+}
+
+MapScore score_map(const MapCloud& map, const Pose& truth_from_map,
+                   const ReferenceSurface& reference) {
+  if (reference.points().empty()) throw UsageError("map score: the reference surface is empty");
+  MapScore score;
+  score.accuracy_m = std::numeric_limits<double>::quiet_NaN();
+  if (map.empty()) return score;
+
+  const auto truth = std::make_shared<Cloud>();
+  for (const Eigen::Vector3f& p : reference.points()) truth->push_back({p.x(), p.y(), p.z()});
+  const auto placed = std::make_shared<Cloud>();
+  for (const MapPoint& point : map.points) {
+    const Eigen::Vector3f p =
+        (truth_from_map * point.getVector3fMap().cast<double>()).cast<float>();
+    placed->push_back({p.x(), p.y(), p.z()});
+  }
+  const Tree truth_tree = make_tree(truth);
+  double sum = 0;
+  int far = 0;
+  for (const pcl::PointXYZ& point : placed->points) {
+    const Nearest found = nearest(truth_tree, point);
+    double gap = found.gap_m;
+    if (gap < near_m) {
+      const Eigen::Vector3f d = point.getVector3fMap() - (*truth)[found.index].getVector3fMap();
+      gap = std::abs(d.dot(plane_normal(*truth, truth_tree, found.index)));
+    }
+    sum += std::min(gap, worst_m);
+    far += gap > far_m ? 1 : 0;
+  }
+  score.accuracy_m = sum / static_cast<double>(placed->size());
+  score.far_percent = 100.0 * far / static_cast<double>(placed->size());
+
+  const Tree map_tree = make_tree(placed);
+  const auto covered = std::ranges::count_if(truth->points, [&](const pcl::PointXYZ& point) {
+    return nearest(map_tree, point).gap_m < near_m;
+  });
+  score.completeness_percent =
+      100.0 * static_cast<double>(covered) / static_cast<double>(truth->size());
+  return score;
+}
+
+}  // namespace tofmap

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/evaluation/trajectory_score.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+namespace tofmap {
+namespace {
+
+constexpr double max_time_gap_s = 0.02;
+
+struct Matched {
+  std::vector<Pose> estimate;
+  std::vector<Pose> truth;
+};
+
+Matched match(const Trajectory& estimate, const Trajectory& truth) {
+  Matched matched;
+  for (const StampedPose& pose : estimate) {
+    const auto gap = [&](const StampedPose& other) {
+      return std::abs(other.timestamp_s - pose.timestamp_s);
+    };
+    const auto nearest = std::ranges::min_element(truth, {}, gap);
+    if (nearest == truth.end() || gap(*nearest) >= max_time_gap_s) continue;
+    matched.estimate.push_back(pose.world_from_camera);
+    matched.truth.push_back(nearest->world_from_camera);
+  }
+  return matched;
+}
+
+Pose align(const Matched& matched) {
+  const auto count = static_cast<Eigen::Index>(matched.estimate.size());
+  Eigen::Matrix3Xd from(3, count);
+  Eigen::Matrix3Xd to(3, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    from.col(i) = matched.estimate[static_cast<std::size_t>(i)].translation();
+    to.col(i) = matched.truth[static_cast<std::size_t>(i)].translation();
+  }
+  constexpr bool with_scale = false;
+  return Pose(Eigen::umeyama(from, to, with_scale));
+}
+
+/// Length of the true path from the first pose to each.
+std::vector<double> path_lengths(const std::vector<Pose>& poses) {
+  std::vector<double> lengths{0};
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    lengths.push_back(lengths.back() +
+                      (poses[i].translation() - poses[i - 1].translation()).norm());
+  }
+  return lengths;
+}
+
+void score_relative(const Matched& matched, const std::vector<double>& lengths,
+                    TrajectoryScore& score) {
+  double metres2 = 0;
+  double degrees2 = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    const auto end = std::ranges::lower_bound(lengths, lengths[i] + 1);
+    if (end == lengths.end()) break;
+    const auto j = static_cast<std::size_t>(end - lengths.begin());
+    const Pose truth = matched.truth[i].inverse() * matched.truth[j];
+    const Pose error = truth.inverse() * (matched.estimate[i].inverse() * matched.estimate[j]);
+    const double degrees = rotation_angle_rad(Pose::Identity(), error) * 180 / std::numbers::pi;
+    metres2 += error.translation().squaredNorm();
+    degrees2 += degrees * degrees;
+    ++count;
+  }
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  score.rpe_rmse_m_per_m = count > 0 ? std::sqrt(metres2 / count) : nan;
+  score.rpe_rmse_deg_per_m = count > 0 ? std::sqrt(degrees2 / count) : nan;
+}
+
+}  // namespace
+
+std::optional<TrajectoryScore> score_trajectory(const Trajectory& estimate,
+                                                const Trajectory& truth) {
+  const Matched matched = match(estimate, truth);
+  if (matched.estimate.size() < 3) return std::nullopt;
+  TrajectoryScore score;
+  score.matched = static_cast<int>(matched.estimate.size());
+  score.truth_from_estimate = align(matched);
+  double sum = 0;
+  for (std::size_t i = 0; i < matched.estimate.size(); ++i) {
+    const Eigen::Vector3d placed = score.truth_from_estimate * matched.estimate[i].translation();
+    const double error = (placed - matched.truth[i].translation()).norm();
+    sum += error * error;
+    score.ate_max_m = std::max(score.ate_max_m, error);
+  }
+  score.ate_rmse_m = std::sqrt(sum / score.matched);
+  const std::vector<double> lengths = path_lengths(matched.truth);
+  score.length_m = lengths.back();
+  score_relative(matched, lengths, score);
+  return score;
+}
+
+}  // namespace tofmap
