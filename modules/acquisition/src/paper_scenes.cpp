@@ -46,9 +46,13 @@ Scene slope_scene() {
   // Larger than the view from any place on the path, so that nothing is seen around it.
   add_wall(scene.surface, {near_x, -3, 0}, {near_x, 3, 0}, 4, 0.02,
            {{1.5, 2.75, 0.95, 2.05}, {3.3, 4.5, 0.95, 2.05}}, 0.6);
-  // Behind the left opening: from 5.4 m to 8.5 m within the opening's width.
-  add_quad(scene.surface, {5.3, -0.8, -1}, {4.6, -5.2, 0}, {0, 0, 6}, 0.8);
-  // Behind the right one: level, at 5.9 m.
+  // Behind the right opening, in the image: from 5.4 m to 9.7 m within the opening's width; where
+  // it would leave two wavelengths behind it bends away, and a board closes the gap at its start.
+  const Vector3d bend(8.6, -4.53, -1);
+  add_quad(scene.surface, {5.3, -0.8, -1}, bend - Vector3d(5.3, -0.8, -1), {0, 0, 6}, 0.8);
+  add_quad(scene.surface, bend, {0, -2, 0}, {0, 0, 6}, 0.8);
+  add_quad(scene.surface, {5.3, -0.8, -1}, {0.6, 0.2, 0}, {0, 0, 6}, 0.8);
+  // Behind the left one: level, at 5.9 m.
   add_quad(scene.surface, {5.9, -0.6, -1}, {0, 6, 0}, {0, 0, 6}, 0.7);
   scene.path = CameraPath({{{-0.05, 0.0, 1.5}, {1, 0, 0}},
                            {{0.0, 0.04, 1.5}, {1, 0.01, 0}},

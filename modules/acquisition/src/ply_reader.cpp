@@ -205,7 +205,9 @@ std::vector<long> read_lists(const Element& element, Numbers& numbers) {
     const double count = property.count_type ? numbers.next(*property.count_type) : 1;
     for (double i = 0; i < count; ++i) {
       const double value = numbers.next(property.type);
-      if (is_corners) corners.push_back(static_cast<long>(value));
+      // What is no number of a vertex is named as such by add_polygon.
+      if (is_corners)
+        corners.push_back(value >= 0 && value < 0x1p32 ? static_cast<long>(value) : -1);
     }
   }
   return corners;

@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <algorithm>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "exact_enumeration.hpp"
+
+#include <tofmap/unwrap/jump_propagation.hpp>
+
+namespace tofmap {
+namespace {
+
+JumpProbabilities empty_nodes(Eigen::Index rows, Eigen::Index cols) {
+  JumpProbabilities nodes;
+  for (ImageF& plane : nodes.x) plane = ImageF::Zero(rows, cols - 1);
+  for (ImageF& plane : nodes.y) plane = ImageF::Zero(rows - 1, cols);
+  return nodes;
+}
+
+JumpProbabilities random_evidence(Eigen::Index rows, Eigen::Index cols, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> weight(0.05F, 1);
+  JumpProbabilities nodes = empty_nodes(rows, cols);
+  for (auto* group : {&nodes.x, &nodes.y}) {
+    for (Eigen::Index i = 0; i < (*group)[0].size(); ++i) {
+      const std::array<float, 3> w{weight(random), weight(random), weight(random)};
+      const float sum = w[0] + w[1] + w[2];
+      for (std::size_t c = 0; c < 3; ++c) (*group)[c].data()[i] = w[c] / sum;
+    }
+  }
+  return nodes;
+}
+
+float largest_difference(const JumpProbabilities& a, const JumpProbabilities& b) {
+  float largest = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (a.x[c].size() > 0) largest = std::max(largest, (a.x[c] - b.x[c]).abs().maxCoeff());
+    if (a.y[c].size() > 0) largest = std::max(largest, (a.y[c] - b.y[c]).abs().maxCoeff());
+  }
+  return largest;
+}
+
+struct Size {
+  Eigen::Index rows;
+  Eigen::Index cols;
+};
+
+class TreeOfCurls : public testing::TestWithParam<Size> {};
+
+TEST_P(TreeOfCurls, HasTheMarginalsOfExactEnumeration) {
+  const auto [rows, cols] = GetParam();
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const JumpProbabilities evidence = random_evidence(rows, cols, seed);
+    // On a tree two iterations carry every message; more change nothing.
+    const JumpBeliefs beliefs = propagate_jump_beliefs(evidence, 4, 4);
+    const test::ExactMarginals exact(evidence);
+    EXPECT_LT(largest_difference(beliefs.marginals, exact.marginals()), 1e-6F) << "seed " << seed;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Chains, TreeOfCurls,
+                         testing::Values(Size{2, 2}, Size{2, 3}, Size{3, 2}, Size{2, 4},
+                                         Size{4, 2}));
+
+/// Evidence that favours the jumps of a field of counts, and is misleading at one node.
+JumpProbabilities evidence_of_field(const Image<int>& count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> weight(0.02F, 0.2F);
+  JumpProbabilities nodes = random_evidence(count.rows(), count.cols(), seed);
+  const auto favour = [&](std::array<ImageF, 3>& planes, Eigen::Index v, Eigen::Index u, int jump) {
+    float sum = 0;
+    for (int c = 0; c < 3; ++c) {
+      planes[static_cast<std::size_t>(c)](v, u) = c - 1 == jump ? 1 : weight(random);
+      sum += planes[static_cast<std::size_t>(c)](v, u);
+    }
+    for (ImageF& plane : planes) plane(v, u) /= sum;
+  };
+  for (Eigen::Index v = 0; v < count.rows(); ++v) {
+    for (Eigen::Index u = 0; u + 1 < count.cols(); ++u) {
+      favour(nodes.x, v, u, count(v, u) - count(v, u + 1));
+    }
+  }
+  for (Eigen::Index v = 0; v + 1 < count.rows(); ++v) {
+    for (Eigen::Index u = 0; u < count.cols(); ++u) {
+      favour(nodes.y, v, u, count(v, u) - count(v + 1, u));
+    }
+  }
+  return nodes;
+}
+
+TEST(SmallLoopyGrid, FindsTheConsistentConfigurationAgainstOneMisleadingNode) {
+  Image<int> count(3, 3);
+  count << 0, 0, 1, 0, 1, 1, 0, 1, 1;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    JumpProbabilities evidence = evidence_of_field(count, seed);
+    // The jump between (0, 1) and (0, 2) looks as likely as none.
+    evidence.x[0](0, 1) = 0.4F;
+    evidence.x[1](0, 1) = 0.5F;
+    evidence.x[2](0, 1) = 0.1F;
+    const JumpBeliefs beliefs = propagate_jump_beliefs(evidence, 20);
+    EXPECT_TRUE(beliefs.converged) << "seed " << seed;
+    const JumpConfigurations found = most_likely_configurations(beliefs.marginals);
+    EXPECT_EQ(count_curl_violations(found), 0);
+    for (Eigen::Index v = 0; v < 3; ++v) {
+      for (Eigen::Index u = 0; u < 2; ++u) {
+        EXPECT_EQ(found.x(v, u), count(v, u) - count(v, u + 1)) << "seed " << seed;
+        EXPECT_EQ(found.y(u, v), count(u, v) - count(u + 1, v)) << "seed " << seed;
+      }
+    }
+  }
+}
+
+TEST(CurlCount, SeesASingleJumpThatLeadsNowhere) {
+  JumpConfigurations jumps;
+  jumps.x = Image<std::int8_t>::Zero(3, 2);
+  jumps.y = Image<std::int8_t>::Zero(2, 3);
+  EXPECT_EQ(count_curl_violations(jumps), 0);
+  jumps.x(1, 0) = -1;  // between two curls
+  EXPECT_EQ(count_curl_violations(jumps), 2);
+  jumps.x(1, 0) = absent_jump;  // both curls lose a node, and do not count
+  EXPECT_EQ(count_curl_violations(jumps), 0);
+}
+
+TEST(DiscontinuityTerm, IsEquationOne) {
+  ImageF phase(1, 2);
+  phase << 0.9F, 0.1F;
+  const JumpProbabilities f_d = discontinuity_term(phase, 0.15);
+  // exp(−(0.1 − 0.9 − i)² / (2 · 0.15²)) for i = −1, 0, 1
+  EXPECT_NEAR(f_d.x[0](0, 0), 0.411112F, 1e-5F);
+  EXPECT_NEAR(f_d.x[1](0, 0), 6.7e-7F, 1e-7F);
+  EXPECT_NEAR(f_d.x[2](0, 0), 0.0F, 1e-12F);
+}
+
+TEST(SideMedians, AreCutShortAtBordersAndPassOverMissingPixels) {
+  ImageF image(1, 5);
+  image << 1, 5, NAN, 2, 3;
+  const SideMedians medians = side_medians_x(image, 3);
+  EXPECT_FLOAT_EQ(medians.neg(0, 0), 1);  // {1}
+  EXPECT_FLOAT_EQ(medians.pos(0, 0), 2);  // {5, NaN, 2}: the lower middle
+  EXPECT_FLOAT_EQ(medians.neg(0, 3), 2);  // {NaN, 2} and 5
+  EXPECT_FLOAT_EQ(medians.pos(0, 3), 3);  // {3}
+}
+
+}  // namespace
+}  // namespace tofmap

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <tofmap/unwrap/jump_integration.hpp>
+#include <tofmap/unwrap/jump_propagation.hpp>
+#include <tofmap/unwrap/unwrap.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Counts that differ by at most one between neighbours: a sum of random steps along either axis.
+Image<int> random_field(Eigen::Index rows, Eigen::Index cols, std::mt19937& random) {
+  std::uniform_int_distribution<int> half_step(0, 1);
+  Image<int> field(rows, cols);
+  std::vector<int> row_part(static_cast<std::size_t>(rows), 0);
+  std::vector<int> col_part(static_cast<std::size_t>(cols), 0);
+  for (std::size_t i = 1; i < row_part.size(); ++i) row_part[i] = row_part[i - 1] + half_step(random);
+  for (std::size_t i = 1; i < col_part.size(); ++i) col_part[i] = col_part[i - 1] - half_step(random);
+  for (Eigen::Index v = 0; v < rows; ++v) {
+    for (Eigen::Index u = 0; u < cols; ++u) {
+      field(v, u) = row_part[static_cast<std::size_t>(v)] + col_part[static_cast<std::size_t>(u)];
+    }
+  }
+  return field;
+}
+
+/// Certain jumps of a field: configuration i with n(q) − n(p) = −i.
+JumpProbabilities jumps_of(const Image<int>& field) {
+  JumpProbabilities jumps;
+  for (ImageF& plane : jumps.x) plane = ImageF::Constant(field.rows(), field.cols() - 1, 0.01F);
+  for (ImageF& plane : jumps.y) plane = ImageF::Constant(field.rows() - 1, field.cols(), 0.01F);
+  for (Eigen::Index v = 0; v < field.rows(); ++v) {
+    for (Eigen::Index u = 0; u < field.cols(); ++u) {
+      if (u + 1 < field.cols()) {
+        jumps.x[static_cast<std::size_t>(field(v, u) - field(v, u + 1) + 1)](v, u) = 0.98F;
+      }
+      if (v + 1 < field.rows()) {
+        jumps.y[static_cast<std::size_t>(field(v, u) - field(v + 1, u) + 1)](v, u) = 0.98F;
+      }
+    }
+  }
+  return jumps;
+}
+
+TEST(Integration, OfTheJumpsOfAFieldGivesTheFieldBack) {
+  std::mt19937 random(7);
+  std::uniform_int_distribution<Eigen::Index> size(2, 20);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Image<int> field = random_field(size(random), size(random), random);
+    const ImageU8 valid = ImageU8::Ones(field.rows(), field.cols());
+    const RelativeCounts counts = integrate_jumps(jumps_of(field), valid);
+    ASSERT_EQ(counts.region_count, 1);
+    const int constant = field(0, 0) - counts.count(0, 0);
+    EXPECT_TRUE((counts.count + constant == field).all()) << "trial " << trial;
+  }
+}
+
+TEST(Integration, KeepsRegionsApartThatNoReturnSeparates) {
+  const Image<int> field = Image<int>::Zero(4, 5);
+  ImageU8 valid = ImageU8::Ones(4, 5);
+  valid.col(2).setZero();
+  JumpProbabilities jumps = jumps_of(field);
+  for (ImageF& plane : jumps.x) plane.middleCols(1, 2).setConstant(NAN);
+  for (ImageF& plane : jumps.y) plane.col(2).setConstant(NAN);
+  const RelativeCounts counts = integrate_jumps(jumps, valid);
+  EXPECT_EQ(counts.region_count, 2);
+  EXPECT_NE(counts.region(0, 0), counts.region(0, 4));
+  EXPECT_EQ(counts.region(0, 2), RelativeCounts::no_region);
+}
+
+TEST(Integration, TakesTheMostCertainPathAroundAWrongJump) {
+  Image<int> field = Image<int>::Zero(3, 3);
+  JumpProbabilities jumps = jumps_of(field);
+  // A wrong jump, less certain than all others.
+  jumps.x[0](1, 1) = 0.6F;
+  jumps.x[1](1, 1) = 0.4F;
+  const RelativeCounts counts = integrate_jumps(jumps, ImageU8::Ones(3, 3));
+  EXPECT_TRUE((counts.count == counts.count(0, 0)).all());
+}
+
+/// A frame of two flat walls side by side, without noise worth speaking of.
+struct TwoWalls {
+  SensorModel sensor;
+  DualFrequencyFrame frame;
+  ImageF range_m;
+};
+
+TwoWalls two_walls(double left_m, double right_m) {
+  TwoWalls walls;
+  walls.sensor.modulation = {29e6, 31e6};
+  walls.sensor.max_range_m = 20;
+  walls.range_m = ImageF::Constant(16, 24, static_cast<float>(left_m));
+  walls.range_m.rightCols(12).setConstant(static_cast<float>(right_m));
+  std::mt19937 random(3);
+  std::normal_distribution<float> noise(0, 0.001F);
+  const auto phase = [&](double wavelength_m) {
+    return ImageF(walls.range_m.unaryExpr([&](float range) {
+      const auto cycles = static_cast<float>(range / wavelength_m) + noise(random);
+      return cycles - std::floor(cycles);
+    }));
+  };
+  walls.frame.phase_a = phase(walls.sensor.modulation.wavelength_a_m());
+  walls.frame.phase_b = phase(walls.sensor.modulation.wavelength_b_m());
+  return walls;
+}
+
+double largest_error_m(const TwoWalls& walls, const RangeImage& image) {
+  return (image.range_m - walls.range_m).abs().maxCoeff();
+}
+
+TEST(JumpMethod, IsRightAcrossAStepOfExactlyOneWavelength) {
+  // The wrapped image shows no edge at all: only the beat can tell.
+  TwoWalls walls = two_walls(3, 3 + 5.1688);
+  const UnwrapResult result = unwrap(walls.frame, walls.sensor, {});
+  EXPECT_LT(largest_error_m(walls, result.image), 0.1);
+}
+
+TEST(JumpMethod, TellsTheAbsoluteCountOfASceneBeyondOneWavelength) {
+  TwoWalls walls = two_walls(7, 11);
+  const UnwrapResult result = unwrap(walls.frame, walls.sensor, {});
+  EXPECT_LT(largest_error_m(walls, result.image), 0.1);
+  EXPECT_EQ(result.image.wrap_count(0, 0), 1);
+  EXPECT_EQ(result.image.wrap_count(0, 20), 2);
+}
+
+TEST(JumpMethod, WorksWhenBHasTheLongerWavelength) {
+  TwoWalls walls = two_walls(3, 9);
+  std::swap(walls.frame.phase_a, walls.frame.phase_b);
+  std::swap(walls.sensor.modulation.frequency_a_hz, walls.sensor.modulation.frequency_b_hz);
+  const UnwrapResult result = unwrap(walls.frame, walls.sensor, {});
+  EXPECT_LT(largest_error_m(walls, result.image), 0.1);
+}
+
+TEST(Unwrapping, GivesPixelsWithoutAReturnNoRange) {
+  TwoWalls walls = two_walls(3, 9);
+  walls.frame.phase_b(4, 4) = NAN;
+  const UnwrapResult result = unwrap(walls.frame, walls.sensor, {});
+  EXPECT_FALSE(result.image.valid(4, 4));
+  EXPECT_TRUE(std::isnan(result.image.range_m(4, 4)));
+  EXPECT_EQ(result.image.wrap_count(4, 4), invalid_wrap_count);
+  EXPECT_EQ(result.image.count_valid(), 16 * 24 - 1);
+}
+
+TEST(Unwrapping, OfAnImageWithoutAnyReturnIsEmpty) {
+  TwoWalls walls = two_walls(3, 9);
+  walls.frame.phase_a.setConstant(NAN);
+  for (const char* method : {"none", "pixel", "single", "jump"}) {
+    UnwrapOptions options;
+    options.method = method;
+    EXPECT_EQ(unwrap(walls.frame, walls.sensor, options).image.count_valid(), 0) << method;
+  }
+}
+
+}  // namespace
+}  // namespace tofmap
