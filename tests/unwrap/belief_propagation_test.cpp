@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include "exact_enumeration.hpp"
+
 #include <algorithm>
 #include <random>
 
 #include <gtest/gtest.h>
-
-#include "exact_enumeration.hpp"
 
 #include <tofmap/unwrap/jump_propagation.hpp>
 

@@ -19,8 +19,10 @@ Image<int> random_field(Eigen::Index rows, Eigen::Index cols, std::mt19937& rand
   Image<int> field(rows, cols);
   std::vector<int> row_part(static_cast<std::size_t>(rows), 0);
   std::vector<int> col_part(static_cast<std::size_t>(cols), 0);
-  for (std::size_t i = 1; i < row_part.size(); ++i) row_part[i] = row_part[i - 1] + half_step(random);
-  for (std::size_t i = 1; i < col_part.size(); ++i) col_part[i] = col_part[i - 1] - half_step(random);
+  for (std::size_t i = 1; i < row_part.size(); ++i)
+    row_part[i] = row_part[i - 1] + half_step(random);
+  for (std::size_t i = 1; i < col_part.size(); ++i)
+    col_part[i] = col_part[i - 1] - half_step(random);
   for (Eigen::Index v = 0; v < rows; ++v) {
     for (Eigen::Index u = 0; u < cols; ++u) {
       field(v, u) = row_part[static_cast<std::size_t>(v)] + col_part[static_cast<std::size_t>(u)];

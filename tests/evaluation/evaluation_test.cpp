@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/evaluation/map_score.hpp>
+#include <tofmap/evaluation/range_score.hpp>
+#include <tofmap/evaluation/trajectory_score.hpp>
+
+namespace tofmap {
+namespace {
+
+using Eigen::Vector3d;
+
+TEST(RangeScore, IsTheWorkedExample) {
+  RangeImage image(1, 5);
+  image.range_m << 2.0F, 3.1F, 1.0F, NAN, 5.0F;
+  image.reason << 0, 0, 0, static_cast<int>(InvalidReason::jump_edge), 0;
+  ImageF truth(1, 5);
+  truth << 2.0F, 3.0F, 6.0F, 4.0F, NAN;
+  const RangeScore score = score_ranges(image, truth, 5.0);
+  EXPECT_NEAR(score.wrong_wrap_percent, 100.0 / 3, 1e-9);  // 5 m off, of three with a range
+  EXPECT_DOUBLE_EQ(score.coverage_percent, 75);            // three of four with truth
+  EXPECT_NEAR(score.range_rmse_m, std::sqrt(0.01 / 2), 1e-6);
+}
+
+/// Five metres straight on, a pose every half metre.
+Trajectory straight_path() {
+  Trajectory path;
+  for (int i = 0; i <= 10; ++i) {
+    StampedPose pose;
+    pose.timestamp_s = i;
+    pose.world_from_camera.translation() = Vector3d(0.5 * i, 0.1 * (i % 2), 0);
+    path.push_back(pose);
+  }
+  return path;
+}
+
+TEST(TrajectoryScore, IsZeroForTheSamePathInAnotherFrame) {
+  Trajectory moved = straight_path();
+  Eigen::Matrix<double, 6, 1> twist;
+  twist << 0.3, -0.2, 1.0, 4, 5, 6;
+  for (StampedPose& pose : moved) {
+    pose.world_from_camera = pose_from_twist(twist) * pose.world_from_camera;
+  }
+  const auto score = score_trajectory(moved, straight_path());
+  ASSERT_TRUE(score);
+  EXPECT_EQ(score->matched, 11);
+  EXPECT_NEAR(score->ate_rmse_m, 0, 1e-9);
+  EXPECT_NEAR(score->rpe_rmse_m_per_m, 0, 1e-9);
+}
+
+TEST(TrajectoryScore, MeasuresAPathThatIsTenPercentTooLong) {
+  Trajectory truth;
+  Trajectory estimate;
+  for (int i = 0; i <= 10; ++i) {
+    StampedPose pose;
+    pose.timestamp_s = i;
+    pose.world_from_camera.translation() = Vector3d(0.5 * i, 0, 0);
+    truth.push_back(pose);
+    pose.world_from_camera.translation() *= 1.1;
+    estimate.push_back(pose);
+  }
+  const auto score = score_trajectory(estimate, truth);
+  ASSERT_TRUE(score);
+  EXPECT_NEAR(score->rpe_rmse_m_per_m, 0.1, 1e-9);
+  // Aligned at the middle, errors are 0.05 m times −5 … 5: RMS 0.05 √10.
+  EXPECT_NEAR(score->ate_rmse_m, 0.05 * std::sqrt(10.0), 1e-9);
+  EXPECT_NEAR(score->ate_max_m, 0.25, 1e-9);
+}
+
+TEST(TrajectoryScore, NeedsThreePosesOfTheSameTime) {
+  Trajectory late = straight_path();
+  for (StampedPose& pose : late) pose.timestamp_s += 0.5;
+  EXPECT_FALSE(score_trajectory(late, straight_path()));
+}
+
+MapCloud plane_map(double z, double step_m) {
+  MapCloud map;
+  for (double x = -0.5; x < 0.5; x += step_m) {
+    for (double y = -0.5; y < 0.5; y += step_m) {
+      MapPoint point;
+      point.getVector3fMap() = Vector3d(x, y, z).cast<float>();
+      map.push_back(point);
+    }
+  }
+  return map;
+}
+
+ReferenceSurface plane_reference() {
+  CameraModel camera{.width_px = 200,
+                     .height_px = 200,
+                     .fx_px = 200,
+                     .fy_px = 200,
+                     .cx_px = 99.5,
+                     .cy_px = 99.5,
+                     .distortion = {}};
+  const PixelRays rays = pixel_rays(camera);
+  ReferenceSurface reference;
+  reference.add(ImageF(1.0F / rays.z), rays, Pose::Identity());
+  return reference;
+}
+
+TEST(MapScore, MeasuresAMapThatIsTwoCentimetresOff) {
+  const MapScore score = score_map(plane_map(1.02, 0.03), Pose::Identity(), plane_reference());
+  EXPECT_NEAR(score.accuracy_m, 0.02, 1e-4);
+  EXPECT_DOUBLE_EQ(score.far_percent, 0);
+  EXPECT_DOUBLE_EQ(score.completeness_percent, 100);
+}
+
+TEST(MapScore, CountsWhatIsMissingAndWhatIsFar) {
+  MapCloud map = plane_map(1, 0.03);
+  std::erase_if(map.points, [](const MapPoint& point) { return point.x > 0; });
+  MapPoint astray;
+  astray.getVector3fMap() = Eigen::Vector3f(0, 0, 3);
+  map.points.push_back(astray);
+  const MapScore score = score_map(map, Pose::Identity(), plane_reference());
+  EXPECT_NEAR(score.far_percent, 100.0 / static_cast<double>(map.points.size()), 1e-6);
+  // Half the plane, and the 0.1 m beyond its middle that still count.
+  EXPECT_NEAR(score.completeness_percent, 60, 4);
+}
+
+TEST(MapScore, RefusesAnEmptyReference) {
+  EXPECT_THROW(score_map(plane_map(1, 0.1), Pose::Identity(), {}), UsageError);
+}
+
+}  // namespace
+}  // namespace tofmap

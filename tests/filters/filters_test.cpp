@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/filters/filter_chain.hpp>
+#include <tofmap/filters/gates.hpp>
+#include <tofmap/filters/jump_edge_filter.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr double edge_angle_rad = 170 * std::numbers::pi / 180;
+
+CameraModel camera() {
+  return {.width_px = 20,
+          .height_px = 16,
+          .fx_px = 20,
+          .fy_px = 20,
+          .cx_px = 9.5,
+          .cy_px = 7.5,
+          .distortion = {}};
+}
+
+/// A plane across the view at z = depth.
+RangeImage plane(double depth_m, float sigma_m = 0.001F) {
+  const PixelRays rays = pixel_rays(camera());
+  RangeImage image(16, 20);
+  image.range_m = static_cast<float>(depth_m) / rays.z;
+  image.sigma_m.setConstant(sigma_m);
+  image.wrap_count.setZero();
+  image.confidence.setConstant(0.9F);
+  image.reason.setZero();
+  return image;
+}
+
+/// The angle at p_i as May et al. define it, in degrees, the slow way.
+double angle_at_deg(const Eigen::Vector3d& p_i, const Eigen::Vector3d& p_n) {
+  return std::acos((-p_i).normalized().dot((p_n - p_i).normalized())) * 180 / std::numbers::pi;
+}
+
+TEST(JumpEdgeFilter, KeepsAPlaneWhole) {
+  const RangeImage out = drop_jump_edges(plane(3), pixel_rays(camera()), edge_angle_rad, 0);
+  EXPECT_EQ(out.count_valid(), 20 * 16);
+}
+
+TEST(JumpEdgeFilter, RemovesAFlyingPixelAndKeepsTheFartherSurface) {
+  RangeImage image = plane(3);
+  const RangeImage far = plane(9);
+  image.range_m.rightCols(10) = far.range_m.rightCols(10);
+  image.range_m.col(10) = plane(6).range_m.col(10);  // halfway between both
+  const RangeImage out = drop_jump_edges(image, pixel_rays(camera()), edge_angle_rad, 0);
+  for (int v = 0; v < 16; ++v) {
+    EXPECT_EQ(out.reason(v, 10), static_cast<int>(InvalidReason::jump_edge));
+    EXPECT_TRUE(out.valid(v, 11)) << "the first pixel of the farther surface";
+    EXPECT_TRUE(out.valid(v, 8));
+  }
+}
+
+TEST(JumpEdgeFilter, IsTheSlowDefinition) {
+  RangeImage image = plane(3);
+  for (Eigen::Index i = 0; i < image.range_m.size(); ++i) {
+    image.range_m.data()[i] += 2.5F * static_cast<float>((i * 7919) % 11) / 10;
+  }
+  image.invalidate(5, 5, InvalidReason::no_return);
+  const PixelRays rays = pixel_rays(camera());
+  const RangeImage out = drop_jump_edges(image, rays, edge_angle_rad, 0);
+  const auto point = [&](int v, int u) -> Eigen::Vector3d {
+    return image.range_m(v, u) * Eigen::Vector3d(rays.x(v, u), rays.y(v, u), rays.z(v, u));
+  };
+  int removed = 0;
+  for (int v = 0; v < 16; ++v) {
+    for (int u = 0; u < 20; ++u) {
+      if (!image.valid(v, u)) continue;
+      double largest = 0;
+      for (int r = std::max(0, v - 1); r <= std::min(15, v + 1); ++r) {
+        for (int c = std::max(0, u - 1); c <= std::min(19, u + 1); ++c) {
+          if ((r == v && c == u) || !image.valid(r, c)) continue;
+          largest = std::max(largest, angle_at_deg(point(v, u), point(r, c)));
+        }
+      }
+      EXPECT_EQ(!out.valid(v, u), largest > 170) << v << ", " << u << ": " << largest;
+      removed += largest > 170 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(removed, 10);
+}
+
+TEST(JumpEdgeFilter, TakesNoNoiseForAnEdge) {
+  RangeImage image = plane(3, 0.5F);
+  image.range_m(8, 10) -= 1.5F;  // 3 σ, 2.1 σ of the difference
+  const PixelRays rays = pixel_rays(camera());
+  EXPECT_FALSE(drop_jump_edges(image, rays, edge_angle_rad, 0).valid(8, 10));
+  EXPECT_EQ(drop_jump_edges(image, rays, edge_angle_rad, 5).count_valid(), 20 * 16);
+}
+
+TEST(AmplitudeFilter, JudgesByTheWeakerFrequency) {
+  DualFrequencyFrame frame;
+  frame.amplitude_a = ImageF::Constant(16, 20, 100);
+  frame.amplitude_b = ImageF::Constant(16, 20, 100);
+  frame.amplitude_b(2, 3) = 9;
+  const RangeImage out = drop_low_amplitude(plane(3), frame, 10);
+  EXPECT_EQ(out.count_valid(), 20 * 16 - 1);
+  EXPECT_EQ(out.reason(2, 3), static_cast<int>(InvalidReason::low_amplitude));
+}
+
+TEST(AmplitudeFilter, DoesNothingWithoutAmplitudes) {
+  EXPECT_EQ(drop_low_amplitude(plane(3), {}, 10).count_valid(), 20 * 16);
+}
+
+TEST(FilterChain, CountsWhatEachFilterRemoves) {
+  RangeImage image = plane(3);
+  image.confidence(0, 0) = 0.1F;
+  FilterOptions options;
+  options.min_confidence = 0.5;
+  const FilterResult result = apply_filters(image, {}, pixel_rays(camera()), options);
+  ASSERT_EQ(result.counts.size(), 3U);
+  EXPECT_EQ(result.counts[1].name, "confidence");
+  EXPECT_EQ(result.counts[1].removed, 1);
+  EXPECT_EQ(result.counts[2].removed, 0);
+}
+
+TEST(FilterChain, RefusesAFilterItDoesNotHave) {
+  FilterOptions options;
+  options.chain = "jump_edge magic";
+  EXPECT_THROW(apply_filters(plane(3), {}, pixel_rays(camera()), options), UsageError);
+}
+
+}  // namespace
+}  // namespace tofmap

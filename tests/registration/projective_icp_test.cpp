@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "normal_equations.hpp"
+#include "support/box_room.hpp"
+
+#include <array>
+
+#include <gtest/gtest.h>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/registration/projective_icp.hpp>
+
+namespace tofmap {
+namespace {
+
+using Eigen::Vector3d;
+
+// A corner of this box is in view: walls in three directions hold the camera.
+const Vector3d box_min(-1.5, -1.0, -1);
+const Vector3d box_max(2.0, 1.2, 4);
+
+MotionPrior loose_prior() { return {Pose::Identity(), 0.1, 0.2}; }
+
+RegistrationResult register_in_box(const Pose& truth, const MotionPrior& prior,
+                                   const Vector3d& min = box_min, const Vector3d& max = box_max) {
+  const CameraModel camera = test::small_camera();
+  const SurfaceCloud target = test::box_cloud(camera, min, max, Pose::Identity());
+  const SurfaceCloud source = test::box_cloud(camera, min, max, truth);
+  const std::array<RegistrationTarget, 1> targets{{{&target, Pose::Identity()}}};
+  return register_to_targets(source, targets, camera, prior, {});
+}
+
+TEST(Registration, FindsAKnownMotionWhereThreeWallsAreInView) {
+  const Pose truth = test::moved_by({0.02, -0.04, 0.03}, {0.05, -0.03, 0.06});
+  const RegistrationResult result = register_in_box(truth, loose_prior());
+  EXPECT_EQ(result.status, RegistrationStatus::converged);
+  EXPECT_EQ(result.degenerate_directions, 0);
+  // Exact planes: what is left is the prior's pull and the rounding of float clouds.
+  EXPECT_LT((result.world_from_camera.translation() - truth.translation()).norm(), 5e-4);
+  EXPECT_LT(rotation_angle_rad(result.world_from_camera, truth), 2e-4);
+  EXPECT_GT(result.inlier_share, 0.9);
+}
+
+TEST(Registration, LeavesDirectionsThatABareWallDoesNotHoldToThePrior) {
+  // One wall fills the view: sideways motion and roll cannot be seen.
+  const Vector3d min(-50, -50, -50);
+  const Vector3d max(50, 50, 3);
+  const Pose truth = test::moved_by({0, 0, 0}, {0.1, 0.05, 0.04});
+  MotionPrior prior = loose_prior();
+  prior.world_from_camera.translation() = Vector3d(0.02, 0.01, 0);
+  const RegistrationResult result = register_in_box(truth, prior, min, max);
+  EXPECT_EQ(result.degenerate_directions, 3);
+  EXPECT_NEAR(result.world_from_camera.translation().z(), 0.04, 1e-3);
+  EXPECT_NEAR(result.world_from_camera.translation().x(), 0.02, 1e-3);
+  EXPECT_NEAR(result.world_from_camera.translation().y(), 0.01, 1e-3);
+  // The covariance says so: sideways no better than the prior, towards the wall far better.
+  EXPECT_NEAR(std::sqrt(result.covariance(3, 3)), 0.2, 0.02);
+  EXPECT_LT(std::sqrt(result.covariance(5, 5)), 0.01);
+}
+
+TEST(Registration, FailsWithoutOverlap) {
+  const CameraModel camera = test::small_camera();
+  const SurfaceCloud source = test::box_cloud(camera, box_min, box_max, Pose::Identity());
+  const Pose far_away = test::moved_by({0, 3, 0}, {50, 0, 0});
+  const std::array<RegistrationTarget, 1> targets{{{&source, far_away}}};
+  const RegistrationResult result = register_to_targets(source, targets, camera, loose_prior(), {});
+  EXPECT_FALSE(succeeded(result.status));
+}
+
+TEST(Registration, RefusesAPriorWithoutWidth) {
+  const CameraModel camera = test::small_camera();
+  EXPECT_THROW(register_to_targets({}, {}, camera, {}, {}), UsageError);
+}
+
+TEST(ResidualJacobian, IsTheNumericDerivative) {
+  Correspondence pair;
+  pair.point_m = Vector3d(0.7, -0.4, 2.1);
+  pair.normal = Vector3d(0.3, 0.5, -0.8).normalized();
+  const Vector6d jacobian = residual_jacobian(pair);
+  constexpr double step = 1e-6;
+  for (int i = 0; i < 6; ++i) {
+    Vector6d twist = Vector6d::Zero();
+    twist[i] = step;
+    const double forward = pair.normal.dot(pose_from_twist(twist) * pair.point_m);
+    twist[i] = -step;
+    const double backward = pair.normal.dot(pose_from_twist(twist) * pair.point_m);
+    EXPECT_NEAR(jacobian[i], (forward - backward) / (2 * step), 1e-8) << "component " << i;
+  }
+}
+
+TEST(GemanMcClure, IsOneAtZeroAndAQuarterAtItsWidth) {
+  EXPECT_DOUBLE_EQ(geman_mcclure_weight(0, 3), 1);
+  EXPECT_DOUBLE_EQ(geman_mcclure_weight(3, 3), 0.25);
+  EXPECT_LT(geman_mcclure_weight(30, 3), 1e-3);
+}
+
+}  // namespace
+}  // namespace tofmap
