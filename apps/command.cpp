@@ -23,7 +23,7 @@ void CommonArguments::add_to(CLI::App& command) {
 }
 
 void CommonArguments::resolve(OptionTable& table, RunOptions& run) const {
-  if (!config.empty()) table.load(config);
+  if (!config.empty()) table.load(config, AllOptions().table());
   for (const std::string& assignment : assignments) table.assign(assignment);
   if (threads >= 0) run.threads = threads;
   if (run.threads > 0) omp_set_num_threads(run.threads);

@@ -31,6 +31,19 @@ struct RunOptions {
   static std::vector<OptionField<RunOptions>> fields();
 };
 
+/// The options of all commands, at their defaults.
+class AllOptions {
+ public:
+  AllOptions();
+  ~AllOptions();
+  const OptionTable& table() const { return table_; }
+
+ private:
+  struct Values;
+  std::unique_ptr<Values> values_;
+  OptionTable table_;
+};
+
 /// What every command takes from the command line: --config, --set, --threads, --quiet.
 struct CommonArguments {
   std::filesystem::path config;
@@ -40,7 +53,8 @@ struct CommonArguments {
 
   void add_to(CLI::App& command);
 
-  /// Sets the table's options from the file, then from --set; then applies the threads.
+  /// Sets the table's options from the file, then from --set; then applies the threads. Groups
+  /// of the file that are other commands' alone are passed over.
   /// The table must hold `run` at its top level.
   void resolve(OptionTable& table, RunOptions& run) const;
 };

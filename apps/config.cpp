@@ -14,18 +14,32 @@
 
 namespace tofmap::app {
 
+struct AllOptions::Values {
+  RunOptions run;
+  SimulatorOptions simulator;
+  PipelineOptions pipeline;
+};
+
+AllOptions::AllOptions() : values_(std::make_unique<Values>()) {
+  table_.bind("", values_->run);
+  table_.bind("simulator", values_->simulator);
+  bind_options(table_, values_->pipeline);
+}
+
+AllOptions::~AllOptions() = default;
+
 std::string command_options_yaml(const std::string& command) {
+  if (command.empty()) return AllOptions().table().to_yaml(true);
   RunOptions run;
   SimulatorOptions simulator;
   PipelineOptions pipeline;
   OptionTable table;
   table.bind("", run);
-  const bool all = command.empty();
-  if (all || command == "simulate") table.bind("simulator", simulator);
+  if (command == "simulate") table.bind("simulator", simulator);
   if (command == "unwrap") {
     table.bind("unwrap", pipeline.unwrap);
     table.bind("filters", pipeline.filters);
-  } else if (all || command == "map" || command == "evaluate") {
+  } else if (command == "map" || command == "evaluate") {
     bind_options(table, pipeline);
   } else if (command != "simulate" && command != "info") {
     throw UsageError("config: '" + command +

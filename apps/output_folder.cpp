@@ -24,7 +24,15 @@ fs::path sibling(const fs::path& folder, const std::string& suffix) {
   return folder.parent_path() / (folder.filename().string() + suffix + std::to_string(getpid()));
 }
 
-void refuse_foreign(const fs::path& folder) {
+/// Whether a recording lies in the folder or below.
+bool holds_recording(const fs::path& folder) {
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.path().filename() == "sequence.yaml") return true;
+  }
+  return false;
+}
+
+void refuse_foreign(const fs::path& folder, Replaces replaces) {
   if (!fs::exists(folder)) return;
   if (!fs::is_directory(folder)) {
     throw InputError(folder.string() + ": is a file; choose another output folder");
@@ -34,14 +42,20 @@ void refuse_foreign(const fs::path& folder) {
                      ": holds files that are no result of tofmap; choose another output folder, "
                      "or empty it");
   }
+  // A simulated recording has an options.yaml as well, and may be what the result is made from.
+  if (replaces == Replaces::results && holds_recording(folder)) {
+    throw InputError(folder.string() +
+                     ": is or holds a recording, which the result would replace; choose another "
+                     "output folder");
+  }
 }
 
 }  // namespace
 
-OutputFolder::OutputFolder(fs::path folder)
-    : folder_(normalised(folder)), partial_(sibling(folder_, ".partial-")) {
+OutputFolder::OutputFolder(fs::path folder, Replaces replaces)
+    : folder_(normalised(folder)), partial_(sibling(folder_, ".partial-")), replaces_(replaces) {
   std::error_code error;
-  if (fs::exists(folder_, error)) refuse_foreign(folder_);
+  if (fs::exists(folder_, error)) refuse_foreign(folder_, replaces_);
   fs::create_directories(folder_.parent_path(), error);
   if (!error) {
     fs::remove_all(partial_, error);
@@ -75,7 +89,7 @@ void OutputFolder::write_text(const std::string& name, const std::string& text) 
 }
 
 void OutputFolder::commit() {
-  refuse_foreign(folder_);
+  refuse_foreign(folder_, replaces_);
   const fs::path earlier = sibling(folder_, ".replaced-");
   std::error_code error;
   const bool replaces = fs::exists(folder_);

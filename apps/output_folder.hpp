@@ -7,15 +7,22 @@
 
 namespace tofmap::app {
 
+/// What an output folder may take the place of, besides nothing and an empty folder.
+enum class Replaces {
+  results,     ///< an earlier result, but never a recording
+  recordings,  ///< an earlier result or simulated recording
+};
+
 /// A result folder that appears only when it is whole: files are written into a folder beside
 /// it, which `commit` moves into place. Without commit nothing is left.
 ///
 /// An existing folder is replaced if it is empty or holds an earlier result of this program
-/// (it has an options.yaml); anything else is refused, so that no data of others is lost.
+/// (it has an options.yaml); anything else is refused, so that no data of others is lost. So is a
+/// folder that is or holds a recording, unless the command makes recordings.
 class OutputFolder {
  public:
   /// Throws InputError that names the folder and the remedy if it cannot be made, or is in use.
-  explicit OutputFolder(std::filesystem::path folder);
+  explicit OutputFolder(std::filesystem::path folder, Replaces replaces = Replaces::results);
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
   ~OutputFolder();
@@ -37,6 +44,7 @@ class OutputFolder {
  private:
   std::filesystem::path folder_;
   std::filesystem::path partial_;
+  Replaces replaces_;
   bool is_committed_ = false;
 };
 

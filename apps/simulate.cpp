@@ -35,7 +35,7 @@ int run_simulate(const SimulateArguments& arguments) {
   if (arguments.frames >= 0) options.frames = arguments.frames;
 
   const Simulator simulator(find_scene(arguments.scene), options);
-  OutputFolder out(arguments.out);
+  OutputFolder out(arguments.out, Replaces::recordings);
   const int total = *simulator.frame_count();
   int written = 0;
   {

@@ -48,6 +48,78 @@ TEST(JumpEdgeFilter, KeepsAPlaneWhole) {
   EXPECT_EQ(out.count_valid(), 20 * 16);
 }
 
+/// A plane through (0, 0, depth) that turns away to the right: x sin(slant) = (depth − z)
+/// cos(slant) leaves 90° − slant between the optical axis and the plane.
+RangeImage slanted_plane(double depth_m, double slant_rad) {
+  const PixelRays rays = pixel_rays(camera());
+  RangeImage image = plane(depth_m);
+  const auto s = static_cast<float>(std::sin(slant_rad));
+  const auto c = static_cast<float>(std::cos(slant_rad));
+  image.range_m = static_cast<float>(depth_m) * c / (rays.z * c + rays.x * s);
+  return image;
+}
+
+TEST(JumpEdgeFilter, KeepsAPlaneAtASlantWhole) {
+  // The rays are up to 25° off the axis: at a slant of 50° they meet the plane at 15° and more.
+  const RangeImage image = slanted_plane(3, 50 * std::numbers::pi / 180);
+  ASSERT_TRUE((image.range_m > 0).all());
+  EXPECT_EQ(drop_jump_edges(image, pixel_rays(camera()), edge_angle_rad, 0).count_valid(), 20 * 16);
+}
+
+TEST(JumpEdgeFilter, LooksAtAllEightNeighbours) {
+  const PixelRays rays = pixel_rays(camera());
+  for (int v = 0; v < 3; ++v) {
+    for (int u = 0; u < 3; ++u) {
+      if (v == 1 && u == 1) continue;
+      RangeImage image = plane(3);
+      image.range_m(6 + v, 8 + u) += 6;
+      EXPECT_FALSE(drop_jump_edges(image, rays, edge_angle_rad, 0).valid(7, 9)) << v << ", " << u;
+    }
+  }
+}
+
+TEST(JumpEdgeFilter, TakesNothingFromBeyondTheBordersOfTheImage) {
+  // What is far in the last column must not reach the first column of the next row.
+  RangeImage image = plane(3);
+  image.range_m.col(19) += 6;
+  const RangeImage out = drop_jump_edges(image, pixel_rays(camera()), edge_angle_rad, 0);
+  for (int v = 0; v < 16; ++v) {
+    EXPECT_TRUE(out.valid(v, 0));
+    EXPECT_FALSE(out.valid(v, 18));
+    EXPECT_TRUE(out.valid(v, 19));
+  }
+}
+
+TEST(JumpEdgeFilter, FindsEdgesInTheCorners) {
+  const PixelRays rays = pixel_rays(camera());
+  for (const int v : {0, 15}) {
+    for (const int u : {0, 19}) {
+      RangeImage image = plane(9);
+      image.range_m(v, u) -= 5;
+      const RangeImage out = drop_jump_edges(image, rays, edge_angle_rad, 0);
+      EXPECT_FALSE(out.valid(v, u));
+      EXPECT_EQ(out.count_valid(), 20 * 16 - 1);
+    }
+  }
+}
+
+TEST(JumpEdgeFilter, HearsNothingFromInvalidNeighbours) {
+  RangeImage image = plane(3);
+  image.range_m(7, 9) += 6;
+  const PixelRays rays = pixel_rays(camera());
+  ASSERT_EQ(drop_jump_edges(image, rays, edge_angle_rad, 0).count_valid(), 20 * 16 - 8);
+  image.invalidate(7, 9, InvalidReason::low_amplitude);
+  const RangeImage out = drop_jump_edges(image, rays, edge_angle_rad, 0);
+  EXPECT_EQ(out.count_valid(), 20 * 16 - 1);
+  EXPECT_EQ(out.reason(7, 9), static_cast<int>(InvalidReason::low_amplitude)) << "the first reason";
+}
+
+TEST(JumpEdgeFilter, RefusesRaysOfAnotherCamera) {
+  CameraModel other = camera();
+  other.width_px = 19;
+  EXPECT_THROW(drop_jump_edges(plane(3), pixel_rays(other), edge_angle_rad, 0), UsageError);
+}
+
 TEST(JumpEdgeFilter, RemovesAFlyingPixelAndKeepsTheFartherSurface) {
   RangeImage image = plane(3);
   const RangeImage far = plane(9);
@@ -110,6 +182,37 @@ TEST(AmplitudeFilter, JudgesByTheWeakerFrequency) {
 
 TEST(AmplitudeFilter, DoesNothingWithoutAmplitudes) {
   EXPECT_EQ(drop_low_amplitude(plane(3), {}, 10).count_valid(), 20 * 16);
+}
+
+TEST(AmplitudeFilter, RefusesAFrameOfAnotherSize) {
+  DualFrequencyFrame frame;
+  frame.amplitude_a = ImageF::Constant(16, 19, 100);
+  frame.amplitude_b = ImageF::Constant(16, 19, 100);
+  EXPECT_THROW(drop_low_amplitude(plane(3), frame, 10), UsageError);
+}
+
+TEST(ConfidenceFilter, KeepsWhatIsAsSureAsAskedFor) {
+  RangeImage image = plane(3);
+  image.confidence(2, 3) = 0.49F;
+  image.confidence(4, 5) = 0.5F;
+  const RangeImage out = drop_low_confidence(image, 0.5);
+  EXPECT_EQ(out.reason(2, 3), static_cast<int>(InvalidReason::low_confidence));
+  EXPECT_TRUE(out.valid(4, 5));
+  EXPECT_EQ(out.count_valid(), 20 * 16 - 1);
+}
+
+TEST(FilterChain, RunsInTheOrderThatIsAskedFor) {
+  RangeImage image = plane(3);
+  image.range_m(7, 9) += 6;  // its neighbours are edges, unless it is gone before
+  image.confidence(7, 9) = 0.1F;
+  FilterOptions options;
+  options.min_confidence = 0.5;
+  options.chain = "jump_edge confidence";
+  EXPECT_EQ(apply_filters(image, {}, pixel_rays(camera()), options).counts[0].removed, 8);
+  options.chain = "confidence jump_edge";
+  EXPECT_EQ(apply_filters(image, {}, pixel_rays(camera()), options).counts[1].removed, 0);
+  options.chain = "";
+  EXPECT_EQ(apply_filters(image, {}, pixel_rays(camera()), options).image.count_valid(), 20 * 16);
 }
 
 TEST(FilterChain, CountsWhatEachFilterRemoves) {

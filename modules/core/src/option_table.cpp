@@ -133,7 +133,11 @@ void OptionTable::assign(const std::string& assignment) {
   set(assignment.substr(0, equals), assignment.substr(equals + 1));
 }
 
-void OptionTable::load(const std::filesystem::path& file) {
+bool OptionTable::has_group(const std::string& group) const {
+  return !group.empty() && std::ranges::find(entries_, group, &Entry::group) != entries_.end();
+}
+
+void OptionTable::load(const std::filesystem::path& file, const OptionTable& others) {
   const auto scalar = [&](const std::string& key, const YAML::Node& node) {
     if (!node.IsScalar()) {
       throw UsageError(file.string() + ": option " + key + " must be a single value");
@@ -157,12 +161,13 @@ void OptionTable::load(const std::filesystem::path& file) {
   if (!root.IsMap()) throw InputError(file.string() + ": expected a map of option groups");
   for (const auto& group : root) {
     const std::string name = group.first.as<std::string>();
+    if (!has_group(name) && others.has_group(name)) continue;
     if (group.second.IsMap()) {
       for (const auto& option : group.second) {
         const std::string key = name + "." + option.first.as<std::string>();
         scalar(key, option.second);
       }
-    } else {
+    } else if (!group.second.IsNull() || !has_group(name)) {  // an empty group sets nothing
       scalar(name, group.second);
     }
   }

@@ -52,8 +52,9 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
     double w = 0;
     fields >> pose.timestamp_s >> t.x() >> t.y() >> t.z() >> x >> y >> z >> w;
     const Eigen::Quaterniond q(w, x, y, z);
+    const bool has_eight = !fields.fail() && (fields >> std::ws).eof();
     // A quaternion off unit length by rounding is mended; a zero one is no rotation.
-    if (!fields || !t.allFinite() || !std::isfinite(q.norm()) || q.norm() < 1e-3) {
+    if (!has_eight || !t.allFinite() || !std::isfinite(q.norm()) || q.norm() < 1e-3) {
       throw InputError(file.string() + ":" + std::to_string(number) +
                        ": expected 'timestamp tx ty tz qx qy qz qw', got '" + line + "'");
     }

@@ -15,6 +15,11 @@ using Vector3 = std::array<float, 3>;
 
 constexpr float uniform = 1.0F / 3;
 
+/// The least element of a curl node's message. Loops make beliefs grow with every iteration; with
+/// messages that reach zero, two that contradict each other would leave 0 / 0. With this floor
+/// and that of the evidence (1e-6) no sum of products falls below 1e-27, within a float.
+constexpr float least_message = 1e-8F;
+
 Planes uniform_planes(Eigen::Index rows, Eigen::Index cols) {
   const ImageF plane = ImageF::Constant(rows, cols, uniform);
   return {plane, plane, plane};
@@ -71,7 +76,8 @@ Vector3 curl_message(const Vector3& p, const Vector3& q, const Vector3& r) {
                            pq[1] * r[0] + pq[2] * r[1] + pq[3] * r[2],
                            pq[2] * r[0] + pq[3] * r[1] + pq[4] * r[2]};
   const float scale = 1 / (message[0] + message[1] + message[2]);
-  return {message[0] * scale, message[1] * scale, message[2] * scale};
+  return {std::max(message[0] * scale, least_message), std::max(message[1] * scale, least_message),
+          std::max(message[2] * scale, least_message)};
 }
 
 /// Stores a message and gives its largest change.

@@ -62,9 +62,10 @@ class OptionTable {
   /// Sets one option from `group.name=value`, the form of `--set`.
   void assign(const std::string& assignment);
 
-  /// Sets all options that a YAML file names: a map of groups, each a map of names.
+  /// Sets all options that a YAML file names: a map of groups, each a map of names. Groups that
+  /// only `others` has are passed over, so that commands can share a file.
   /// Throws InputError if the file cannot be read or is no YAML map.
-  void load(const std::filesystem::path& file);
+  void load(const std::filesystem::path& file, const OptionTable& others = {});
 
   /// All options as YAML that `load` takes; with comments of unit, range and meaning on wish.
   std::string to_yaml(bool with_comments) const;
@@ -87,6 +88,7 @@ class OptionTable {
   };
 
   void add(Entry entry);
+  bool has_group(const std::string& group) const;
   Entry& find(const std::string& key, const std::string& value);
 
   std::vector<Entry> entries_;

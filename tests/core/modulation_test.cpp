@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/core/modulation.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr Modulation paper{29e6, 31e6};
+constexpr Modulation kinect{80e6, 100e6};
+
+TEST(Wavelength, IsHalfTheWayLightGoesInAPeriod) {
+  EXPECT_NEAR(paper.wavelength_a_m(), 5.16883548, 1e-8);
+  EXPECT_NEAR(paper.wavelength_b_m(), 4.83536223, 1e-8);
+}
+
+TEST(CombinedRange, IsThatOfTheGreatestCommonDivisor) {
+  const double c = speed_of_light_m_per_s;
+  EXPECT_NEAR(combined_range_m(paper), c / 2 / 1e6, 1e-6);
+  EXPECT_NEAR(combined_range_m(kinect), c / 2 / 20e6, 1e-6);
+}
+
+TEST(CombinedRange, EndsSoonerWherePhasesAreNoisy) {
+  // After 14 wraps of A, B has turned 14.966 times: 0.034 cycles from whole.
+  EXPECT_NEAR(combined_range_m(paper, 0.05), 14 * paper.wavelength_a_m(), 1e-9);
+}
+
+TEST(CombinedRange, IsTheSameWhicheverIsLonger) {
+  EXPECT_EQ(combined_range_m({31e6, 29e6}), combined_range_m(paper));
+  EXPECT_EQ(combined_range_m({31e6, 29e6}, 0.05), combined_range_m(paper, 0.05));
+}
+
+TEST(CombinedRange, OfAPairWithoutCommonDivisorIsFinite) {
+  const Modulation odd{29e6, 29e6 * std::sqrt(2.0)};
+  const double range_m = combined_range_m(odd);
+  EXPECT_GT(range_m, odd.wavelength_a_m());
+  EXPECT_LE(range_m, 1000 * odd.wavelength_a_m());
+}
+
+TEST(WrapLimits, CountTheWavelengthsBegun) {
+  EXPECT_EQ(wrap_limits(paper, 5.0).count_a, 1);
+  EXPECT_EQ(wrap_limits(paper, 5.0).count_b, 2);
+  EXPECT_EQ(wrap_limits(paper, 25.0).count_a, 5);
+  EXPECT_EQ(wrap_limits(paper, 25.0).count_b, 6);
+}
+
+TEST(WrapLimits, OfAWholeNumberOfWavelengthsAreThatNumber) {
+  EXPECT_EQ(wrap_limits(paper, 3 * paper.wavelength_a_m()).count_a, 3);
+  EXPECT_EQ(wrap_limits(paper, combined_range_m(paper)).count_a, 29);
+  EXPECT_EQ(wrap_limits(paper, combined_range_m(paper)).count_b, 31);
+}
+
+TEST(WrapLimits, NeedAPositiveRange) {
+  for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
+                           std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW(wrap_limits(paper, bad), UsageError) << bad;
+  }
+}
+
+TEST(ModulationValidation, RefusesEqualFrequenciesAndTellsWhy) {
+  try {
+    validate(Modulation{30e6, 30e6});
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("two different frequencies"), std::string::npos);
+  }
+}
+
+TEST(ModulationValidation, RefusesWhatIsNoFrequency) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(validate(Modulation{0, 31e6}), InputError);
+  EXPECT_THROW(validate(Modulation{29e6, -31e6}), InputError);
+  EXPECT_THROW(validate(Modulation{nan, 31e6}), InputError);
+}
+
+TEST(ModulationValidation, TakesEitherOrder) {
+  EXPECT_NO_THROW(validate(paper));
+  EXPECT_NO_THROW(validate(Modulation{31e6, 29e6}));
+}
+
+}  // namespace
+}  // namespace tofmap

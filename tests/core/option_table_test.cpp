@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <support/temporary_folder.hpp>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/core/option_table.hpp>
+
+namespace tofmap {
+namespace {
+
+struct StageOptions {
+  bool enabled = true;
+  int count = 5;
+  double reach_m = 0.1;
+  double anything = -2;
+  std::string kind = "fast";
+  std::string note;
+
+  static std::vector<OptionField<StageOptions>> fields() {
+    using O = StageOptions;
+    return {{"enabled", &O::enabled, 0, 0, "", "whether it runs"},
+            {"count", &O::count, 1, 10, "", "how often"},
+            {"reach_m", &O::reach_m, 0, 20, "m", "how far"},
+            {.name = "anything", .member = &O::anything, .unit = "", .meaning = "a number"},
+            {"kind", &O::kind, 0, 0, "", "how it works", "fast | slow"},
+            {"note", &O::note, 0, 0, "", "free text"}};
+  }
+};
+
+struct TopOptions {
+  int threads = 0;
+
+  static std::vector<OptionField<TopOptions>> fields() {
+    return {{"threads", &TopOptions::threads, 0, 64, "", "threads to use"}};
+  }
+};
+
+class Options : public testing::Test {
+ protected:
+  Options() {
+    table_.bind("", top_);
+    table_.bind("stage", stage_);
+  }
+
+  std::filesystem::path file(const std::string& text) const {
+    const std::filesystem::path path = folder_.path() / "options.yaml";
+    std::ofstream(path) << text;
+    return path;
+  }
+
+  /// Expects that `action` throws an Error whose message holds all parts.
+  template <class Error, class Action>
+  void expect_refusal(const Action& action, const std::vector<std::string>& parts) const {
+    try {
+      action();
+      ADD_FAILURE() << "accepted; expected a complaint about " << parts.front();
+    } catch (const Error& error) {
+      for (const std::string& part : parts) {
+        EXPECT_NE(std::string(error.what()).find(part), std::string::npos)
+            << "'" << part << "' is not in: " << error.what();
+      }
+    }
+  }
+
+  void expect_unset(const std::string& key, const std::string& value,
+                    const std::vector<std::string>& parts) {
+    const std::string before = table_.to_yaml(false);
+    expect_refusal<UsageError>([&] { table_.set(key, value); }, parts);
+    EXPECT_EQ(table_.to_yaml(false), before) << "a refused value must change nothing";
+  }
+
+  test::TemporaryFolder folder_;
+  TopOptions top_;
+  StageOptions stage_;
+  OptionTable table_;
+};
+
+TEST_F(Options, AreSetFromTextByTheirKey) {
+  table_.set("stage.enabled", "false");
+  table_.set("stage.count", "7");
+  table_.set("stage.reach_m", "1.25e1");
+  table_.set("stage.kind", "slow");
+  table_.set("stage.note", "two words");
+  table_.set("threads", "3");
+  EXPECT_FALSE(stage_.enabled);
+  EXPECT_EQ(stage_.count, 7);
+  EXPECT_EQ(stage_.reach_m, 12.5);
+  EXPECT_EQ(stage_.kind, "slow");
+  EXPECT_EQ(stage_.note, "two words");
+  EXPECT_EQ(top_.threads, 3);
+}
+
+TEST_F(Options, TakeTheEndsOfTheirRange) {
+  table_.set("stage.count", "1");
+  table_.set("stage.count", "10");
+  table_.set("stage.reach_m", "20");
+  EXPECT_EQ(stage_.count, 10);
+  EXPECT_EQ(stage_.reach_m, 20);
+}
+
+TEST_F(Options, OutOfRangeAreRefusedWithKeyValueAndRange) {
+  expect_unset("stage.count", "11", {"stage.count", "'11'", "whole number", "1 … 10"});
+  expect_unset("stage.count", "0", {"stage.count", "'0'"});
+  expect_unset("stage.reach_m", "-0.5", {"stage.reach_m", "'-0.5'", "0 … 20", "m"});
+}
+
+TEST_F(Options, ThatAreNoNumberAreRefused) {
+  for (const std::string bad : {"", " 3", "3 ", "3m", "three", "nan", "inf"}) {
+    expect_unset("stage.reach_m", bad, {"stage.reach_m", "'" + bad + "'"});
+  }
+  for (const std::string bad : {"2.5", "1e1", "99999999999999999999"}) {
+    expect_unset("stage.count", bad, {"stage.count", "'" + bad + "'"});
+  }
+}
+
+TEST_F(Options, WithoutARangeTakeAnyFiniteNumber) {
+  table_.set("stage.anything", "-1e30");
+  EXPECT_EQ(stage_.anything, -1e30);
+  expect_unset("stage.anything", "inf", {"any number"});
+}
+
+TEST_F(Options, OfTruthTakeTrueAndFalseAlone) {
+  expect_unset("stage.enabled", "yes", {"stage.enabled", "'yes'", "true | false"});
+  expect_unset("stage.enabled", "1", {"stage.enabled"});
+}
+
+TEST_F(Options, OfChoiceNameTheChoices) {
+  expect_unset("stage.kind", "magic", {"stage.kind", "'magic'", "fast | slow"});
+  expect_unset("stage.kind", "|", {"stage.kind"});
+  expect_unset("stage.kind", "", {"stage.kind"});
+}
+
+TEST_F(Options, UnknownAreRefusedWithWhatThereIs) {
+  expect_unset("stage.cuont", "3", {"stage.cuont", "'3'", "stage.count", "stage.reach_m"});
+  expect_unset("stagee.count", "3", {"stagee.count", "threads", "stage"});
+  expect_unset("count", "3", {"count", "threads"});
+}
+
+TEST_F(Options, AreAssignedByKeyAndValue) {
+  table_.assign("stage.count=4");
+  EXPECT_EQ(stage_.count, 4);
+  table_.assign("stage.note=a=b");
+  EXPECT_EQ(stage_.note, "a=b") << "the first = divides";
+  table_.assign("stage.note=");
+  EXPECT_EQ(stage_.note, "");
+  expect_refusal<UsageError>([&] { table_.assign("stage.count"); },
+                             {"stage.count", "group.name=value"});
+  expect_refusal<UsageError>([&] { table_.assign("=4"); }, {"group.name=value"});
+}
+
+TEST_F(Options, AreLoadedFromYaml) {
+  table_.load(file("threads: 2\nstage:\n  count: 9  # comment\n  note: 'x: y'\n"));
+  EXPECT_EQ(top_.threads, 2);
+  EXPECT_EQ(stage_.count, 9);
+  EXPECT_EQ(stage_.note, "x: y");
+  EXPECT_EQ(stage_.reach_m, 0.1) << "what is not named stays";
+}
+
+TEST_F(Options, OfAnEmptyFileStay) {
+  const std::string before = table_.to_yaml(false);
+  table_.load(file(""));
+  table_.load(file("# all of it\n"));
+  table_.load(file("stage:\n"));
+  EXPECT_EQ(table_.to_yaml(false), before);
+}
+
+TEST_F(Options, OfOtherTablesInASharedFileArePassedOver) {
+  StageOptions theirs;
+  OptionTable others;
+  others.bind("stage", theirs);
+  others.bind("other", theirs);
+  const auto shared = file("stage:\n  count: 3\nother:\n  count: 4\n");
+  table_.load(shared, others);
+  EXPECT_EQ(stage_.count, 3);
+  EXPECT_EQ(theirs.count, 5) << "read, not written";
+  expect_refusal<UsageError>([&] { table_.load(shared); }, {"other.count"});
+  expect_refusal<UsageError>([&] { table_.load(file("neither:\n  count: 4\n"), others); },
+                             {"neither.count"});
+}
+
+TEST_F(Options, InAFileAreRefusedWithFileAndLine) {
+  expect_refusal<UsageError>([&] { table_.load(file("threads: 1\nstage:\n  count: 11\n")); },
+                             {"options.yaml:3", "stage.count", "'11'"});
+  expect_refusal<UsageError>([&] { table_.load(file("stage:\n  count: [1, 2]\n")); },
+                             {"options.yaml", "stage.count", "single value"});
+  expect_refusal<UsageError>([&] { table_.load(file("other:\n  count: 3\n")); },
+                             {"options.yaml:2", "other.count"});
+}
+
+TEST_F(Options, OfAFileThatCannotBeReadAreBadInput) {
+  expect_refusal<InputError>([&] { table_.load(folder_.path() / "none.yaml"); }, {"none.yaml"});
+  expect_refusal<InputError>([&] { table_.load(file("stage: [1\n")); },
+                             {"options.yaml", "no valid YAML"});
+  expect_refusal<InputError>([&] { table_.load(file("- 1\n- 2\n")); },
+                             {"options.yaml", "map of option groups"});
+}
+
+TEST_F(Options, ComeBackFromTheYamlTheyAreWrittenAs) {
+  for (const bool with_comments : {false, true}) {
+    stage_ = {false, 3, 0.1 + 0.2, 1e-300, "slow", "a: 'b' # \"c\""};
+    const std::string text = table_.to_yaml(with_comments);
+    stage_ = {};
+    table_.load(file(text));
+    EXPECT_FALSE(stage_.enabled);
+    EXPECT_EQ(stage_.count, 3);
+    EXPECT_EQ(stage_.reach_m, 0.1 + 0.2) << "to the last bit";
+    EXPECT_EQ(stage_.anything, 1e-300);
+    EXPECT_EQ(stage_.kind, "slow");
+    EXPECT_EQ(stage_.note, "a: 'b' # \"c\"");
+  }
+}
+
+TEST_F(Options, OfTextThatLooksLikeSomethingElseComeBack) {
+  for (const std::string text : {"", "true", "null", "~", "12", "- a", "two\nlines", "ünïcode"}) {
+    stage_.note = text;
+    const std::string yaml = table_.to_yaml(false);
+    stage_.note = "other";
+    table_.load(file(yaml));
+    EXPECT_EQ(stage_.note, text) << yaml;
+  }
+}
+
+TEST_F(Options, AreExplainedInComments) {
+  const std::string text = table_.to_yaml(true);
+  EXPECT_NE(text.find("  # how far [0 … 20, m]\n  reach_m: 0.1\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("  # how it works [fast | slow]\n  kind: fast\n"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace tofmap

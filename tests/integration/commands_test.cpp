@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What each command writes when all is well: the interface that others script against.
+
+#include "program.hpp"
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+
+#include <tofmap/acquisition/png_image.hpp>
+
+namespace tofmap::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsSupersetOf;
+
+class Commands : public WithRecording {};
+
+TEST_F(Commands, SimulateWritesAWholeSequence) {
+  EXPECT_THAT(
+      names_in(sequence_),
+      IsSupersetOf({"amplitude_a", "amplitude_b", "frames.txt", "groundtruth.txt", "options.yaml",
+                    "phase_a", "phase_b", "range_truth", "scene.ply", "sequence.yaml"}));
+  EXPECT_EQ(names_in(sequence_ / "phase_a").size(), frames);
+}
+
+TEST_F(Commands, SimulateRepeatsItselfFromTheOptionsItWrote) {
+  const fs::path again = folder_.path() / "again";
+  const Finished finished = run_program({"simulate", "room", "--out", again.string(), "--config",
+                                         (sequence_ / "options.yaml").string()});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  for (const std::string file : {"sequence.yaml", "frames.txt", "phase_a/000003.png"}) {
+    EXPECT_EQ(read_text(again / file), read_text(sequence_ / file)) << file;
+  }
+}
+
+TEST_F(Commands, InfoTellsCameraFrequenciesAndFrames) {
+  const Finished finished = run("info");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  for (const std::string part : {"44 x 36 px", "29.000 MHz", "5.169 m", "31.000 MHz", "4.835 m",
+                                 "149.90 m", "frames: 4", "damaged frames: 0"}) {
+    EXPECT_THAT(finished.out, HasSubstr(part));
+  }
+}
+
+TEST_F(Commands, UnwrapWritesImagesOfTheFixedFormats) {
+  const Finished finished = run("unwrap");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  EXPECT_EQ(finished.err, "") << "no progress bar where stderr is no terminal";
+  EXPECT_THAT(names_in(out_),
+              ElementsAre("confidence", "options.yaml", "range", "report.json", "wraps"));
+  EXPECT_THAT(names_in(out_ / "range"),
+              ElementsAre("000000.png", "000001.png", "000002.png", "000003.png"));
+  const ImageU16 range_mm = read_png_16(out_ / "range" / "000002.png");
+  const ImageU8 wraps = read_png_8(out_ / "wraps" / "000002.png");
+  const ImageU16 confidence = read_png_16(out_ / "confidence" / "000002.png");
+  ASSERT_TRUE(same_size(range_mm, wraps) && same_size(range_mm, confidence));
+  EXPECT_TRUE(((range_mm == 0) == (wraps == 255)).all()) << "invalid in one, invalid in all";
+  // The wrap count is the range in whole wavelengths; half a millimetre is rounded off.
+  for (Eigen::Index i = 0; i < wraps.size(); ++i) {
+    if (wraps.data()[i] == 255) continue;
+    const double wavelengths = range_mm.data()[i] / 5168.835;
+    EXPECT_NEAR(wavelengths, wraps.data()[i] + 0.5, 0.5 + 1e-4);
+  }
+}
+
+TEST_F(Commands, UnwrapReportsEveryFrame) {
+  ASSERT_EQ(run("unwrap").status, 0);
+  const auto report = read_json(out_ / "report.json");
+  ASSERT_EQ(report["frames"].size(), frames);
+  for (int i = 0; i < frames; ++i) {
+    EXPECT_EQ(report["frames"][i]["index"], i);
+    for (const char* key : {"timestamp", "milliseconds", "iterations", "curl_violations"}) {
+      EXPECT_TRUE(report["frames"][i].contains(key)) << key;
+    }
+  }
+  EXPECT_EQ(report["summary"]["frames"], frames);
+  EXPECT_EQ(report["summary"]["damaged"], 0);
+  EXPECT_EQ(report["summary"]["interrupted"], false);
+}
+
+TEST_F(Commands, UnwrapByNoneStaysBelowOneWavelength) {
+  ASSERT_EQ(run("unwrap", {"--method", "none"}).status, 0);
+  EXPECT_LE(read_png_16(out_ / "range" / "000000.png").maxCoeff(), 5169);
+}
+
+TEST_F(Commands, UnwrapFiltersOnRequestAndSaysWhyPixelsAreGone) {
+  ASSERT_EQ(run("unwrap", {"--filters", "--set", "filters.min_amplitude=40"}).status, 0);
+  const ImageU16 range_mm = read_png_16(out_ / "range" / "000000.png");
+  const ImageU8 reason = read_png_8(out_ / "reason" / "000000.png");
+  const ImageU16 amplitude = read_png_16(sequence_ / "amplitude_a" / "000000.png");
+  EXPECT_TRUE(((range_mm == 0) == (reason != 0)).all());
+  EXPECT_GT((reason == 2).count(), 0);
+  EXPECT_TRUE((amplitude >= 40 || reason != 0).all());
+  const auto removed = read_json(out_ / "report.json")["frames"][0]["removed"];
+  EXPECT_EQ(removed["amplitude"], (reason == 2).count());
+  EXPECT_EQ(removed["jump_edge"], (reason == 4).count());
+}
+
+TEST_F(Commands, UnwrapDropsUnsurePixelsOnRequest) {
+  ASSERT_EQ(run("unwrap").status, 0);
+  const ImageU16 all = read_png_16(out_ / "confidence" / "000000.png");
+  ASSERT_EQ(run("unwrap", {"--min-confidence", "0.9"}).status, 0);
+  const ImageU16 range_mm = read_png_16(out_ / "range" / "000000.png");
+  // Confidences round to 1/65535: leave the two values about the limit out.
+  EXPECT_TRUE((all > 58980 || range_mm == 0).all());
+  EXPECT_TRUE((all < 58983 || range_mm != 0).all());
+}
+
+TEST_F(Commands, ResultIsTheSameForAnyNumberOfThreads) {
+  ASSERT_EQ(run("unwrap", {"--threads", "1"}).status, 0);
+  const std::string one = read_text(out_ / "range" / "000001.png");
+  ASSERT_EQ(run("unwrap", {"--threads", "3"}).status, 0);
+  EXPECT_EQ(read_text(out_ / "range" / "000001.png"), one);
+  ASSERT_EQ(run("map", {"--threads", "1"}).status, 0);
+  const std::string map = read_text(out_ / "map.ply");
+  const std::string path = read_text(out_ / "trajectory.txt");
+  ASSERT_EQ(run("map", {"--threads", "3"}).status, 0);
+  EXPECT_EQ(read_text(out_ / "map.ply"), map);
+  EXPECT_EQ(read_text(out_ / "trajectory.txt"), path);
+}
+
+TEST_F(Commands, MapWritesMapPathAndReport) {
+  const Finished finished = run("map");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  EXPECT_THAT(names_in(out_), IsSupersetOf({"keyframes.txt", "map.ply", "options.yaml",
+                                            "report.json", "trajectory.txt"}));
+  EXPECT_THAT(read_text(out_ / "map.ply").substr(0, 4), "ply\n");
+  const auto report = read_json(out_ / "report.json");
+  EXPECT_EQ(report["summary"]["registered"], frames);
+  EXPECT_EQ(report["frames"].size(), frames);
+}
+
+TEST_F(Commands, MapTakesTheOptionsItWrote) {
+  ASSERT_EQ(run("map", {"--method", "pixel"}).status, 0);
+  const std::string options = read_text(out_ / "options.yaml");
+  EXPECT_THAT(options, HasSubstr("method: pixel"));
+  std::ofstream(folder_.path() / "again.yaml") << options;
+  ASSERT_EQ(run("map", {"--config", (folder_.path() / "again.yaml").string()}).status, 0);
+  EXPECT_EQ(read_text(out_ / "options.yaml"), options);
+}
+
+TEST_F(Commands, EvaluateComparesTheMethods) {
+  const Finished finished = run("evaluate");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const auto report = read_json(out_ / "report.json");
+  for (const char* method : {"none", "pixel", "single", "jump"}) {
+    EXPECT_THAT(finished.out, HasSubstr(method));
+    const auto& unwrapping = report["unwrapping"][method];
+    for (const char* key : {"wrong_wrap_percent", "coverage_percent", "range_rmse_m"}) {
+      EXPECT_TRUE(unwrapping[key].is_number()) << method << " " << key;
+    }
+    EXPECT_TRUE(report["trajectory"][method]["ate_rmse_m"].is_number()) << method;
+  }
+  EXPECT_LT(report["unwrapping"]["jump"]["wrong_wrap_percent"],
+            report["unwrapping"]["none"]["wrong_wrap_percent"]);
+}
+
+TEST_F(Commands, ConfigOfACommandCanBeFedBack) {
+  const Finished config = run_program({"config", "unwrap"});
+  ASSERT_EQ(config.status, 0);
+  EXPECT_THAT(config.out, HasSubstr("# "));
+  const fs::path file = folder_.path() / "unwrap.yaml";
+  std::ofstream(file) << config.out;
+  const Finished finished = run("unwrap", {"--config", file.string()});
+  EXPECT_EQ(finished.status, 0) << finished.err;
+}
+
+TEST_F(Commands, ConfigOfAllCommandsCanBeFedToEach) {
+  const fs::path file = folder_.path() / "all.yaml";
+  std::ofstream(file) << run_program({"config"}).out;
+  for (const std::string command : {"info", "unwrap", "map", "evaluate"}) {
+    const Finished finished = run(command, {"--config", file.string()});
+    EXPECT_EQ(finished.status, 0) << command << ": " << finished.err;
+  }
+}
+
+TEST_F(Commands, CommandLineOverrulesTheFile) {
+  const fs::path file = folder_.path() / "unwrap.yaml";
+  std::ofstream(file) << "unwrap:\n  max_range_m: 20\n  method: single\n";
+  ASSERT_EQ(run("unwrap", {"--config", file.string(), "--set", "unwrap.max_range_m=21"}).status, 0);
+  const std::string options = read_text(out_ / "options.yaml");
+  EXPECT_THAT(options, HasSubstr("max_range_m: 21\n"));
+  EXPECT_THAT(options, HasSubstr("method: single\n"));
+}
+
+TEST_F(Commands, QuietSaysNothing) {
+  const Finished finished = run("map", {"--quiet"});
+  EXPECT_EQ(finished.status, 0);
+  EXPECT_EQ(finished.out + finished.err, "");
+}
+
+TEST(Program, TellsVersionAndHelpOnStdout) {
+  for (const std::string flag : {"--version", "--help"}) {
+    const Finished finished = run_program({flag});
+    EXPECT_EQ(finished.status, 0) << flag;
+    EXPECT_NE(finished.out, "") << flag;
+    EXPECT_EQ(finished.err, "") << flag;
+  }
+}
+
+}  // namespace
+}  // namespace tofmap::test
