@@ -113,6 +113,24 @@ TEST(SmallLoopyGrid, FindsTheConsistentConfigurationAgainstOneMisleadingNode) {
   }
 }
 
+TEST(SmallLoopyGrid, KeepsContradictoryBeliefsFinite) {
+  // Nodes as sure as evidence can be, that cannot all be right: messages meet head on.
+  JumpProbabilities evidence = empty_nodes(6, 6);
+  std::mt19937 random(11);
+  std::uniform_int_distribution<std::size_t> configuration(0, 2);
+  for (auto* group : {&evidence.x, &evidence.y}) {
+    for (ImageF& plane : *group) plane.setConstant(1e-6F);
+    for (Eigen::Index i = 0; i < (*group)[0].size(); ++i) {
+      (*group)[configuration(random)].data()[i] = 1;
+    }
+  }
+  const JumpBeliefs beliefs = propagate_jump_beliefs(evidence, 200);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_TRUE(beliefs.marginals.x[c].isFinite().all());
+    EXPECT_TRUE(beliefs.marginals.y[c].isFinite().all());
+  }
+}
+
 TEST(CurlCount, SeesASingleJumpThatLeadsNowhere) {
   JumpConfigurations jumps;
   jumps.x = Image<std::int8_t>::Zero(3, 2);

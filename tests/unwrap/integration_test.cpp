@@ -55,7 +55,8 @@ TEST(Integration, OfTheJumpsOfAFieldGivesTheFieldBack) {
   for (int trial = 0; trial < 50; ++trial) {
     const Image<int> field = random_field(size(random), size(random), random);
     const ImageU8 valid = ImageU8::Ones(field.rows(), field.cols());
-    const RelativeCounts counts = integrate_jumps(jumps_of(field), valid);
+    const JumpProbabilities jumps = jumps_of(field);
+    const RelativeCounts counts = integrate_jumps(jumps, jumps, valid);
     ASSERT_EQ(counts.region_count, 1);
     const int constant = field(0, 0) - counts.count(0, 0);
     EXPECT_TRUE((counts.count + constant == field).all()) << "trial " << trial;
@@ -69,7 +70,7 @@ TEST(Integration, KeepsRegionsApartThatNoReturnSeparates) {
   JumpProbabilities jumps = jumps_of(field);
   for (ImageF& plane : jumps.x) plane.middleCols(1, 2).setConstant(NAN);
   for (ImageF& plane : jumps.y) plane.col(2).setConstant(NAN);
-  const RelativeCounts counts = integrate_jumps(jumps, valid);
+  const RelativeCounts counts = integrate_jumps(jumps, jumps, valid);
   EXPECT_EQ(counts.region_count, 2);
   EXPECT_NE(counts.region(0, 0), counts.region(0, 4));
   EXPECT_EQ(counts.region(0, 2), RelativeCounts::no_region);
@@ -81,7 +82,18 @@ TEST(Integration, TakesTheMostCertainPathAroundAWrongJump) {
   // A wrong jump, less certain than all others.
   jumps.x[0](1, 1) = 0.6F;
   jumps.x[1](1, 1) = 0.4F;
-  const RelativeCounts counts = integrate_jumps(jumps, ImageU8::Ones(3, 3));
+  const RelativeCounts counts = integrate_jumps(jumps, jumps, ImageU8::Ones(3, 3));
+  EXPECT_TRUE((counts.count == counts.count(0, 0)).all());
+}
+
+TEST(Integration, TrustsLeastTheNodeThatWasPersuaded) {
+  // Every belief is as good as sure, but one contradicts what its own node saw.
+  const Image<int> field = Image<int>::Zero(3, 3);
+  const JumpProbabilities evidence = jumps_of(field);
+  JumpProbabilities beliefs = evidence;
+  beliefs.x[0](1, 1) = 0.9999F;
+  beliefs.x[1](1, 1) = 0.0001F;
+  const RelativeCounts counts = integrate_jumps(beliefs, evidence, ImageU8::Ones(3, 3));
   EXPECT_TRUE((counts.count == counts.count(0, 0)).all());
 }
 

@@ -16,12 +16,13 @@ namespace {
 struct Bridge {
   int p;
   int q;
-  int step;  ///< n(q) − n(p)
-  float certainty;
+  int step;         ///< n(q) − n(p)
+  float certainty;  ///< marginal of the decided configuration
+  float rank;       ///< certainty times the node's own evidence for that configuration
 };
 
-void append_bridges(const std::array<ImageF, 3>& marginal, int image_cols, int q_from_p,
-                    std::vector<Bridge>& bridges) {
+void append_bridges(const std::array<ImageF, 3>& marginal, const std::array<ImageF, 3>& evidence,
+                    int image_cols, int q_from_p, std::vector<Bridge>& bridges) {
   for (Eigen::Index v = 0; v < marginal[0].rows(); ++v) {
     for (Eigen::Index u = 0; u < marginal[0].cols(); ++u) {
       const float minus = marginal[0](v, u);
@@ -31,27 +32,28 @@ void append_bridges(const std::array<ImageF, 3>& marginal, int image_cols, int q
       const int p = static_cast<int>(v) * image_cols + static_cast<int>(u);
       // Configuration −1 is a count that grows.
       if (none >= std::max(minus, plus)) {
-        bridges.push_back({p, p + q_from_p, 0, none});
+        bridges.push_back({p, p + q_from_p, 0, none, none * evidence[1](v, u)});
       } else if (minus >= plus) {
-        bridges.push_back({p, p + q_from_p, 1, minus});
+        bridges.push_back({p, p + q_from_p, 1, minus, minus * evidence[0](v, u)});
       } else {
-        bridges.push_back({p, p + q_from_p, -1, plus});
+        bridges.push_back({p, p + q_from_p, -1, plus, plus * evidence[2](v, u)});
       }
     }
   }
 }
 
-/// All bridges from the most certain to the least; equals stay in image order. Certainties are
-/// sorted in 4096 steps, which is linear in time and finer than they are meant.
-std::vector<Bridge> sorted_bridges(const JumpProbabilities& marginals, int image_cols) {
+/// All bridges from the highest rank to the lowest; equals stay in image order. Ranks are sorted
+/// in 4096 steps, which is linear in time and finer than they are meant.
+std::vector<Bridge> sorted_bridges(const JumpProbabilities& marginals,
+                                   const JumpProbabilities& evidence, int image_cols) {
   std::vector<Bridge> bridges;
   bridges.reserve(static_cast<std::size_t>(marginals.x[0].size() + marginals.y[0].size()));
-  append_bridges(marginals.x, image_cols, 1, bridges);
-  append_bridges(marginals.y, image_cols, image_cols, bridges);
+  append_bridges(marginals.x, evidence.x, image_cols, 1, bridges);
+  append_bridges(marginals.y, evidence.y, image_cols, image_cols, bridges);
 
   constexpr int steps = 4096;
   const auto step_of = [](const Bridge& bridge) {
-    return static_cast<std::size_t>((1 - bridge.certainty) * (steps - 1));
+    return static_cast<std::size_t>((1 - bridge.rank) * (steps - 1));
   };
   std::vector<int> first(steps + 1, 0);
   for (const Bridge& bridge : bridges) ++first[step_of(bridge) + 1];
@@ -143,13 +145,13 @@ float log_odds(float certainty) {
   return std::max(std::log(certainty / std::max(1 - certainty, 1e-6F)), 0.0F);
 }
 
-/// Grows the forest over all bridges, from the most certain to the least. `may_join(p, q, offset,
+/// Grows the forest over all bridges, from the highest rank to the lowest. `may_join(p, q, offset,
 /// bridge)` is asked before two trees with the roots p and q become one, and may note it.
 template <class MayJoin>
-RelativeCounts grow_forest(const JumpProbabilities& marginals, const ImageU8& valid,
-                           const MayJoin& may_join) {
+RelativeCounts grow_forest(const JumpProbabilities& marginals, const JumpProbabilities& evidence,
+                           const ImageU8& valid, const MayJoin& may_join) {
   OffsetUnion forest(static_cast<int>(valid.size()));
-  for (const Bridge& bridge : sorted_bridges(marginals, static_cast<int>(valid.cols()))) {
+  for (const Bridge& bridge : sorted_bridges(marginals, evidence, static_cast<int>(valid.cols()))) {
     const OffsetUnion::Place p = forest.find(bridge.p);
     const OffsetUnion::Place q = forest.find(bridge.q);
     const int offset = p.offset + bridge.step - q.offset;
@@ -162,11 +164,13 @@ RelativeCounts grow_forest(const JumpProbabilities& marginals, const ImageU8& va
 
 }  // namespace
 
-RelativeCounts integrate_jumps(const JumpProbabilities& marginals, const ImageU8& valid) {
-  return grow_forest(marginals, valid, [](int, int, int, const Bridge&) { return true; });
+RelativeCounts integrate_jumps(const JumpProbabilities& marginals,
+                               const JumpProbabilities& evidence, const ImageU8& valid) {
+  return grow_forest(marginals, evidence, valid, [](int, int, int, const Bridge&) { return true; });
 }
 
-RelativeCounts integrate_jumps_with_beat(const JumpProbabilities& marginals, const ImageU8& valid,
+RelativeCounts integrate_jumps_with_beat(const JumpProbabilities& marginals,
+                                         const JumpProbabilities& evidence, const ImageU8& valid,
                                          const BeatCost& beat, double objection_share) {
   std::vector<RegionBeat> beats = pixel_beats(valid, beat);
   const auto may_join = [&](int p, int q, int offset, const Bridge& bridge) {
@@ -179,7 +183,7 @@ RelativeCounts integrate_jumps_with_beat(const JumpProbabilities& marginals, con
     other = {};
     return true;
   };
-  return grow_forest(marginals, valid, may_join);
+  return grow_forest(marginals, evidence, valid, may_join);
 }
 
 Anchors anchor_by_beat(const RelativeCounts& counts, const BeatCost& beat) {

@@ -99,13 +99,14 @@ UnwrapResult unwrap_by_jumps(const DualFrequencyFrame& frame, const ImageU8& val
                              const BeatLimits& limits, const PhaseNoise& noise,
                              const UnwrapOptions& options) {
   const bool two_frequencies = unwrap_method(options) == UnwrapMethod::jump;
-  const JumpBeliefs beliefs =
-      propagate_jump_beliefs(jump_evidence(frame, limits, options), options.iterations);
+  const JumpProbabilities evidence = jump_evidence(frame, limits, options);
+  const JumpBeliefs beliefs = propagate_jump_beliefs(evidence, options.iterations);
   const BeatCost beat(frame, limits, noise);
   const RelativeCounts relative =
       two_frequencies
-          ? integrate_jumps_with_beat(beliefs.marginals, valid, beat, options.objection_share)
-          : integrate_jumps(beliefs.marginals, valid);
+          ? integrate_jumps_with_beat(beliefs.marginals, evidence, valid, beat,
+                                      options.objection_share)
+          : integrate_jumps(beliefs.marginals, evidence, valid);
   const Anchors anchors =
       two_frequencies ? anchor_by_beat(relative, beat) : anchor_at_zero(relative);
   const ImageU8 counts = absolute_counts(relative, anchors, limits.count_a);

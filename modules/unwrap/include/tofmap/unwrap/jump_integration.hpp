@@ -20,15 +20,19 @@ struct RelativeCounts {
 };
 
 /// Integrates jumps into counts along the most certain paths: a spanning forest is grown over
-/// the pixels (where `valid` is not 0) from the jump node whose most likely configuration is
-/// the most certain to the least; n(q) = n(p) − i. If no curl is left, the result is
-/// independent of the paths within any region without holes.
-RelativeCounts integrate_jumps(const JumpProbabilities& marginals, const ImageU8& valid);
+/// the pixels (where `valid` is not 0), jump node by jump node; n(q) = n(p) − i for the node's
+/// most likely configuration i. Nodes come in the order of the product of their marginal and
+/// their own evidence for i: beliefs on loops are too sure of themselves, so those come first
+/// that need no persuasion. If no curl is left, the result is independent of the paths within
+/// any region without holes.
+RelativeCounts integrate_jumps(const JumpProbabilities& marginals,
+                               const JumpProbabilities& evidence, const ImageU8& valid);
 
 /// The same, except that the beat may object to any join: two regions stay apart where their
 /// joint fit to the beat costs more than both fits apart by more than `objection_share` times
 /// the log odds of the jump node between them. So one wrong node cannot carry a whole region.
-RelativeCounts integrate_jumps_with_beat(const JumpProbabilities& marginals, const ImageU8& valid,
+RelativeCounts integrate_jumps_with_beat(const JumpProbabilities& marginals,
+                                         const JumpProbabilities& evidence, const ImageU8& valid,
                                          const BeatCost& beat, double objection_share);
 
 /// A count for each region that makes its relative counts absolute.
