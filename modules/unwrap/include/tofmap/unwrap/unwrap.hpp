@@ -27,7 +27,7 @@ struct UnwrapOptions {
   double trust_frequency = 0.5;      ///< c_f
   int window_px = 5;                 ///< k
   double sigma_cycles = 0.2;         ///< σ of f_d and f_f
-  double objection_share = 0.3;
+  double objection_share = 1;
 
   static std::vector<OptionField<UnwrapOptions>> fields();
 };
