@@ -145,11 +145,22 @@ TEST(CurlCount, SeesASingleJumpThatLeadsNowhere) {
 TEST(DiscontinuityTerm, IsEquationOne) {
   ImageF phase(1, 2);
   phase << 0.9F, 0.1F;
-  const JumpProbabilities f_d = discontinuity_term(phase, 0.15);
+  const JumpProbabilities f_d = discontinuity_term(phase, ImageF::Zero(1, 2), 0.15);
   // exp(−(0.1 − 0.9 − i)² / (2 · 0.15²)) for i = −1, 0, 1
   EXPECT_NEAR(f_d.x[0](0, 0), 0.411112F, 1e-5F);
   EXPECT_NEAR(f_d.x[1](0, 0), 6.7e-7F, 1e-7F);
   EXPECT_NEAR(f_d.x[2](0, 0), 0.0F, 1e-12F);
+}
+
+TEST(DiscontinuityTerm, BelievesNoisyPhasesLess) {
+  ImageF phase(1, 2);
+  phase << 0.9F, 0.1F;
+  ImageF noise(1, 2);
+  noise << 0.12F, 0.16F;
+  // 0.15² + 0.12² + 0.16² = 0.25²
+  const JumpProbabilities noisy = discontinuity_term(phase, noise, 0.15);
+  const JumpProbabilities wide = discontinuity_term(phase, ImageF::Zero(1, 2), 0.25);
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(noisy.x[c](0, 0), wide.x[c](0, 0), 1e-6F);
 }
 
 TEST(SideMedians, AreCutShortAtBordersAndPassOverMissingPixels) {

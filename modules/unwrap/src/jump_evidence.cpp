@@ -13,15 +13,26 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// exp(−(difference − i)² / 2σ²) for the three configurations; NaN differences stay NaN.
-std::array<ImageF, 3> gaussian_of_configurations(const ImageF& difference, double sigma_cycles) {
-  const auto scale = static_cast<float>(-0.5 / (sigma_cycles * sigma_cycles));
+/// exp(−(difference − i)² / 2σ²) for the three configurations, with σ² of every node; NaN
+/// differences stay NaN.
+std::array<ImageF, 3> gaussian_of_configurations(const ImageF& difference, const ImageF& variance) {
   std::array<ImageF, 3> term;
   for (int i = -1; i <= 1; ++i) {
     term[static_cast<std::size_t>(i + 1)] =
-        (scale * (difference - static_cast<float>(i)).square()).exp();
+        (-0.5F * (difference - static_cast<float>(i)).square() / variance).exp();
   }
   return term;
+}
+
+/// Two values of neighbours, summed at the node between them.
+ImageF neighbour_sum_x(const ImageF& image) {
+  const Eigen::Index nodes = std::max<Eigen::Index>(image.cols() - 1, 0);
+  return image.rightCols(nodes) + image.leftCols(nodes);
+}
+
+ImageF neighbour_sum_y(const ImageF& image) {
+  const Eigen::Index nodes = std::max<Eigen::Index>(image.rows() - 1, 0);
+  return image.bottomRows(nodes) + image.topRows(nodes);
 }
 
 ImageF forward_difference_x(const ImageF& image) {
@@ -105,9 +116,14 @@ std::array<ImageF, 3> fuse_planes(const std::array<ImageF, 3>& f_d,
 
 }  // namespace
 
-JumpProbabilities discontinuity_term(const ImageF& phase, double sigma_cycles) {
-  return {gaussian_of_configurations(forward_difference_x(phase), sigma_cycles),
-          gaussian_of_configurations(forward_difference_y(phase), sigma_cycles)};
+JumpProbabilities discontinuity_term(const ImageF& phase, const ImageF& noise_cycles,
+                                     double sigma_cycles) {
+  const auto slope_variance = static_cast<float>(sigma_cycles * sigma_cycles);
+  const ImageF noise_variance = noise_cycles.square();
+  return {gaussian_of_configurations(forward_difference_x(phase),
+                                     neighbour_sum_x(noise_variance) + slope_variance),
+          gaussian_of_configurations(forward_difference_y(phase),
+                                     neighbour_sum_y(noise_variance) + slope_variance)};
 }
 
 SideMedians side_medians_x(const ImageF& image, int window_px) {
@@ -124,8 +140,13 @@ JumpProbabilities frequency_term(const ImageF& phase, const ImageF& reconstructi
                                    side_medians_x(phase, window_px));
   const ImageF y = wrap_difference(side_medians_y(reconstruction_cycles, window_px),
                                    side_medians_y(phase, window_px));
-  return {gaussian_of_configurations(where_present(x, forward_difference_x(phase)), sigma_cycles),
-          gaussian_of_configurations(where_present(y, forward_difference_y(phase)), sigma_cycles)};
+  const auto variance = [&](const ImageF& nodes) -> ImageF {
+    return ImageF::Constant(nodes.rows(), nodes.cols(),
+                            static_cast<float>(sigma_cycles * sigma_cycles));
+  };
+  return {
+      gaussian_of_configurations(where_present(x, forward_difference_x(phase)), variance(x)),
+      gaussian_of_configurations(where_present(y, forward_difference_y(phase)), variance(y))};
 }
 
 JumpProbabilities fuse(const JumpProbabilities& f_d, const JumpProbabilities& f_f, double c_d,

@@ -5,9 +5,8 @@
 
 #include "confidence.hpp"
 #include "tofmap/unwrap/beat.hpp"
-#include "tofmap/unwrap/jump_evidence.hpp"
+#include "tofmap/unwrap/jump_estimate.hpp"
 #include "tofmap/unwrap/jump_integration.hpp"
-#include "tofmap/unwrap/jump_propagation.hpp"
 #include "tofmap/unwrap/phase_noise.hpp"
 
 #include <algorithm>
@@ -81,32 +80,18 @@ ImageU8 absolute_counts(const RelativeCounts& relative, const Anchors& anchors, 
   return counts;
 }
 
-JumpProbabilities jump_evidence(const DualFrequencyFrame& frame, const BeatLimits& limits,
-                                const UnwrapOptions& options) {
-  const JumpProbabilities f_d = discontinuity_term(frame.phase_a, options.sigma_cycles);
-  if (unwrap_method(options) == UnwrapMethod::single) {
-    return fuse(f_d, f_d, options.trust_discontinuity, 0);
-  }
-  const ImageF reconstruction =
-      reconstruct_cycles(frame.phase_a, nearest_pair_counts(frame, limits));
-  const JumpProbabilities f_f =
-      frequency_term(frame.phase_a, reconstruction, options.window_px, options.sigma_cycles);
-  return fuse(f_d, f_f, options.trust_discontinuity, options.trust_frequency);
-}
-
 /// The paper: evidence, propagation, integration, anchors.
 UnwrapResult unwrap_by_jumps(const DualFrequencyFrame& frame, const ImageU8& valid,
                              const BeatLimits& limits, const PhaseNoise& noise,
                              const UnwrapOptions& options) {
   const bool two_frequencies = unwrap_method(options) == UnwrapMethod::jump;
-  const JumpProbabilities evidence = jump_evidence(frame, limits, options);
-  const JumpBeliefs beliefs = propagate_jump_beliefs(evidence, options.iterations);
+  const JumpEstimate jumps = estimate_jumps(frame, limits, noise, options);
+  const JumpBeliefs& beliefs = jumps.beliefs;
   const BeatCost beat(frame, limits, noise);
   const RelativeCounts relative =
-      two_frequencies
-          ? integrate_jumps_with_beat(beliefs.marginals, evidence, valid, beat,
-                                      options.objection_share)
-          : integrate_jumps(beliefs.marginals, evidence, valid);
+      two_frequencies ? integrate_jumps_with_beat(beliefs.marginals, jumps.evidence, valid, beat,
+                                                  options.objection_share)
+                      : integrate_jumps(beliefs.marginals, jumps.evidence, valid);
   const Anchors anchors =
       two_frequencies ? anchor_by_beat(relative, beat) : anchor_at_zero(relative);
   const ImageU8 counts = absolute_counts(relative, anchors, limits.count_a);
@@ -168,7 +153,7 @@ std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
        "c_f: trust in the difference of the two frequencies"},
       {"window_px", &O::window_px, 1, 99, "px", "k: pixels on each side of a jump in the medians"},
       {"sigma_cycles", &O::sigma_cycles, 0.001, 10, "cycles",
-       "sigma of the phase difference of neighbours"},
+       "sigma of f_d and f_f: of true differences between neighbours; noise comes on top"},
       {"objection_share", &O::objection_share, 0, 1e6, "",
        "regions stay apart where the beat objects by more than this share of a jump's log odds"},
   };

@@ -21,8 +21,11 @@ struct JumpProbabilities {
 };
 
 /// Equation 1: f_d(i) = exp(−(φ(q) − φ(p) − i)² / 2σ²), of wrapped phases in cycles. Absent
-/// where either phase is NaN.
-JumpProbabilities discontinuity_term(const ImageF& phase, double sigma_cycles);
+/// where either phase is NaN. σ² is that of the paper, the variance of true differences between
+/// neighbours (`sigma_cycles`), plus the variances of the noise of p and q (`noise_cycles`, a
+/// standard deviation a pixel): a noisy difference says little.
+JumpProbabilities discontinuity_term(const ImageF& phase, const ImageF& noise_cycles,
+                                     double sigma_cycles);
 
 /// Medians along one direction on both sides of every jump node (figure 6 of the paper):
 /// `neg` over the k pixels up to and with p, `pos` over the k pixels from q on. NaNs are left

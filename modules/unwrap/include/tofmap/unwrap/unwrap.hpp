@@ -26,7 +26,7 @@ struct UnwrapOptions {
   double trust_discontinuity = 0.9;  ///< c_d of the paper
   double trust_frequency = 0.5;      ///< c_f
   int window_px = 5;                 ///< k
-  double sigma_cycles = 0.2;         ///< σ of f_d and f_f
+  double sigma_cycles = 0.07;        ///< σ of f_d and f_f
   double objection_share = 1;
 
   static std::vector<OptionField<UnwrapOptions>> fields();
