@@ -3,15 +3,12 @@
 
 #include "command.hpp"
 
+#include "options.hpp"
+
 #include <CLI/CLI.hpp>
 #include <omp.h>
 
 namespace tofmap::app {
-
-std::vector<OptionField<RunOptions>> RunOptions::fields() {
-  return {{"threads", &RunOptions::threads, 0, 1024, "",
-           "threads to use; 0: all. The result is the same for any number"}};
-}
 
 void CommonArguments::add_to(CLI::App& command) {
   command.add_option("--config", config, "YAML file with options, see 'tofmap config'");
@@ -22,11 +19,14 @@ void CommonArguments::add_to(CLI::App& command) {
   command.add_flag("--quiet", quiet, "no progress and no summary");
 }
 
-void CommonArguments::resolve(OptionTable& table, RunOptions& run) const {
-  if (!config.empty()) table.load(config, AllOptions().table());
+OptionTable CommonArguments::resolve(const std::string& command, ProgramOptions& options) const {
+  OptionTable table = option_table(command, options);
+  ProgramOptions defaults;
+  if (!config.empty()) table.load(config, option_table("", defaults));
   for (const std::string& assignment : assignments) table.assign(assignment);
-  if (threads >= 0) run.threads = threads;
-  if (run.threads > 0) omp_set_num_threads(run.threads);
+  if (threads >= 0) options.run.threads = threads;
+  if (options.run.threads > 0) omp_set_num_threads(options.run.threads);
+  return table;
 }
 
 }  // namespace tofmap::app

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,25 +23,7 @@ inline constexpr int bad_input = 3;
 inline constexpr int interrupted = 130;
 }  // namespace exit_status
 
-/// Options that every command has.
-struct RunOptions {
-  int threads = 0;
-
-  static std::vector<OptionField<RunOptions>> fields();
-};
-
-/// The options of all commands, at their defaults.
-class AllOptions {
- public:
-  AllOptions();
-  ~AllOptions();
-  const OptionTable& table() const { return table_; }
-
- private:
-  struct Values;
-  std::unique_ptr<Values> values_;
-  OptionTable table_;
-};
+struct ProgramOptions;
 
 /// What every command takes from the command line: --config, --set, --threads, --quiet.
 struct CommonArguments {
@@ -53,10 +34,10 @@ struct CommonArguments {
 
   void add_to(CLI::App& command);
 
-  /// Sets the table's options from the file, then from --set; then applies the threads. Groups
-  /// of the file that are other commands' alone are passed over.
-  /// The table must hold `run` at its top level.
-  void resolve(OptionTable& table, RunOptions& run) const;
+  /// The options of a command: defaults, then the file's, then those of --set; applies the
+  /// threads. Groups of the file that are other commands' alone are passed over. The table is
+  /// bound to `options`.
+  OptionTable resolve(const std::string& command, ProgramOptions& options) const;
 };
 
 /// Where commands leave their exit status.
@@ -69,10 +50,7 @@ void add_info_command(CLI::App& program, Outcome& outcome);
 void add_unwrap_command(CLI::App& program, Outcome& outcome);
 void add_map_command(CLI::App& program, Outcome& outcome);
 void add_evaluate_command(CLI::App& program, Outcome& outcome);
+void add_view_command(CLI::App& program, Outcome& outcome);
 void add_config_command(CLI::App& program, Outcome& outcome);
-
-/// Every option of a command with its default, unit, range and meaning, as YAML; of all
-/// commands, if none is named. Throws UsageError for a command that has none.
-std::string command_options_yaml(const std::string& command);
 
 }  // namespace tofmap::app

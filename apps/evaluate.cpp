@@ -4,6 +4,7 @@
 #include "command.hpp"
 #include "frame_report.hpp"
 #include "interruption.hpp"
+#include "options.hpp"
 #include "output_folder.hpp"
 #include "progress.hpp"
 
@@ -22,6 +23,7 @@
 #include <tofmap/evaluation/range_score.hpp>
 #include <tofmap/evaluation/trajectory_score.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
+#include <tofmap/visualization/map_pictures.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -158,6 +160,19 @@ void print_table(const Json& report) {
   }
 }
 
+/// The map of every method from above, all in the frame of the last one: the paper's.
+void write_comparison(const std::filesystem::path& folder, const std::vector<MethodResult>& results,
+                      const PictureOptions& options) {
+  if (results.empty()) return;
+  const RoomMap& best = results.back().map;
+  const LevelFrame frame = level_frame(best.surface, best.trajectory);
+  for (const MethodResult& result : results) {
+    write_picture(
+        folder / ("map_" + result.name + ".png"),
+        map_from_above(result.map.surface, result.map.trajectory, frame, options.map_size_px));
+  }
+}
+
 void say_what_is_missing(const SequenceReader& source, const Truth& truth) {
   if (truth.poses.empty()) {
     std::fprintf(stderr, "tofmap: %s has no groundtruth.txt: no trajectory or map error\n",
@@ -170,27 +185,26 @@ void say_what_is_missing(const SequenceReader& source, const Truth& truth) {
 }
 
 int run_evaluate(const EvaluateArguments& arguments) {
-  RunOptions run;
-  PipelineOptions options;
-  OptionTable table;
-  table.bind("", run);
-  bind_options(table, options);
-  arguments.common.resolve(table, run);
+  ProgramOptions options;
+  const OptionTable table = arguments.common.resolve("evaluate", options);
 
   const SequenceReader source(arguments.sequence);
   const Truth truth = read_truth(source, pixel_rays(source.sensor().camera));
   if (!arguments.common.quiet) say_what_is_missing(source, truth);
   OutputFolder out(arguments.out);
   Json report;
+  std::vector<MethodResult> results;
   for (const char* method : methods) {
-    const MethodResult result =
-        run_method(method, arguments.sequence, options, truth, arguments.common.quiet);
+    MethodResult result =
+        run_method(method, arguments.sequence, options.pipeline, truth, arguments.common.quiet);
     if (result.map.interrupted) break;
     refuse_mostly_damaged(result.map);
     add_to_report(report, result);
     write_map(out.make(method) / "map.ply", result.map.surface);
     write_trajectory(out.path() / method / "trajectory.txt", result.map.trajectory);
+    results.push_back(std::move(result));
   }
+  try_to_draw([&] { write_comparison(out.make("pictures"), results, options.pictures); });
   const bool interrupted = is_interrupted();
   report["interrupted"] = interrupted;
   out.write_text("report.json", report.dump(1) + "\n");

@@ -3,6 +3,7 @@
 
 #include "command.hpp"
 #include "interruption.hpp"
+#include "options.hpp"
 
 #include <cstdio>
 #include <memory>
@@ -78,10 +79,8 @@ void print_frames(const SequenceReader& source, const FrameSurvey& survey) {
 }
 
 int run_info(const InfoArguments& arguments) {
-  RunOptions run;
-  OptionTable table;
-  table.bind("", run);
-  arguments.common.resolve(table, run);
+  ProgramOptions options;
+  arguments.common.resolve("info", options);
   const SequenceReader source(arguments.sequence);
   const FrameSurvey survey = survey_frames(source);
   print_sensor(source.sensor());

@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/visualization/drawing.hpp>
 
 namespace {
 
@@ -33,6 +34,7 @@ int run(int argc, char** argv) {
   add_unwrap_command(program, outcome);
   add_map_command(program, outcome);
   add_evaluate_command(program, outcome);
+  add_view_command(program, outcome);
   add_config_command(program, outcome);
   try {
     program.parse(argc, argv);
@@ -53,6 +55,8 @@ int main(int argc, char** argv) {
     return fail(exit_status::bad_use, error.what());
   } catch (const tofmap::InputError& error) {
     return fail(exit_status::bad_input, error.what());
+  } catch (const tofmap::DrawingError& error) {
+    return fail(exit_status::own_fault, error.what());
   } catch (const std::exception& error) {
     return fail(exit_status::own_fault, std::string("internal error: ") + error.what());
   }

@@ -4,6 +4,7 @@
 #include "command.hpp"
 #include "frame_report.hpp"
 #include "interruption.hpp"
+#include "options.hpp"
 #include "output_folder.hpp"
 #include "progress.hpp"
 
@@ -51,16 +52,13 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
   std::printf("%zu of %zu frames registered, %zu keyframes, %zu map points\n",
               map.trajectory.size(), map.frames.size(), map.keyframes.size(), map.surface.size());
   if (map.damaged() > 0) std::printf("%d frames were damaged, see report.json\n", map.damaged());
-  std::printf("map: %s\n", (folder / "map.ply").c_str());
+  std::printf("map: %s\npictures: %s\n", (folder / "map.ply").c_str(),
+              (folder / "pictures").c_str());
 }
 
 int run_map(const MapArguments& arguments) {
-  RunOptions run;
-  PipelineOptions options;
-  OptionTable table;
-  table.bind("", run);
-  bind_options(table, options);
-  arguments.common.resolve(table, run);
+  ProgramOptions options;
+  OptionTable table = arguments.common.resolve("map", options);
   if (!arguments.method.empty()) table.set("unwrap.method", arguments.method);
 
   SequenceReader source(arguments.sequence);
@@ -73,10 +71,16 @@ int run_map(const MapArguments& arguments) {
       progress.show(done);
       return !is_interrupted();
     };
-    map = map_room(source, options, hooks);
+    map = map_room(source, options.pipeline, hooks);
   }
   check_result(map);
   write_result(out, map, table.to_yaml(false));
+  try_to_draw([&] {
+    const std::filesystem::path folder = out.make("pictures");
+    write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
+    if (map.interrupted) return;
+    write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures);
+  });
   out.commit();
   if (!arguments.common.quiet) print_summary(map, out.final_path());
   return map.interrupted ? exit_status::interrupted : exit_status::done;

@@ -3,6 +3,7 @@
 
 #include "command.hpp"
 #include "interruption.hpp"
+#include "options.hpp"
 #include "output_folder.hpp"
 #include "progress.hpp"
 
@@ -25,16 +26,12 @@ struct SimulateArguments {
 };
 
 int run_simulate(const SimulateArguments& arguments) {
-  RunOptions run;
-  SimulatorOptions options;
-  OptionTable table;
-  table.bind("", run);
-  table.bind("simulator", options);
-  arguments.common.resolve(table, run);
-  if (arguments.seed >= 0) options.seed = arguments.seed;
-  if (arguments.frames >= 0) options.frames = arguments.frames;
+  ProgramOptions options;
+  OptionTable table = arguments.common.resolve("simulate", options);
+  if (arguments.seed >= 0) options.simulator.seed = arguments.seed;
+  if (arguments.frames >= 0) options.simulator.frames = arguments.frames;
 
-  const Simulator simulator(find_scene(arguments.scene), options);
+  const Simulator simulator(find_scene(arguments.scene), options.simulator);
   OutputFolder out(arguments.out, Replaces::recordings);
   const int total = *simulator.frame_count();
   int written = 0;

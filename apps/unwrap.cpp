@@ -4,6 +4,7 @@
 #include "command.hpp"
 #include "frame_report.hpp"
 #include "interruption.hpp"
+#include "options.hpp"
 #include "output_folder.hpp"
 #include "progress.hpp"
 
@@ -38,11 +39,6 @@ struct UnwrapArguments {
   double min_confidence = 0;
   bool with_filters = false;
   CommonArguments common;
-};
-
-struct UnwrapRun {
-  UnwrapOptions unwrap;
-  FilterOptions filters;
 };
 
 /// 16-bit millimetres, 0 = invalid.
@@ -81,7 +77,7 @@ struct UnwrappedFrame {
 
 /// Unwraps one frame and writes its images; what became of it is in the report.
 UnwrappedFrame unwrap_frame(const SequenceReader& source, int index, const PixelRays& rays,
-                            const UnwrapRun& options, const UnwrapArguments& arguments,
+                            const PipelineOptions& options, const UnwrapArguments& arguments,
                             const std::filesystem::path& out) {
   const SourcedFrame sourced = source.read(index);
   if (!sourced.frame) return {damaged_json(sourced), true, sourced.damage};
@@ -115,7 +111,7 @@ UnwrappedFrame unwrap_frame(const SequenceReader& source, int index, const Pixel
 
 /// All frames from `begin` to `end`, side by side.
 std::vector<UnwrappedFrame> unwrap_batch(const SequenceReader& source, int begin, int end,
-                                         const PixelRays& rays, const UnwrapRun& options,
+                                         const PixelRays& rays, const PipelineOptions& options,
                                          const UnwrapArguments& arguments,
                                          const std::filesystem::path& out) {
   std::vector<UnwrappedFrame> frames(static_cast<std::size_t>(end - begin));
@@ -156,17 +152,12 @@ Json summary(const Json& frames, int damaged, bool interrupted) {
 }
 
 int run_unwrap(const UnwrapArguments& arguments) {
-  RunOptions run;
-  UnwrapRun options;
-  OptionTable table;
-  table.bind("", run);
-  table.bind("unwrap", options.unwrap);
-  table.bind("filters", options.filters);
-  arguments.common.resolve(table, run);
+  ProgramOptions options;
+  OptionTable table = arguments.common.resolve("unwrap", options);
   if (!arguments.method.empty()) table.set("unwrap.method", arguments.method);
 
   const SequenceReader source(arguments.sequence);
-  limit_to_image_format(options.unwrap, source.sensor());
+  limit_to_image_format(options.pipeline.unwrap, source.sensor());
   OutputFolder out(arguments.out);
   for (const char* name : {"range", "wraps", "confidence"}) out.make(name);
   if (arguments.with_filters) out.make("reason");
@@ -180,7 +171,8 @@ int run_unwrap(const UnwrapArguments& arguments) {
     Progress progress("unwrapping frame", total, arguments.common.quiet);
     for (int begin = 0; begin < total && !is_interrupted();) {
       const int end = std::min(total, begin + omp_get_max_threads());
-      for (auto& frame : unwrap_batch(source, begin, end, rays, options, arguments, out.path())) {
+      for (auto& frame :
+           unwrap_batch(source, begin, end, rays, options.pipeline, arguments, out.path())) {
         damaged += frame.is_damaged ? 1 : 0;
         if (first_damage.empty()) first_damage = frame.damage;
         frames.push_back(std::move(frame.report));
@@ -191,6 +183,12 @@ int run_unwrap(const UnwrapArguments& arguments) {
   refuse_mostly_damaged(damaged, static_cast<int>(frames.size()), first_damage);
   const bool interrupted = static_cast<int>(frames.size()) < total;
   const Json report = {{"frames", frames}, {"summary", summary(frames, damaged, interrupted)}};
+  if (!interrupted && options.pictures.frames > 0) {
+    try_to_draw([&] {
+      write_frame_pictures(out.path() / "pictures", source, options.pipeline.unwrap,
+                           options.pictures);
+    });
+  }
   out.write_text("report.json", report.dump(1) + "\n");
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit();

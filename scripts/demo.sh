@@ -24,6 +24,7 @@ tofmap="$build/apps/tofmap"
 
 echo
 echo "recording:                 $out/recording"
-echo "map with unwrapping:       $out/map/map.ply"
+echo "map with unwrapping:       $out/map/map.ply, look at it with: $tofmap view $out/map"
 echo "map without (for compare): $out/map_wrapped/map.ply"
-echo "figures of all methods:    $out/evaluation/report.json"
+echo "pictures of both maps:     $out/map/pictures, $out/map_wrapped/pictures"
+echo "figures of all methods:    $out/evaluation/report.json, maps in $out/evaluation/pictures"

@@ -145,6 +145,58 @@ TEST_F(Commands, MapTakesTheOptionsItWrote) {
   EXPECT_EQ(read_text(out_ / "options.yaml"), options);
 }
 
+TEST_F(Commands, UnwrapDrawsAFewFrames) {
+  ASSERT_EQ(run("unwrap", {"--set", "pictures.frames=2"}).status, 0);
+  EXPECT_THAT(
+      names_in(out_ / "pictures"),
+      ElementsAre("000001_cloud.png", "000001_jumps.png", "000001_range.png", "000001_wraps.png",
+                  "000003_cloud.png", "000003_jumps.png", "000003_range.png", "000003_wraps.png"));
+}
+
+TEST_F(Commands, MapDrawsTheRoom) {
+  ASSERT_EQ(run("map").status, 0);
+  EXPECT_THAT(names_in(out_ / "pictures"), ElementsAre("map_above.png", "map_inside.png"));
+}
+
+TEST_F(Commands, ViewMakesAPictureOfWhateverThereIsToSee) {
+  ASSERT_EQ(run("map").status, 0);
+  const fs::path picture = folder_.path() / "view.png";
+  for (const fs::path& path : {out_, out_ / "map.ply", sequence_, sequence_ / "scene.ply"}) {
+    for (const std::string from : {"outside", "above", "inside"}) {
+      fs::remove(picture);
+      const Finished finished =
+          run_program({"view", path.string(), "--screenshot", picture.string(), "--from", from,
+                       "--width", "160", "--height", "120"});
+      EXPECT_EQ(finished.status, 0) << path << finished.err;
+      EXPECT_THAT(read_text(picture).substr(1, 3), "PNG") << path;
+    }
+  }
+}
+
+TEST_F(Commands, ViewNamesWhatItCannotShow) {
+  const fs::path picture = folder_.path() / "view.png";
+  std::ofstream(folder_.path() / "notes.ply") << "no ply";
+  fs::create_directory(folder_.path() / "empty");
+  for (const std::string name : {"missing", "notes.ply", "empty"}) {
+    const Finished finished =
+        run_program({"view", (folder_.path() / name).string(), "--screenshot", picture.string()});
+    EXPECT_EQ(finished.status, 3) << name;
+    EXPECT_THAT(finished.err, HasSubstr(name));
+  }
+  EXPECT_EQ(
+      run_program({"view", sequence_.string(), "--frame", "99", "--screenshot", picture.string()})
+          .status,
+      2);
+  EXPECT_FALSE(fs::exists(picture));
+}
+
+TEST_F(Commands, ViewWithoutADisplayNamesTheRemedy) {
+  unsetenv("DISPLAY");
+  const Finished finished = run_program({"view", sequence_.string()});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_THAT(finished.err, HasSubstr("--screenshot"));
+}
+
 TEST_F(Commands, EvaluateComparesTheMethods) {
   const Finished finished = run("evaluate");
   ASSERT_EQ(finished.status, 0) << finished.err;

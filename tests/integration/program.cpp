@@ -108,6 +108,9 @@ Finished WithRecording::run(const std::string& command,
                             const std::vector<std::string>& more) const {
   std::vector<std::string> arguments{command, sequence_.string()};
   if (command != "info") arguments.insert(arguments.end(), {"--out", out_.string()});
+  if (command == "unwrap" || command == "map") {
+    arguments.insert(arguments.end(), {"--set", "pictures.frames=0"});
+  }
   arguments.insert(arguments.end(), more.begin(), more.end());
   return run_program(arguments);
 }

@@ -60,7 +60,8 @@ class WithRecording : public testing::Test {
 
   void SetUp() override;
 
-  /// Runs `command SEQ --out OUT` and more arguments.
+  /// Runs `command SEQ --out OUT` and more arguments; without pictures of frames, which take most
+  /// of the time, unless they are asked for.
   Finished run(const std::string& command, const std::vector<std::string>& more = {}) const;
 
   /// Replaces the first `old_text` in a file of the recording.

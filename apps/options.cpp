@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "options.hpp"
+
+#include <algorithm>
+#include <initializer_list>
+#include <string_view>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap::app {
+
+std::vector<OptionField<RunOptions>> RunOptions::fields() {
+  return {{"threads", &RunOptions::threads, 0, 1024, "",
+           "threads to use; 0: all. The result is the same for any number"}};
+}
+
+OptionTable option_table(const std::string& command, ProgramOptions& options) {
+  const auto is_any_of = [&](std::initializer_list<std::string_view> names) {
+    return command.empty() || std::ranges::find(names, command) != names.end();
+  };
+  if (!is_any_of({"simulate", "info", "unwrap", "map", "evaluate", "view"})) {
+    throw UsageError("'" + command +
+                     "' is no command with options; there are: simulate, info, unwrap, map, "
+                     "evaluate, view");
+  }
+  OptionTable table;
+  table.bind("", options.run);
+  if (is_any_of({"simulate"})) table.bind("simulator", options.simulator);
+  if (is_any_of({"map", "evaluate"})) {
+    bind_options(table, options.pipeline);
+  } else if (is_any_of({"unwrap", "view"})) {
+    table.bind("unwrap", options.pipeline.unwrap);
+    table.bind("filters", options.pipeline.filters);
+  }
+  if (is_any_of({"unwrap", "map", "evaluate"})) table.bind("pictures", options.pictures);
+  return table;
+}
+
+}  // namespace tofmap::app

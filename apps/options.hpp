@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "pictures.hpp"
+
+#include <string>
+
+#include <tofmap/acquisition/simulator.hpp>
+#include <tofmap/core/option_table.hpp>
+#include <tofmap/pipeline/pipeline.hpp>
+
+namespace tofmap::app {
+
+/// Options that every command has.
+struct RunOptions {
+  int threads = 0;
+
+  static std::vector<OptionField<RunOptions>> fields();
+};
+
+/// The options of all commands; each uses its own groups.
+struct ProgramOptions {
+  RunOptions run;
+  SimulatorOptions simulator;
+  PipelineOptions pipeline;
+  PictureOptions pictures;
+};
+
+/// The groups of one command, or of all if `command` is empty, bound to `options`, which must
+/// outlive the table. Throws UsageError for a command that has no options.
+OptionTable option_table(const std::string& command, ProgramOptions& options);
+
+}  // namespace tofmap::app

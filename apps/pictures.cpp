@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "pictures.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include <tofmap/unwrap/jump_estimate.hpp>
+#include <tofmap/visualization/cloud_pictures.hpp>
+#include <tofmap/visualization/drawing.hpp>
+#include <tofmap/visualization/frame_pictures.hpp>
+#include <tofmap/visualization/map_pictures.hpp>
+
+namespace tofmap::app {
+namespace {
+
+/// Indices in the middles of `wanted` equal parts of a recording.
+std::vector<int> spread_indices(int total, int wanted) {
+  std::vector<int> indices;
+  const int count = std::min(total, wanted);
+  for (int i = 0; i < count; ++i) indices.push_back((2 * i + 1) * total / (2 * count));
+  return indices;
+}
+
+bool finds_jumps(const UnwrapOptions& options) {
+  const UnwrapMethod method = unwrap_method(options);
+  return method == UnwrapMethod::jump || method == UnwrapMethod::single;
+}
+
+/// Each term by itself, fused, and after propagation; probabilities sum to one in all of them.
+Picture jump_stages_picture(const DualFrequencyFrame& frame, const SensorModel& sensor,
+                            const UnwrapOptions& options) {
+  const JumpEstimate jumps = estimate_jumps(frame, beat_limits(sensor, options.max_range_m),
+                                            estimate_phase_noise(frame), options);
+  constexpr double full_trust = 1;
+  constexpr double no_trust = 0;
+  const bool has_frequency = jumps.frequency.x[0].size() > 0;
+  const JumpProbabilities& f_d = jumps.discontinuity;
+  const JumpProbabilities& f_f = has_frequency ? jumps.frequency : f_d;
+  const JumpProbabilities by_discontinuity = fuse(f_d, f_f, full_trust, no_trust);
+  const JumpProbabilities by_frequency = fuse(f_d, f_f, no_trust, full_trust);
+  std::vector<JumpStage> stages{
+      {"discontinuity term f_d", &by_discontinuity.x, &by_discontinuity.y}};
+  if (has_frequency) {
+    stages.push_back({"frequency term f_f", &by_frequency.x, &by_frequency.y});
+    stages.push_back({"fused", &jumps.evidence.x, &jumps.evidence.y});
+  }
+  stages.push_back({"after propagation", &jumps.beliefs.marginals.x, &jumps.beliefs.marginals.y});
+  return jump_picture(stages);
+}
+
+void write_pictures_of(const DualFrequencyFrame& frame, const SensorModel& sensor,
+                       const PixelRays& rays, const UnwrapOptions& options,
+                       const std::filesystem::path& stem) {
+  const RangeImage unwrapped = unwrap(frame, sensor, options).image;
+  const auto wavelength_m = static_cast<float>(sensor.modulation.wavelength_a_m());
+  const ImageF wrapped_m = (unwrapped.reason == 0).select(frame.phase_a * wavelength_m, NAN);
+  const auto write = [&](const char* what, const Picture& picture) {
+    write_picture(stem.string() + "_" + what + ".png", picture);
+  };
+  write("range", range_picture(wrapped_m, unwrapped.range_m));
+  write("wraps", wrap_count_picture(unwrapped.wrap_count));
+  if (finds_jumps(options)) write("jumps", jump_stages_picture(frame, sensor, options));
+  write("cloud", cloud_picture(unwrapped, wrapped_m, rays));
+}
+
+}  // namespace
+
+std::vector<OptionField<PictureOptions>> PictureOptions::fields() {
+  using O = PictureOptions;
+  return {
+      {"frames", &O::frames, 0, 100000, "",
+       "frames to draw, spread evenly over the recording; 0: none"},
+      {"map_size_px", &O::map_size_px, 100, 8000, "px", "longer side of the map's pictures"},
+  };
+}
+
+void write_frame_pictures(const std::filesystem::path& folder, const SequenceReader& source,
+                          const UnwrapOptions& unwrap, const PictureOptions& options) {
+  std::filesystem::create_directories(folder);
+  const PixelRays rays = pixel_rays(source.sensor().camera);
+  for (const int index : spread_indices(*source.frame_count(), options.frames)) {
+    const SourcedFrame frame = source.read(index);
+    if (!frame.frame) continue;
+    const auto& file = source.files()[static_cast<std::size_t>(index)];
+    write_pictures_of(*frame.frame, source.sensor(), rays, unwrap, folder / file.phase_a.stem());
+  }
+}
+
+void write_map_pictures(const std::filesystem::path& folder, const MapCloud& map,
+                        const Trajectory& trajectory, const PictureOptions& options) {
+  const LevelFrame frame = level_frame(map, trajectory);
+  write_picture(folder / "map_above.png",
+                map_from_above(map, trajectory, frame, options.map_size_px));
+  write_picture(folder / "map_inside.png",
+                map_from_inside(map, trajectory, frame, options.map_size_px));
+}
+
+std::string try_to_draw(const std::function<void()>& step) {
+  try {
+    step();
+  } catch (const DrawingError& error) {
+    std::fprintf(stderr, "tofmap: no pictures: %s\n", error.what());
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace tofmap::app

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/cloud/cloud_file.hpp>
+#include <tofmap/core/option_table.hpp>
+#include <tofmap/core/trajectory.hpp>
+#include <tofmap/unwrap/unwrap.hpp>
+
+namespace tofmap::app {
+
+/// Which pictures a result gets, group `pictures`.
+struct PictureOptions {
+  int frames = 3;
+  int map_size_px = 1200;
+
+  static std::vector<OptionField<PictureOptions>> fields();
+};
+
+/// Writes ranges, wrap counts, jump probabilities and clouds of a few frames, spread evenly over
+/// the recording, as `<frame>_<what>.png` into a new folder. Damaged frames have none.
+void write_frame_pictures(const std::filesystem::path& folder, const SequenceReader& source,
+                          const UnwrapOptions& unwrap, const PictureOptions& options);
+
+/// Writes the map from above and from inside, as map_above.png and map_inside.png, into a folder
+/// that is there.
+void write_map_pictures(const std::filesystem::path& folder, const MapCloud& map,
+                        const Trajectory& trajectory, const PictureOptions& options);
+
+/// Runs a step that draws; where there is nothing to draw with, says so on stderr and goes on, as
+/// a result without pictures is better than none. Returns what went wrong, or nothing.
+std::string try_to_draw(const std::function<void()>& step);
+
+}  // namespace tofmap::app

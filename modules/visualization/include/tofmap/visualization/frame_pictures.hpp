@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <tofmap/core/image.hpp>
+#include <tofmap/core/range_image.hpp>
+#include <tofmap/visualization/picture.hpp>
+
+namespace tofmap {
+
+/// Wrapped and unwrapped ranges (radial, metres, NaN invalid) side by side, on one colour scale
+/// from 0 to the farthest, with a legend in metres.
+Picture range_picture(const ImageF& wrapped_m, const ImageF& unwrapped_m);
+
+/// The wrap counts of an image, with a legend of the counts that occur.
+Picture wrap_count_picture(const ImageU8& wrap_count);
+
+/// The probabilities of jump nodes, as in figure 7 of the paper: a row a stage, the nodes in x
+/// direction left and those in y direction right. Planes are of configurations −1, 0, +1.
+struct JumpStage {
+  std::string title;
+  const std::array<ImageF, 3>* x = nullptr;
+  const std::array<ImageF, 3>* y = nullptr;
+};
+Picture jump_picture(const std::vector<JumpStage>& stages);
+
+}  // namespace tofmap

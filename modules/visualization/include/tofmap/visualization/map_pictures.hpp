@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <tofmap/cloud/cloud_file.hpp>
+#include <tofmap/core/trajectory.hpp>
+#include <tofmap/visualization/drawing.hpp>
+
+namespace tofmap {
+
+/// A map set upright: level frame with z up and walls along x and y, the longer way along x, and
+/// the box that holds all of it but strays. Several maps can be drawn in the frame of one, to
+/// compare them.
+struct LevelFrame {
+  Eigen::Matrix3d level_from_map = Eigen::Matrix3d::Identity();
+  Eigen::AlignedBox3d box_m;  ///< level frame; empty if there is no point
+};
+
+/// Finds the vertical, near the cameras' own upward direction, to which most surfaces are level or
+/// upright; then turns the walls along the axes. `trajectory` may be empty: then the cameras'
+/// upward direction is −y of the map. Deterministic.
+LevelFrame level_frame(const MapCloud& map, const Trajectory& trajectory);
+
+/// The map in its level frame, coloured by height above the lowest surface, and the camera's path.
+Drawing map_drawing(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame);
+
+/// From outside and above a corner, so that all of the box is in the picture.
+Viewpoint viewpoint_outside(const Eigen::AlignedBox3d& box_m);
+
+/// From the place on the camera's path that shows the most of the map, wider than the camera saw;
+/// from outside if there is no path. `drawing` is the map's; `aspect` is width over height.
+Viewpoint viewpoint_inside(const Drawing& drawing, const Trajectory& trajectory,
+                           const LevelFrame& frame, double aspect);
+
+/// The map from straight above, in parallel projection, with the camera's path, a legend of
+/// height, and a scale in metres. The longer side of the map is `size_px` long.
+Picture map_from_above(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame,
+                       int size_px);
+
+/// The map as seen from inside, with a legend of height.
+Picture map_from_inside(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame,
+                        int width_px);
+
+}  // namespace tofmap

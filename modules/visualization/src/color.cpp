@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/visualization/color.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+/// From dark to light; in between colours are mixed linearly, over steps short enough for it.
+constexpr std::array<Rgb, 9> scale_colors{{{24, 16, 80},
+                                           {30, 48, 128},
+                                           {22, 82, 152},
+                                           {16, 114, 158},
+                                           {24, 144, 150},
+                                           {64, 172, 128},
+                                           {128, 196, 100},
+                                           {196, 214, 84},
+                                           {252, 232, 112}}};
+
+std::uint8_t mixed(std::uint8_t a, std::uint8_t b, double share) {
+  return static_cast<std::uint8_t>(std::lround(a + (b - a) * share));
+}
+
+std::uint8_t to_byte(float share) {
+  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0F, 1.0F)));
+}
+
+}  // namespace
+
+ColorScale::ColorScale(double low, double high, std::string label)
+    : low_(low), high_(high), label_(std::move(label)) {
+  if (!(low < high)) {
+    throw UsageError("color scale: low is " + std::to_string(low) + " and high " +
+                     std::to_string(high) + "; low must be less than high");
+  }
+}
+
+Rgb ColorScale::operator()(double value) const {
+  if (std::isnan(value)) return colors::invalid;
+  constexpr auto steps = static_cast<double>(scale_colors.size() - 1);
+  const double place = std::clamp((value - low_) / (high_ - low_), 0.0, 1.0) * steps;
+  const auto step = static_cast<std::size_t>(std::min(std::floor(place), steps - 1));
+  const Rgb& a = scale_colors[step];
+  const Rgb& b = scale_colors[step + 1];
+  const double share = place - static_cast<double>(step);
+  return {mixed(a.red, b.red, share), mixed(a.green, b.green, share), mixed(a.blue, b.blue, share)};
+}
+
+std::vector<double> ColorScale::ticks(int count) const {
+  const double rough = (high_ - low_) / std::max(1, count);
+  const double power = std::pow(10, std::floor(std::log10(rough)));
+  double step = 10 * power;
+  for (const double round : {5.0, 2.0, 1.0}) {
+    if (round * power >= rough) step = round * power;
+  }
+  std::vector<double> out;
+  for (double i = std::ceil(low_ / step - 1e-9); i * step <= high_ + 1e-9 * step; ++i) {
+    out.push_back(i * step + 0.0);  // no −0
+  }
+  return out;
+}
+
+Rgb wrap_count_color(int count) {
+  // The palette of Okabe and Ito, made to be told apart by everyone; 0 is light.
+  constexpr std::array<Rgb, 8> palette{{{240, 228, 66},
+                                        {0, 114, 178},
+                                        {230, 159, 0},
+                                        {0, 158, 115},
+                                        {204, 121, 167},
+                                        {86, 180, 233},
+                                        {213, 94, 0},
+                                        {0, 0, 0}}};
+  return palette[static_cast<std::size_t>(count) % palette.size()];
+}
+
+Rgb jump_color(float minus, float none, float plus) {
+  if (std::isnan(minus + none + plus)) return colors::invalid;
+  return {to_byte(plus), to_byte(none), to_byte(minus)};
+}
+
+}  // namespace tofmap

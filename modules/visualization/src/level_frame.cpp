@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/visualization/map_pictures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <vector>
+
+namespace tofmap {
+namespace {
+
+/// The mean of the cameras' upward directions; −y of the map if there is no camera.
+Eigen::Vector3d upward_of_cameras(const Trajectory& trajectory) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const StampedPose& pose : trajectory) sum -= pose.world_from_camera.linear().col(1);
+  return sum.norm() > 1e-3 ? sum.normalized() : Eigen::Vector3d(0, -1, 0);
+}
+
+/// Every so many normals, so that there are about `count`.
+std::vector<Eigen::Vector3d> some_normals(const MapCloud& map, std::size_t count) {
+  std::vector<Eigen::Vector3d> normals;
+  const std::size_t step = std::max<std::size_t>(1, map.size() / count);
+  for (std::size_t i = 0; i < map.size(); i += step) {
+    const Eigen::Vector3d normal = map[i].getNormalVector3fMap().cast<double>();
+    if (normal.allFinite()) normals.push_back(normal);
+  }
+  return normals;
+}
+
+constexpr double same_direction_rad = 8 * std::numbers::pi / 180;
+
+/// How many normals a room with this vertical explains: those of its floors and of its walls.
+int count_explained(const std::vector<Eigen::Vector3d>& normals, const Eigen::Vector3d& up) {
+  const double floor_cosine = std::cos(same_direction_rad);
+  const double wall_cosine = std::sin(same_direction_rad);
+  return static_cast<int>(std::ranges::count_if(normals, [&](const Eigen::Vector3d& normal) {
+    const double cosine = normal.dot(up);
+    return cosine > floor_cosine || std::abs(cosine) < wall_cosine;
+  }));
+}
+
+/// The vertical that explains most normals, of those that a floor or table of the map has, not too
+/// far from a guess; the guess if there is none.
+Eigen::Vector3d upward_of_room(const MapCloud& map, const Eigen::Vector3d& guess) {
+  constexpr double farthest_rad = 50 * std::numbers::pi / 180;
+  const std::vector<Eigen::Vector3d> normals = some_normals(map, 4000);
+  Eigen::Vector3d best = guess;
+  int most = 0;
+  for (const Eigen::Vector3d& candidate : some_normals(map, 600)) {
+    if (candidate.dot(guess) < std::cos(farthest_rad)) continue;
+    const int explained = count_explained(normals, candidate);
+    if (explained <= most) continue;
+    most = explained;
+    best = candidate;
+  }
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& normal : normals) {
+    if (normal.dot(best) > std::cos(same_direction_rad)) sum += normal;
+  }
+  return sum.norm() > 0 ? sum.normalized() : best;
+}
+
+/// The direction of most walls, modulo a quarter turn: the phase of the mean of exp(4 i α).
+double wall_angle_rad(const MapCloud& map, const Eigen::Matrix3d& level_from_map) {
+  std::complex<double> sum = 0;
+  for (const MapPoint& point : map) {
+    const Eigen::Vector3d normal = level_from_map * point.getNormalVector3fMap().cast<double>();
+    if (!(std::abs(normal.z()) < 0.3)) continue;
+    sum += std::polar(1.0, 4 * std::atan2(normal.y(), normal.x()));
+  }
+  return std::arg(sum) / 4;
+}
+
+/// The limits of all values but strays, one in two hundred at either end.
+std::pair<double, double> limits(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t strays = values.size() / 200;
+  return {values[strays], values[values.size() - 1 - strays]};
+}
+
+/// The same frame with x where −y was and y where x was.
+LevelFrame turned_by_a_quarter(const LevelFrame& frame) {
+  Eigen::Matrix3d turn;
+  turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  const Eigen::Vector3d low = frame.box_m.min();
+  const Eigen::Vector3d high = frame.box_m.max();
+  return {turn * frame.level_from_map,
+          Eigen::AlignedBox3d(Eigen::Vector3d(-high.y(), low.x(), low.z()),
+                              Eigen::Vector3d(-low.y(), high.x(), high.z()))};
+}
+
+}  // namespace
+
+LevelFrame level_frame(const MapCloud& map, const Trajectory& trajectory) {
+  LevelFrame frame;
+  if (map.empty()) return frame;
+  const Eigen::Vector3d up = upward_of_room(map, upward_of_cameras(trajectory));
+  frame.level_from_map =
+      Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  frame.level_from_map =
+      Eigen::AngleAxisd(-wall_angle_rad(map, frame.level_from_map), Eigen::Vector3d::UnitZ()) *
+      frame.level_from_map;
+
+  std::array<std::vector<double>, 3> coordinates;
+  for (const MapPoint& point : map) {
+    const Eigen::Vector3d p = frame.level_from_map * point.getVector3fMap().cast<double>();
+    for (int axis = 0; axis < 3; ++axis) {
+      coordinates[static_cast<std::size_t>(axis)].push_back(p[axis]);
+    }
+  }
+  Eigen::Vector3d low;
+  Eigen::Vector3d high;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::tie(low[axis], high[axis]) =
+        limits(std::move(coordinates[static_cast<std::size_t>(axis)]));
+  }
+  frame.box_m = Eigen::AlignedBox3d(low, high);
+  return frame.box_m.sizes().y() > frame.box_m.sizes().x() ? turned_by_a_quarter(frame) : frame;
+}
+
+}  // namespace tofmap

@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/visualization/map_pictures.hpp"
+
+#include "text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tofmap {
+namespace {
+
+constexpr int gap_px = 16;
+
+ColorScale height_scale(const LevelFrame& frame) {
+  const double height_m = frame.box_m.isEmpty() ? 0 : frame.box_m.sizes().z();
+  return {0, std::max(0.1, height_m), "height, m"};
+}
+
+/// The spacing of map points: how far the nearest of a few neighbours in the file is, as points
+/// of a voxel grid are stored in its order.
+float typical_spacing_m(const MapCloud& map) {
+  std::vector<float> steps;
+  for (std::size_t i = 1; i < map.size(); ++i) {
+    steps.push_back((map[i].getVector3fMap() - map[i - 1].getVector3fMap()).norm());
+  }
+  if (steps.empty()) return 0.04F;
+  const auto place = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 4);
+  std::nth_element(steps.begin(), place, steps.end());
+  return std::clamp(*place, 0.005F, 0.2F);
+}
+
+/// A bar of a round length below the picture, and that length.
+Picture with_scale_bar(const Picture& picture, double metres_per_px) {
+  double length_m = 1;
+  for (const double round : {2.0, 5.0, 10.0, 20.0}) {
+    if (round < 0.3 * picture.width_px * metres_per_px) length_m = round;
+  }
+  const int length_px = static_cast<int>(std::lround(length_m / metres_per_px));
+  const Picture label = text_picture(short_number(length_m) + " m", text_size_px);
+  Picture bar(std::max(length_px, label.width_px), text_size_px);
+  fill(bar, 0, text_size_px / 2 - 2, length_px, 4, colors::black);
+  fill(bar, 0, 2, 2, text_size_px - 4, colors::black);
+  fill(bar, length_px - 2, 2, 2, text_size_px - 4, colors::black);
+  return stacked({picture, beside({bar, label}, gap_px / 2)}, gap_px / 2);
+}
+
+Viewpoint viewpoint_of(const Pose& level_from_camera, double vertical_fov_deg) {
+  Viewpoint viewpoint;
+  viewpoint.eye_m = level_from_camera.translation();
+  viewpoint.target_m = level_from_camera * Eigen::Vector3d::UnitZ();
+  viewpoint.up = Eigen::Vector3d::UnitZ();
+  viewpoint.vertical_fov_deg = vertical_fov_deg;
+  return viewpoint;
+}
+
+/// How many points a camera there sees, as far as their normals face it; walls hide nothing.
+int count_seen(const PointLayer& layer, const Pose& level_from_camera, double tangent_x,
+               double tangent_y) {
+  const Eigen::Isometry3f camera_from_level = level_from_camera.inverse().cast<float>();
+  const Eigen::Vector3f eye = level_from_camera.translation().cast<float>();
+  int seen = 0;
+  for (std::size_t i = 0; i < layer.points_m.size(); ++i) {
+    const Eigen::Vector3f p = camera_from_level * layer.points_m[i];
+    const bool in_view =
+        p.z() > 0.3F && std::abs(p.x()) < tangent_x * p.z() && std::abs(p.y()) < tangent_y * p.z();
+    const bool faces = layer.normals.empty() || layer.normals[i].dot(eye - layer.points_m[i]) > 0;
+    seen += in_view && faces ? 1 : 0;
+  }
+  return seen;
+}
+
+}  // namespace
+
+Drawing map_drawing(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame) {
+  const ColorScale scale = height_scale(frame);
+  const Eigen::Matrix3f level_from_map = frame.level_from_map.cast<float>();
+  const double floor_m = frame.box_m.isEmpty() ? 0 : frame.box_m.min().z();
+  PointLayer layer;
+  layer.size_m = 1.6F * typical_spacing_m(map);  // overlap a little, so that no gaps show
+  const bool has_normals =
+      std::ranges::all_of(map, [](const MapPoint& point) { return std::isfinite(point.normal_z); });
+  for (const MapPoint& point : map) {
+    const Eigen::Vector3f p = level_from_map * point.getVector3fMap();
+    if (!p.allFinite()) continue;
+    layer.points_m.push_back(p);
+    layer.colors.push_back(scale(p.z() - floor_m));
+    if (has_normals) layer.normals.push_back(level_from_map * point.getNormalVector3fMap());
+  }
+  LineLayer path{{}, colors::path, 2.5F};
+  for (const StampedPose& pose : trajectory) {
+    path.points_m.push_back(
+        (frame.level_from_map * pose.world_from_camera.translation()).cast<float>());
+  }
+  return {{std::move(layer)}, {std::move(path)}, {}};
+}
+
+Viewpoint viewpoint_outside(const Eigen::AlignedBox3d& box_m) {
+  Viewpoint viewpoint;
+  viewpoint.vertical_fov_deg = 40;
+  viewpoint.up = Eigen::Vector3d::UnitZ();
+  if (box_m.isEmpty()) return viewpoint;
+  const Eigen::Vector3d backward = Eigen::Vector3d(-0.45, -0.62, 0.64).normalized();
+  const Eigen::Vector3d right = viewpoint.up.cross(backward).normalized();
+  const Eigen::Vector3d upward = backward.cross(right);
+  // The distance from which the farthest corner is still within the picture, and a little more.
+  constexpr double narrowest_aspect = 1.2;
+  const double tangent = std::tan(viewpoint.vertical_fov_deg / 2 * std::numbers::pi / 180);
+  double distance_m = 0.1;
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto type = static_cast<Eigen::AlignedBox3d::CornerType>(corner);
+    const Eigen::Vector3d offset = box_m.corner(type) - box_m.center();
+    const double extent =
+        std::max(std::abs(offset.dot(upward)), std::abs(offset.dot(right)) / narrowest_aspect);
+    distance_m = std::max(distance_m, offset.dot(backward) + 1.05 * extent / tangent);
+  }
+  viewpoint.target_m = box_m.center();
+  viewpoint.eye_m = viewpoint.target_m + distance_m * backward;
+  return viewpoint;
+}
+
+Picture map_from_above(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame,
+                       int size_px) {
+  if (frame.box_m.isEmpty()) return titled(Picture(size_px, size_px / 2), "the map is empty");
+  constexpr double margin_m = 0.3;
+  const Eigen::Vector3d size = frame.box_m.sizes().array() + 2 * margin_m;
+  const double metres_per_px = std::max(size.x(), size.y()) / size_px;
+  const int width_px = static_cast<int>(std::ceil(size.x() / metres_per_px));
+  const int height_px = static_cast<int>(std::ceil(size.y() / metres_per_px));
+  Viewpoint viewpoint;
+  viewpoint.target_m = frame.box_m.center();
+  viewpoint.eye_m = viewpoint.target_m + 2 * size.z() * Eigen::Vector3d::UnitZ();
+  viewpoint.up = Eigen::Vector3d::UnitY();
+  viewpoint.parallel_height_m = height_px * metres_per_px;
+  const Picture picture = draw(map_drawing(map, trajectory, frame), viewpoint, width_px, height_px);
+  const Picture legend = stacked({color_bar(height_scale(frame), std::min(height_px, 400)),
+                                  color_key({{colors::path, "camera"}})},
+                                 gap_px);
+  return with_margin(beside({with_scale_bar(picture, metres_per_px), legend}, gap_px), gap_px);
+}
+
+Viewpoint viewpoint_inside(const Drawing& drawing, const Trajectory& trajectory,
+                           const LevelFrame& frame, double aspect) {
+  if (trajectory.empty()) return viewpoint_outside(frame.box_m);
+  constexpr double vertical_fov_deg = 62;
+  const double tangent_y = std::tan(vertical_fov_deg / 2 * std::numbers::pi / 180);
+  constexpr std::size_t candidates = 24;
+  const std::size_t step = std::max<std::size_t>(1, trajectory.size() / candidates);
+  Pose best = Pose::Identity();
+  int most = -1;
+  for (std::size_t i = 0; i < trajectory.size(); i += step) {
+    const Pose pose = Pose(frame.level_from_map) * trajectory[i].world_from_camera;
+    const int seen = count_seen(drawing.points.front(), pose, aspect * tangent_y, tangent_y);
+    if (seen > most) {
+      most = seen;
+      best = pose;
+    }
+  }
+  return viewpoint_of(best, vertical_fov_deg);
+}
+
+Picture map_from_inside(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame,
+                        int width_px) {
+  constexpr double aspect = 1.6;
+  const int height_px = static_cast<int>(width_px / aspect);
+  if (frame.box_m.isEmpty()) return titled(Picture(width_px, height_px), "the map is empty");
+  Drawing drawing = map_drawing(map, trajectory, frame);
+  drawing.lines.clear();
+  const Viewpoint viewpoint = viewpoint_inside(drawing, trajectory, frame, aspect);
+  const Picture picture = draw(drawing, viewpoint, width_px, height_px);
+  return with_margin(beside({picture, color_bar(height_scale(frame), 400)}, gap_px), gap_px);
+}
+
+}  // namespace tofmap

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Debian's VTK opens windows through X alone. Drawing without a display goes through a window of
+// VTK's that leaves the OpenGL context to its user: here one of EGL, without any surface.
+
+#include "renderer.hpp"
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkWindowToImageFilter.h>
+#include <vtk_glew.h>
+
+namespace tofmap {
+namespace {
+
+[[noreturn]] void fail(const std::string& what) {
+  throw DrawingError("cannot draw without a display: " + what +
+                     "; install the packages libegl1 and libgl1-mesa-dri");
+}
+
+/// An OpenGL context without window or surface, current while it lives.
+class SurfacelessContext {
+ public:
+  SurfacelessContext() : display_(open_display()) {
+    if (!eglBindAPI(EGL_OPENGL_API)) fail("EGL has no OpenGL");
+    const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, EGL_PBUFFER_BIT,
+                             EGL_NONE};
+    EGLConfig config = nullptr;
+    EGLint count = 0;
+    if (!eglChooseConfig(display_, wanted, &config, 1, &count) || count == 0) {
+      fail("EGL offers no configuration");
+    }
+    const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 2, EGL_NONE};
+    context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, version);
+    if (context_ == EGL_NO_CONTEXT) fail("there is no OpenGL 3.2");
+    if (!eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) {
+      eglDestroyContext(display_, context_);
+      fail("the OpenGL context cannot be used");
+    }
+  }
+  SurfacelessContext(const SurfacelessContext&) = delete;
+  SurfacelessContext& operator=(const SurfacelessContext&) = delete;
+  ~SurfacelessContext() {
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display_, context_);
+  }
+
+ private:
+  /// Opened once and kept: EGL gives the same display every time.
+  static EGLDisplay open_display() {
+    const auto get_platform_display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
+        eglGetProcAddress("eglGetPlatformDisplayEXT"));
+    if (!get_platform_display) fail("EGL knows no platforms");
+    EGLDisplay display =
+        get_platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+    if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) {
+      fail("there is no surfaceless EGL display");
+    }
+    return display;
+  }
+
+  EGLDisplay display_;
+  EGLContext context_ = EGL_NO_CONTEXT;
+};
+
+/// VTK's window for contexts of others.
+class OffscreenWindow : public vtkGenericOpenGLRenderWindow {
+ public:
+  static OffscreenWindow* New();
+  vtkTypeMacro(OffscreenWindow, vtkGenericOpenGLRenderWindow);
+
+  /// GLEW as Debian builds it reports an error when no X display is open, after it has found all
+  /// functions of OpenGL; VTK would stop there.
+  void OpenGLInitContext() override {
+    ContextCreationTime.Modified();
+    if (Initialized) return;
+    glewInit();
+    GlewInitValid = true;  // the context was asked for OpenGL 3.2
+    Initialized = true;
+  }
+
+  bool IsCurrent() override { return true; }
+};
+
+vtkStandardNewMacro(OffscreenWindow);
+
+Picture grab(vtkRenderWindow& window) {
+  vtkNew<vtkWindowToImageFilter> filter;
+  filter->SetInput(&window);
+  filter->SetInputBufferTypeToRGB();
+  filter->ReadFrontBufferOff();
+  filter->Update();
+  vtkImageData* image = filter->GetOutput();
+  const int* size = image->GetDimensions();
+  Picture picture(size[0], size[1]);
+  for (int y = 0; y < size[1]; ++y) {
+    // VTK counts rows from the bottom.
+    const auto* row =
+        static_cast<const unsigned char*>(image->GetScalarPointer(0, size[1] - 1 - y, 0));
+    for (int x = 0; x < size[0]; ++x, row += 3) picture.at(x, y) = {row[0], row[1], row[2]};
+  }
+  return picture;
+}
+
+}  // namespace
+
+Picture draw(const Drawing& drawing, const Viewpoint& viewpoint, int width_px, int height_px) {
+  const SurfacelessContext context;
+  vtkNew<OffscreenWindow> window;
+  window->SetReadyForRendering(true);
+  window->SetSize(width_px, height_px);
+  window->SetMultiSamples(0);
+  window->AddRenderer(make_renderer(drawing, viewpoint));
+  window->Render();
+  return grab(*window);
+}
+
+}  // namespace tofmap

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <tofmap/visualization/cloud_pictures.hpp>
+#include <tofmap/visualization/frame_pictures.hpp>
+
+namespace tofmap {
+namespace {
+
+int count(const Picture& picture, Rgb color) {
+  return static_cast<int>(std::ranges::count(picture.pixels, color));
+}
+
+TEST(RangePicture, ShowsBothImagesOnOneScale) {
+  ImageF wrapped = ImageF::Constant(10, 20, 2);
+  ImageF unwrapped = ImageF::Constant(10, 20, 7);
+  wrapped(0, 0) = NAN;
+  unwrapped(0, 0) = NAN;
+  const Picture picture = range_picture(wrapped, unwrapped);
+  const ColorScale scale(0, 7, "range, m");
+  const int square = (530 / 20) * (530 / 20);
+  // All but one pixel of each; the legend's bar has a few of the same colours.
+  EXPECT_NEAR(count(picture, scale(2)), 199 * square, square);
+  EXPECT_NEAR(count(picture, scale(7)), 199 * square, square);
+  EXPECT_GE(count(picture, colors::invalid), 2 * square);
+}
+
+TEST(RangePicture, OfAFrameWithoutReturnsIsDrawnAllTheSame) {
+  const ImageF none = ImageF::Constant(10, 20, NAN);
+  EXPECT_GT(count(range_picture(none, none), colors::invalid), 0);
+}
+
+TEST(WrapCountPicture, HasAColorForEveryCount) {
+  ImageU8 counts = ImageU8::Zero(10, 20);
+  counts.rightCols(5).setConstant(3);
+  counts.leftCols(1).setConstant(invalid_wrap_count);
+  const Picture picture = wrap_count_picture(counts);
+  const int square = (530 / 20) * (530 / 20);
+  EXPECT_NEAR(count(picture, wrap_count_color(0)), 140 * square, square);
+  EXPECT_NEAR(count(picture, wrap_count_color(3)), 50 * square, square);
+  EXPECT_NEAR(count(picture, colors::invalid), 10 * square, square);
+  EXPECT_EQ(count(picture, wrap_count_color(1)), 0) << "the legend names what occurs alone";
+}
+
+TEST(JumpPicture, MixesColorsByProbability) {
+  std::array<ImageF, 3> x;
+  for (ImageF& plane : x) plane = ImageF::Zero(10, 19);
+  x[1].setConstant(1);
+  std::array<ImageF, 3> y = x;
+  x[0].col(4).setConstant(1);
+  x[1].col(4).setConstant(0);
+  const Picture picture = jump_picture({{"result", &x, &y}});
+  const int square = (530 / 19) * (530 / 19);
+  EXPECT_NEAR(count(picture, jump_color(1, 0, 0)), 10 * square, square);
+  EXPECT_NEAR(count(picture, jump_color(0, 1, 0)), (180 + 190) * square, square);
+}
+
+TEST(CloudPicture, ShowsCorrectedPixelsInRed) {
+  CameraModel camera;
+  camera.width_px = 40;
+  camera.height_px = 30;
+  camera.fx_px = camera.fy_px = 40;
+  camera.cx_px = 19.5;
+  camera.cy_px = 14.5;
+  RangeImage image(30, 40);
+  image.range_m.setConstant(3);
+  image.wrap_count.setZero();
+  image.reason.setZero();
+  ImageF wrapped = image.range_m;
+  const PixelRays rays = pixel_rays(camera);
+  const auto dots = [&] { return count(cloud_picture(image, wrapped, rays), colors::corrected); };
+  const int legend_alone = dots();
+  image.range_m.leftCols(20).setConstant(7);
+  image.wrap_count.leftCols(20).setConstant(1);
+  wrapped.leftCols(20).setConstant(1.8F);
+  EXPECT_GT(dots(), legend_alone + 500);
+}
+
+TEST(CloudPicture, OfAFrameWithoutReturnsIsDrawnAllTheSame) {
+  CameraModel camera;
+  camera.width_px = camera.height_px = 8;
+  camera.fx_px = camera.fy_px = 8;
+  const PixelRays rays = pixel_rays(camera);
+  const RangeImage none(8, 8);
+  EXPECT_GT(cloud_picture(none, none.range_m, rays).width_px, 0);
+}
+
+}  // namespace
+}  // namespace tofmap
