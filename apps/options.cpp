@@ -34,6 +34,7 @@ OptionTable option_table(const std::string& command, ProgramOptions& options) {
     table.bind("unwrap", options.pipeline.unwrap);
     table.bind("filters", options.pipeline.filters);
   }
+  if (is_any_of({"evaluate"})) table.bind("evaluation", options.evaluation);
   if (is_any_of({"unwrap", "map", "evaluate"})) table.bind("pictures", options.pictures);
   return table;
 }

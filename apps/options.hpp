@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "method_run.hpp"
 #include "pictures.hpp"
 
 #include <string>
@@ -24,6 +25,7 @@ struct ProgramOptions {
   RunOptions run;
   SimulatorOptions simulator;
   PipelineOptions pipeline;
+  EvaluationOptions evaluation;
   PictureOptions pictures;
 };
 

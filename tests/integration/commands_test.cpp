@@ -213,6 +213,28 @@ TEST_F(Commands, EvaluateComparesTheMethods) {
             report["unwrapping"]["none"]["wrong_wrap_percent"]);
 }
 
+TEST_F(Commands, EvaluateComparesTheMethodsThatAreNamedAsFarAsAskedFor) {
+  ASSERT_EQ(run("evaluate",
+                {"--set", "evaluation.methods=jump none", "--set", "evaluation.down_to=unwrapping"})
+                .status,
+            0);
+  const auto report = read_json(out_ / "report.json");
+  EXPECT_EQ(report["unwrapping"].size(), 2);
+  EXPECT_LT(report["unwrapping"]["jump"]["wrong_wrap_percent"], 5);
+  EXPECT_GT(report["unwrapping"]["none"]["wrong_wrap_percent"], 10);
+  EXPECT_FALSE(report.contains("trajectory"));
+  EXPECT_FALSE(report.contains("map"));
+  EXPECT_THAT(names_in(out_), ElementsAre("options.yaml", "report.json"));
+}
+
+TEST_F(Commands, EvaluateRefusesMethodsThatThereAreNot) {
+  for (const std::string methods : {"jump guess", "jump jump", " "}) {
+    const Finished finished = run("evaluate", {"--set", "evaluation.methods=" + methods});
+    EXPECT_EQ(finished.status, 2) << methods;
+    EXPECT_THAT(finished.err, HasSubstr("evaluation.methods"));
+  }
+}
+
 TEST_F(Commands, ConfigOfACommandCanBeFedBack) {
   const Finished config = run_program({"config", "unwrap"});
   ASSERT_EQ(config.status, 0);

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "evaluation_report.hpp"
+
+#include "frame_report.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+namespace tofmap::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has no NaN: what could not be had is null.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json unwrapping_json(const MethodResult& result) {
+  Json json;
+  std::vector<RangeScore> scores;
+  double milliseconds = 0;
+  double iterations = 0;
+  double converged = 0;
+  for (const UnwrappingRecord& frame : result.frames) {
+    if (frame.score) scores.push_back(*frame.score);
+    milliseconds += frame.milliseconds;
+    iterations += frame.iterations;
+    converged += frame.converged ? 1 : 0;
+  }
+  if (!scores.empty()) {
+    const RangeScore mean = mean_score(scores);
+    json["wrong_wrap_percent"] = number(mean.wrong_wrap_percent);
+    json["coverage_percent"] = number(mean.coverage_percent);
+    json["range_rmse_m"] = number(mean.range_rmse_m);
+  }
+  const auto count = static_cast<double>(result.frames.size());
+  json["converged_percent"] = number(100 * converged / count);
+  json["iterations_per_frame"] = number(iterations / count);
+  json["milliseconds_per_frame"] = number(milliseconds / count);
+  return json;
+}
+
+Json trajectory_json(const MethodResult& result) {
+  Json json = {{"registered_frames", result.map->trajectory.size()}};
+  if (!result.trajectory) return json;
+  json["ate_rmse_m"] = number(result.trajectory->ate_rmse_m);
+  json["ate_max_m"] = number(result.trajectory->ate_max_m);
+  json["rpe_rmse_m_per_m"] = number(result.trajectory->rpe_rmse_m_per_m);
+  json["rpe_rmse_deg_per_m"] = number(result.trajectory->rpe_rmse_deg_per_m);
+  return json;
+}
+
+Json map_json(const MethodResult& result) {
+  Json json = {{"points", result.map->surface.size()}};
+  if (result.surface) {
+    json["accuracy_m"] = number(result.surface->accuracy_m);
+    json["far_percent"] = number(result.surface->far_percent);
+    json["completeness_percent"] = number(result.surface->completeness_percent);
+  }
+  json["milliseconds_per_frame"] = summary_json(*result.map)["milliseconds_per_frame"];
+  return json;
+}
+
+struct Column {
+  const char* group;
+  const char* metric;
+  const char* title;
+  const char* unit;
+  const char* format;
+};
+
+constexpr std::array columns{
+    Column{"unwrapping", "wrong_wrap_percent", "wrong", "wraps %", "%.3f"},
+    Column{"unwrapping", "range_rmse_m", "range", "RMSE m", "%.3f"},
+    Column{"unwrapping", "milliseconds_per_frame", "unwrap", "ms/frame", "%.1f"},
+    Column{"trajectory", "registered_frames", "frames", "placed", "%.0f"},
+    Column{"trajectory", "ate_rmse_m", "ATE", "RMSE m", "%.4f"},
+    Column{"trajectory", "rpe_rmse_m_per_m", "RPE", "m per m", "%.4f"},
+    Column{"map", "accuracy_m", "map", "error m", "%.4f"},
+    Column{"map", "completeness_percent", "map", "seen %", "%.1f"},
+    Column{"map", "milliseconds_per_frame", "all", "ms/frame", "%.1f"}};
+
+std::string cell(const Json& report, const Column& column, const std::string& method) {
+  const auto group = report.find(column.group);
+  if (group == report.end() || !group->contains(method)) return "-";
+  const Json& values = (*group)[method];
+  if (!values.contains(column.metric) || !values[column.metric].is_number()) return "-";
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), column.format, values[column.metric].get<double>());
+  return text.data();
+}
+
+}  // namespace
+
+void add_to_report(Json& report, const MethodResult& result) {
+  report["unwrapping"][result.name] = unwrapping_json(result);
+  if (!result.map) return;
+  report["trajectory"][result.name] = trajectory_json(result);
+  report["map"][result.name] = map_json(result);
+}
+
+void print_table(const Json& report) {
+  const auto is_there = [&](const Column& column) { return report.contains(column.group); };
+  const auto print_line = [&](const std::string& name, const auto& text_of) {
+    std::printf("%-8s", name.c_str());
+    for (const Column& column : columns) {
+      if (is_there(column)) std::printf(" %10s", std::string(text_of(column)).c_str());
+    }
+    std::printf("\n");
+  };
+  print_line("method", [](const Column& column) { return column.title; });
+  print_line("", [](const Column& column) { return column.unit; });
+  for (const auto& [method, values] : report["unwrapping"].items()) {
+    print_line(method,
+               [&, &name = method](const Column& column) { return cell(report, column, name); });
+  }
+}
+
+}  // namespace tofmap::app

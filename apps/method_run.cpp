@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "method_run.hpp"
+
+#include "frame_report.hpp"
+#include "interruption.hpp"
+#include "progress.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <sstream>
+#include <string_view>
+
+#include <omp.h>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap::app {
+namespace {
+
+constexpr std::array<std::string_view, 4> all_methods{"none", "pixel", "single", "jump"};
+
+/// The true pose of a frame; nothing if none is within half a frame of a slow camera.
+std::optional<Pose> true_pose(const Trajectory& poses, double timestamp_s) {
+  constexpr double max_gap_s = 0.02;
+  for (const StampedPose& pose : poses) {
+    if (std::abs(pose.timestamp_s - timestamp_s) < max_gap_s) return pose.world_from_camera;
+  }
+  return std::nullopt;
+}
+
+UnwrappingRecord record_of(const UnwrapResult& unwrapped, double milliseconds,
+                           const SequenceReader& recording, int index) {
+  UnwrappingRecord record;
+  record.milliseconds = milliseconds;
+  record.iterations = unwrapped.iterations;
+  record.converged = unwrapped.converged;
+  if (const auto truth = recording.range_truth(index)) {
+    const double wavelength_m = recording.sensor().modulation.wavelength_a_m();
+    record.score = score_ranges(unwrapped.image, *truth, wavelength_m);
+  }
+  return record;
+}
+
+/// What became of a frame that was only unwrapped.
+struct UnwrappedFrame {
+  std::optional<UnwrappingRecord> record;
+  std::string damage;
+};
+
+UnwrappedFrame unwrap_frame(const SequenceReader& recording, int index,
+                            const UnwrapOptions& options) {
+  const SourcedFrame sourced = recording.read(index);
+  if (!sourced.frame) return {std::nullopt, sourced.damage};
+  const auto start = std::chrono::steady_clock::now();
+  const UnwrapResult unwrapped = unwrap(*sourced.frame, recording.sensor(), options);
+  const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
+  return {record_of(unwrapped, spent.count(), recording, index), ""};
+}
+
+std::vector<UnwrappedFrame> unwrap_batch(const SequenceReader& recording, int begin, int end,
+                                         const UnwrapOptions& options) {
+  std::vector<UnwrappedFrame> frames(static_cast<std::size_t>(end - begin));
+  std::vector<std::exception_ptr> errors(frames.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int i = begin; i < end; ++i) {
+    try {
+      frames[i - begin] = unwrap_frame(recording, i, options);
+    } catch (...) {
+      errors[i - begin] = std::current_exception();
+    }
+  }
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+  return frames;
+}
+
+}  // namespace
+
+std::vector<OptionField<EvaluationOptions>> EvaluationOptions::fields() {
+  using O = EvaluationOptions;
+  return {
+      {"methods", &O::methods, 0, 0, "",
+       "methods to compare, separated by spaces: none, pixel, single, jump"},
+      {"down_to", &O::down_to, 0, 0, "", "how far to go", "unwrapping | map"},
+  };
+}
+
+std::vector<std::string> method_names(const EvaluationOptions& options) {
+  std::vector<std::string> names;
+  std::istringstream words(options.methods);
+  for (std::string name; words >> name;) {
+    if (std::ranges::find(all_methods, name) == all_methods.end()) {
+      throw UsageError("option evaluation.methods: '" + name +
+                       "' is no method; allowed: none pixel single jump");
+    }
+    if (std::ranges::find(names, name) != names.end()) {
+      throw UsageError("option evaluation.methods: '" + name + "' is named twice");
+    }
+    names.push_back(name);
+  }
+  if (names.empty()) {
+    throw UsageError("option evaluation.methods: names no method; allowed: none pixel single jump");
+  }
+  return names;
+}
+
+Truth read_truth(const SequenceReader& source) {
+  Truth truth;
+  truth.poses = source.ground_truth();
+  const PixelRays rays = pixel_rays(source.sensor().camera);
+  constexpr int every = 3;  // neighbouring frames see the same surface
+  for (int i = 0; i < *source.frame_count(); i += every) {
+    const auto pose =
+        true_pose(truth.poses, source.files()[static_cast<std::size_t>(i)].timestamp_s);
+    const auto ranges = source.range_truth(i);
+    if (pose && ranges) truth.surface.add(*ranges, rays, *pose);
+  }
+  return truth;
+}
+
+MethodResult run_down_to_map(const std::string& method, const SequenceReader& recording,
+                             PipelineOptions options, const Truth& truth, bool quiet) {
+  MethodResult result;
+  result.name = method;
+  options.unwrap.method = method;
+  SequenceReader source(recording.folder());
+  Progress progress("method " + method + ", frame", source.frame_count(), quiet);
+  MapHooks hooks;
+  hooks.keep_going = [&](int done) {
+    progress.show(done);
+    return !is_interrupted();
+  };
+  hooks.on_frame = [&](const PreparedFrame& frame) {
+    result.frames.push_back(
+        record_of(frame.unwrapped, frame.times.unwrap_ms, recording, frame.index));
+  };
+  result.map = map_room(source, options, hooks);
+  refuse_mostly_damaged(*result.map);
+  result.interrupted = result.map->interrupted;
+  result.trajectory = score_trajectory(result.map->trajectory, truth.poses);
+  if (result.trajectory && !truth.surface.points().empty()) {
+    result.surface =
+        score_map(result.map->surface, result.trajectory->truth_from_estimate, truth.surface);
+  }
+  return result;
+}
+
+MethodResult run_unwrapping(const std::string& method, const SequenceReader& recording,
+                            UnwrapOptions options, bool quiet) {
+  MethodResult result;
+  result.name = method;
+  options.method = method;
+  const int total = *recording.frame_count();
+  Progress progress("method " + method + ", frame", total, quiet);
+  int done = 0;
+  std::string first_damage;
+  while (done < total && !is_interrupted()) {
+    const int end = std::min(total, done + omp_get_max_threads());
+    for (UnwrappedFrame& frame : unwrap_batch(recording, done, end, options)) {
+      if (frame.record) result.frames.push_back(std::move(*frame.record));
+      if (first_damage.empty()) first_damage = frame.damage;
+    }
+    progress.show(done = end);
+  }
+  refuse_mostly_damaged(done - static_cast<int>(result.frames.size()), done, first_damage);
+  result.interrupted = done < total;
+  return result;
+}
+
+}  // namespace tofmap::app

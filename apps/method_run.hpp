@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/core/option_table.hpp>
+#include <tofmap/evaluation/map_score.hpp>
+#include <tofmap/evaluation/range_score.hpp>
+#include <tofmap/evaluation/trajectory_score.hpp>
+#include <tofmap/pipeline/pipeline.hpp>
+
+namespace tofmap::app {
+
+/// What `evaluate` compares, group `evaluation`.
+struct EvaluationOptions {
+  std::string methods = "none pixel single jump";
+  std::string down_to = "map";
+
+  static std::vector<OptionField<EvaluationOptions>> fields();
+};
+
+/// The names in `methods`, in their order. Throws UsageError for one that is no method, for one
+/// that comes twice, and if there is none.
+std::vector<std::string> method_names(const EvaluationOptions& options);
+
+/// What is known of the truth; any part may be missing.
+struct Truth {
+  Trajectory poses;
+  ReferenceSurface surface;
+};
+
+Truth read_truth(const SequenceReader& source);
+
+/// How one frame was unwrapped.
+struct UnwrappingRecord {
+  std::optional<RangeScore> score;  ///< if the frame's true ranges are known
+  double milliseconds = 0;
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// One method over a recording, and how right it is.
+struct MethodResult {
+  std::string name;
+  std::vector<UnwrappingRecord> frames;  ///< those that could be read
+  std::optional<RoomMap> map;            ///< if asked for
+  std::optional<TrajectoryScore> trajectory;
+  std::optional<MapScore> surface;
+  bool interrupted = false;
+};
+
+/// From phases to the map. Throws InputError if more than half of the frames are damaged.
+MethodResult run_down_to_map(const std::string& method, const SequenceReader& recording,
+                             PipelineOptions options, const Truth& truth, bool quiet);
+
+/// Unwrapping alone, frames side by side. Throws InputError as above.
+MethodResult run_unwrapping(const std::string& method, const SequenceReader& recording,
+                            UnwrapOptions options, bool quiet);
+
+}  // namespace tofmap::app
