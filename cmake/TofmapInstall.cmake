@@ -2,6 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 include(CMakePackageConfigHelpers)
 
+# What each module links, for tofmapConfig.cmake: so a component finds just what it needs.
+get_property(TOFMAP_MODULES GLOBAL PROPERTY TOFMAP_MODULES)
+foreach(module IN LISTS TOFMAP_MODULES)
+  get_target_property(links tofmap_${module} LINK_LIBRARIES)
+  list(JOIN links " " links)
+  string(APPEND TOFMAP_MODULE_LINKS "set(_tofmap_${module}_links ${links})\n")
+endforeach()
+list(JOIN TOFMAP_MODULES " " TOFMAP_MODULES)
+
 set(TOFMAP_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/tofmap)
 configure_package_config_file(cmake/tofmapConfig.cmake.in tofmapConfig.cmake
   INSTALL_DESTINATION ${TOFMAP_CMAKE_DIR})

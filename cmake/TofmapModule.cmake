@@ -33,6 +33,7 @@ function(tofmap_add_module name)
   list(TRANSFORM MODULE_SOURCES PREPEND src/)
   add_library(tofmap_${name} ${MODULE_SOURCES})
   add_library(tofmap::${name} ALIAS tofmap_${name})
+  set_property(GLOBAL APPEND PROPERTY TOFMAP_MODULES ${name})
   set_target_properties(tofmap_${name} PROPERTIES EXPORT_NAME ${name}
     POSITION_INDEPENDENT_CODE ON VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
   target_include_directories(tofmap_${name}

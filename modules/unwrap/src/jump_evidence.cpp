@@ -144,9 +144,8 @@ JumpProbabilities frequency_term(const ImageF& phase, const ImageF& reconstructi
     return ImageF::Constant(nodes.rows(), nodes.cols(),
                             static_cast<float>(sigma_cycles * sigma_cycles));
   };
-  return {
-      gaussian_of_configurations(where_present(x, forward_difference_x(phase)), variance(x)),
-      gaussian_of_configurations(where_present(y, forward_difference_y(phase)), variance(y))};
+  return {gaussian_of_configurations(where_present(x, forward_difference_x(phase)), variance(x)),
+          gaussian_of_configurations(where_present(y, forward_difference_y(phase)), variance(y))};
 }
 
 JumpProbabilities fuse(const JumpProbabilities& f_d, const JumpProbabilities& f_f, double c_d,

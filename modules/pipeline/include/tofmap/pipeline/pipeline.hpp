@@ -92,7 +92,6 @@ struct MapHooks {
 /// Frames in, a map out: the whole job. Frames that are damaged or cannot be placed are
 /// skipped, and said so in their record. Frames are prepared in parallel and registered in
 /// order; the result is the same for any number of threads.
-RoomMap map_room(FrameSource& source, const PipelineOptions& options,
-                 const MapHooks& hooks = {});
+RoomMap map_room(FrameSource& source, const PipelineOptions& options, const MapHooks& hooks = {});
 
 }  // namespace tofmap
