@@ -78,6 +78,18 @@ void print_frames(const SequenceReader& source, const FrameSurvey& survey) {
   for (const std::string& damage : survey.damages) std::printf("  %s\n", damage.c_str());
 }
 
+/// What unwrapping cannot make good.
+void print_doubts(const SensorModel& sensor, const FrameSurvey& survey) {
+  if (sensor.max_range_m > combined_range_m(sensor.modulation)) {
+    std::printf(
+        "doubtful: the scene reaches farther than this pair of frequencies can tell apart; "
+        "are they right?\n");
+  }
+  if (survey.pixels > 0 && survey.without_return == survey.pixels) {
+    std::printf("doubtful: no pixel has a return; are the phase images mislabelled?\n");
+  }
+}
+
 int run_info(const InfoArguments& arguments) {
   ProgramOptions options;
   arguments.common.resolve("info", options);
@@ -85,6 +97,7 @@ int run_info(const InfoArguments& arguments) {
   const FrameSurvey survey = survey_frames(source);
   print_sensor(source.sensor());
   print_frames(source, survey);
+  print_doubts(source.sensor(), survey);
   return is_interrupted() ? exit_status::interrupted : exit_status::done;
 }
 

@@ -35,6 +35,11 @@ void check_result(const RoomMap& map) {
         "no frame has enough surface to start a map from; is the camera covered, or "
         "the phase images mislabelled? 'tofmap info' tells more");
   }
+  if (map.surface.empty() && !map.interrupted) {
+    throw InputError(
+        "no point was seen often and surely enough to enter the map; lower "
+        "map.min_observations or raise map.max_sigma_m");
+  }
 }
 
 void write_result(const OutputFolder& out, const RoomMap& map, const std::string& options_yaml) {

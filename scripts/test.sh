@@ -10,6 +10,6 @@ bash scripts/packages.sh
 build=${BUILD_DIR:-build}
 
 cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-  -DTOFMAP_WARNINGS_AS_ERRORS=ON -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
+  -DTOFMAP_WARNINGS_AS_ERRORS=ON -DTOFMAP_BUILD_BENCHMARKS=ON -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
 cmake --build "$build"
 ctest --test-dir "$build" --output-on-failure -j "$(nproc)"

@@ -37,6 +37,12 @@ TEST(MapFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(map[1].observations, 8U);
 }
 
+TEST(MapFile, WithoutPointsIsAWholeFile) {
+  const test::TemporaryFolder folder;
+  write_map(folder.path() / "map.ply", {});
+  EXPECT_TRUE(read_map(folder.path() / "map.ply").empty());
+}
+
 TEST(MapFile, ThatIsMissingOrNoCloudIsNamed) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "broken.ply";

@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 
 #include <tofmap/acquisition/png_image.hpp>
+#include <tofmap/core/trajectory.hpp>
 
 namespace tofmap::test {
 namespace {
@@ -115,6 +116,57 @@ TEST_F(BadRecording, WithoutAmplitudesIsUnwrappedAndMapped) {
     EXPECT_EQ(finished.status, 0) << command << finished.err;
   }
   EXPECT_THAT(run("info").out, HasSubstr("frames without amplitudes: 4"));
+}
+
+TEST_F(BadRecording, WithoutAnyReturnIsUnwrappedButNotMapped) {
+  constexpr std::uint16_t no_return = 65535;
+  for (int i = 0; i < frames; ++i)
+    write_png(phase_a(i), ImageU16(ImageU16::Constant(36, 44, no_return)));
+  EXPECT_EQ(run("unwrap").status, 0);
+  expect_refusal_of("map", "is the camera covered");
+  EXPECT_THAT(run("info").out, HasSubstr("doubtful: no pixel has a return"));
+
+  const Finished evaluated = run("evaluate");
+  ASSERT_EQ(evaluated.status, 0) << evaluated.err;
+  const auto report = read_json(out_ / "report.json");
+  EXPECT_EQ(report["map"]["jump"]["points"], 0);
+  EXPECT_TRUE(report["unwrapping"]["jump"]["range_rmse_m"].is_null());
+}
+
+TEST_F(BadRecording, OfOneFrameIsMapped) {
+  std::ofstream(sequence_ / "frames.txt")
+      << "0 phase_a/000000.png phase_b/000000.png amplitude_a/000000.png amplitude_b/000000.png\n";
+  const Finished finished = run("map", {"--set", "map.min_observations=1"});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  EXPECT_THAT(finished.out, HasSubstr("1 of 1 frames registered"));
+  EXPECT_EQ(run("evaluate").status, 0);
+}
+
+TEST_F(BadRecording, OfIdenticalFramesIsMappedAtOnePlace) {
+  for (int i = 1; i < frames; ++i) {
+    for (const std::string kind : {"phase_a", "phase_b", "amplitude_a", "amplitude_b"}) {
+      fs::copy_file(sequence_ / kind / "000000.png",
+                    sequence_ / kind / ("00000" + std::to_string(i) + ".png"),
+                    fs::copy_options::overwrite_existing);
+    }
+  }
+  ASSERT_EQ(run("map").status, 0);
+  const Trajectory trajectory = read_trajectory(out_ / "trajectory.txt");
+  ASSERT_EQ(trajectory.size(), frames);
+  for (const StampedPose& pose : trajectory) {
+    EXPECT_LT(pose.world_from_camera.translation().norm(), 1e-6);
+  }
+}
+
+TEST_F(BadRecording, WhoseFrequenciesCannotTellTheSceneApartIsDoubted) {
+  edit("sequence.yaml", "frequency_a_hz: 2.9e+07", "frequency_a_hz: 3.1e+08");
+  EXPECT_THAT(run("info").out, HasSubstr("doubtful: the scene reaches farther"));
+}
+
+TEST_F(BadRecording, WithNothingSeenOftenEnoughSaysWhichOptionsToChange) {
+  const Finished finished = run("map", {"--set", "map.min_observations=1000"});
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, HasSubstr("map.min_observations"));
 }
 
 TEST_F(BadRecording, FrameCutShortIsSkippedAndNamed) {

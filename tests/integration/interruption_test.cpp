@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <cstdio>
 #include <fstream>
 #include <thread>
 
@@ -26,13 +25,12 @@ class Interruption : public WithRecording {
     WithRecording::SetUp();
     std::ofstream list(sequence_ / "frames.txt");
     for (int i = 0; i < many; ++i) {
-      std::array<char, 16> name{};
-      std::snprintf(name.data(), name.size(), "/%06d.png", i);
+      const std::string name = "/" + std::to_string(1000000 + i).substr(1) + ".png";
       const std::string source = "00000" + std::to_string(i % frames) + ".png";
       list << i / 15.0;
       for (const std::string folder : {"phase_a", "phase_b", "amplitude_a", "amplitude_b"}) {
-        list << ' ' << folder << name.data();
-        if (i >= frames) fs::create_symlink(source, sequence_ / (folder + name.data()));
+        list << ' ' << folder << name;
+        if (i >= frames) fs::create_symlink(source, sequence_ / (folder + name));
       }
       list << '\n';
     }

@@ -4,6 +4,7 @@
 #include "tofmap/cloud/cloud_file.hpp"
 
 #include <algorithm>
+#include <fstream>
 #include <limits>
 #include <string>
 
@@ -59,26 +60,38 @@ pcl::PCLPointCloud2 read_any(const std::filesystem::path& file) {
   return cloud;
 }
 
+constexpr bool with_camera = false;
+
+bool write_points(const std::filesystem::path& file, const pcl::PCLPointCloud2& cloud) {
+  constexpr bool binary = true;
+  try {
+    return pcl::PLYWriter().write(file.string(), cloud, Eigen::Vector4f::Zero(),
+                                  Eigen::Quaternionf::Identity(), binary, with_camera) == 0;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+/// PCL's writer refuses a cloud without points, though its header is a whole file.
+bool write_header(const std::filesystem::path& file, const pcl::PCLPointCloud2& cloud) {
+  std::ofstream out(file);
+  out << pcl::PLYWriter().generateHeaderBinary(cloud, Eigen::Vector4f::Zero(),
+                                               Eigen::Quaternionf::Identity(), 0, with_camera);
+  return static_cast<bool>(out.flush());
+}
+
 }  // namespace
 
 void write_map(const std::filesystem::path& file, const MapCloud& map) {
   const QuietPcl quiet;
   pcl::PCLPointCloud2 cloud;
   pcl::toPCLPointCloud2(map, cloud);
-  int status = -1;
-  try {
-    constexpr bool binary = true;
-    constexpr bool with_camera = false;
-    status = pcl::PLYWriter().write(file.string(), cloud, Eigen::Vector4f::Zero(),
-                                    Eigen::Quaternionf::Identity(), binary, with_camera);
-  } catch (const std::exception&) {
-    status = -1;
-  }
+  const bool written = map.empty() ? write_header(file, cloud) : write_points(file, cloud);
   // PCL does not notice a full disk: the file then is shorter than its points.
   std::error_code missing;
   const auto bytes = std::filesystem::file_size(file, missing);
   constexpr std::size_t bytes_per_point = 7 * sizeof(float) + sizeof(std::uint32_t);
-  if (status != 0 || missing || bytes < map.size() * bytes_per_point) {
+  if (!written || missing || bytes < map.size() * bytes_per_point) {
     throw InputError(file.string() + ": cannot be written whole; is the disk full?");
   }
 }

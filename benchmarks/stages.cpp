@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Time of each stage on one core, for a frame of the simulated room at 176 x 144.
+
+#include <benchmark/benchmark.h>
+#include <omp.h>
+
+#include <tofmap/acquisition/simulator.hpp>
+#include <tofmap/pipeline/pipeline.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Neighbouring frames from the middle of the path, and what the stages make of the first.
+struct Example {
+  Simulator simulator;
+  PixelRays rays;
+  PipelineOptions options;
+  DualFrequencyFrame frame;
+  PreparedFrame prepared;
+  PreparedFrame next;
+
+  Example() : simulator(make_scene("room"), {}), rays(pixel_rays(simulator.sensor().camera)) {
+    omp_set_num_threads(1);
+    const int middle = *simulator.frame_count() / 2;
+    frame = simulator.simulate(middle).frame;
+    prepared = prepare_frame(frame, simulator.sensor(), rays, options);
+    next = prepare_frame(simulator.simulate(middle + 1).frame, simulator.sensor(), rays, options);
+  }
+};
+
+const Example& example() {
+  static const Example made;
+  return made;
+}
+
+void unwrap_by(benchmark::State& state, const std::string& method) {
+  const Example& e = example();
+  UnwrapOptions options;
+  options.method = method;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(unwrap(e.frame, e.simulator.sensor(), options));
+  }
+}
+BENCHMARK_CAPTURE(unwrap_by, pixel, "pixel")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(unwrap_by, single, "single")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(unwrap_by, jump, "jump")->Unit(benchmark::kMillisecond);
+
+void filter(benchmark::State& state) {
+  const Example& e = example();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        apply_filters(e.prepared.unwrapped.image, e.frame, e.rays, e.options.filters));
+  }
+}
+BENCHMARK(filter)->Unit(benchmark::kMillisecond);
+
+void make_cloud(benchmark::State& state) {
+  const Example& e = example();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(surface_cloud(e.prepared.filtered.image, e.rays, e.options.cloud));
+  }
+}
+BENCHMARK(make_cloud)->Unit(benchmark::kMillisecond);
+
+/// A frame against one keyframe, its neighbour.
+void register_frame(benchmark::State& state) {
+  const Example& e = example();
+  for (auto _ : state) {
+    state.PauseTiming();
+    Odometry odometry(e.simulator.sensor().camera, e.options.odometry, e.options.registration);
+    odometry.track(0, e.prepared.timestamp_s, e.prepared.cloud);
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(odometry.track(1, e.next.timestamp_s, e.next.cloud));
+  }
+}
+BENCHMARK(register_frame)->Unit(benchmark::kMillisecond);
+
+void integrate_into_map(benchmark::State& state) {
+  const Example& e = example();
+  SurfaceMap map(e.options.map);
+  for (auto _ : state) map.integrate(*e.prepared.cloud, Pose::Identity());
+}
+BENCHMARK(integrate_into_map)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace tofmap

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Composition: what holds of the whole, whatever its stages do.
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <tofmap/acquisition/simulator.hpp>
+#include <tofmap/pipeline/pipeline.hpp>
+
+namespace tofmap::test {
+namespace {
+
+constexpr int total_frames = 6;
+
+Simulator small_room() {
+  SimulatorOptions options;
+  options.width_px = 88;
+  options.height_px = 72;
+  options.frames = total_frames;
+  return {make_scene("room"), options};
+}
+
+/// A recording with a damaged frame at this index.
+class DamagedSource final : public FrameSource {
+ public:
+  DamagedSource(const Simulator& simulator, int damaged_index)
+      : simulator_(simulator), damaged_index_(damaged_index) {}
+
+  const SensorModel& sensor() const override { return simulator_.sensor(); }
+  std::optional<int> frame_count() const override { return total_frames; }
+  std::optional<SourcedFrame> next() override {
+    if (index_ == total_frames) return {};
+    SourcedFrame out;
+    out.index = index_;
+    DualFrequencyFrame frame = simulator_.simulate(index_).frame;
+    out.timestamp_s = frame.timestamp_s;
+    if (index_ == damaged_index_) {
+      out.damage = "b/000003.png: truncated";
+    } else {
+      out.frame = std::move(frame);
+    }
+    ++index_;
+    return out;
+  }
+
+ private:
+  const Simulator& simulator_;
+  int damaged_index_;
+  int index_ = 0;
+};
+
+class Threads {
+ public:
+  explicit Threads(int count) : before_(omp_get_max_threads()) { omp_set_num_threads(count); }
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+  ~Threads() { omp_set_num_threads(before_); }
+
+ private:
+  int before_;
+};
+
+TEST(MapRoom, PlacesEveryFrameOfAWholeRecording) {
+  Simulator room = small_room();
+  const RoomMap map = map_room(room, {});
+  EXPECT_EQ(map.frames.size(), total_frames);
+  EXPECT_EQ(map.trajectory.size(), total_frames);
+  EXPECT_FALSE(map.keyframes.empty());
+  EXPECT_FALSE(map.surface.empty());
+  EXPECT_FALSE(map.interrupted);
+}
+
+TEST(MapRoom, GivesTheSameBitsForAnyNumberOfThreads) {
+  const auto mapped_by = [](int threads) {
+    const Threads limit(threads);
+    Simulator room = small_room();
+    return map_room(room, {});
+  };
+  const RoomMap one = mapped_by(1);
+  const RoomMap four = mapped_by(4);
+  ASSERT_EQ(one.trajectory.size(), four.trajectory.size());
+  for (std::size_t i = 0; i < one.trajectory.size(); ++i) {
+    EXPECT_EQ(one.trajectory[i].world_from_camera.matrix(),
+              four.trajectory[i].world_from_camera.matrix());
+  }
+  ASSERT_EQ(one.surface.size(), four.surface.size());
+  for (std::size_t i = 0; i < one.surface.size(); ++i) {
+    EXPECT_EQ(one.surface[i].getVector3fMap(), four.surface[i].getVector3fMap());
+  }
+}
+
+TEST(MapRoom, SkipsADamagedFrameAndSaysSo) {
+  const Simulator room = small_room();
+  DamagedSource source(room, 3);
+  const RoomMap map = map_room(source, {});
+  ASSERT_EQ(map.frames.size(), total_frames);
+  EXPECT_EQ(map.damaged(), 1);
+  EXPECT_EQ(map.frames[3].damage, "b/000003.png: truncated");
+  EXPECT_EQ(map.trajectory.size(), total_frames - 1);
+}
+
+TEST(MapRoom, EndsEarlyWithWhatItHasWhenToldTo) {
+  const Threads limit(1);  // frames are taken by as many as there are threads
+  Simulator room = small_room();
+  MapHooks hooks;
+  hooks.keep_going = [](int done) { return done < 2; };
+  const RoomMap map = map_room(room, {}, hooks);
+  EXPECT_TRUE(map.interrupted);
+  EXPECT_EQ(map.frames.size(), 2);
+  EXPECT_EQ(map.trajectory.size(), 2);
+  EXPECT_FALSE(map.surface.empty());
+}
+
+TEST(MapRoom, ShowsEveryReadableFrameInOrder) {
+  const Simulator room = small_room();
+  DamagedSource source(room, 2);
+  std::vector<int> seen;
+  MapHooks hooks;
+  hooks.on_frame = [&](const PreparedFrame& frame) { seen.push_back(frame.index); };
+  map_room(source, {}, hooks);
+  EXPECT_EQ(seen, (std::vector{0, 1, 3, 4, 5}));
+}
+
+TEST(MapRoom, OfARecordingWithoutReturnsIsEmpty) {
+  class Darkness final : public FrameSource {
+   public:
+    explicit Darkness(const SensorModel& sensor) : sensor_(sensor) {}
+    const SensorModel& sensor() const override { return sensor_; }
+    std::optional<int> frame_count() const override { return 2; }
+    std::optional<SourcedFrame> next() override {
+      if (index_ == 2) return {};
+      DualFrequencyFrame frame;
+      frame.index = index_;
+      frame.timestamp_s = index_;
+      frame.phase_a = frame.phase_b =
+          ImageF::Constant(sensor_.camera.height_px, sensor_.camera.width_px, NAN);
+      return SourcedFrame{index_++, frame.timestamp_s, frame, ""};
+    }
+
+   private:
+    SensorModel sensor_;
+    int index_ = 0;
+  };
+  Darkness source(small_room().sensor());
+  const RoomMap map = map_room(source, {});
+  EXPECT_EQ(map.frames.size(), 2);
+  EXPECT_TRUE(map.trajectory.empty());
+  EXPECT_TRUE(map.surface.empty());
+}
+
+}  // namespace
+}  // namespace tofmap::test
