@@ -162,8 +162,8 @@ MethodResult run_unwrapping(const std::string& method, const SequenceReader& rec
   std::string first_damage;
   while (done < total && !is_interrupted()) {
     const int end = std::min(total, done + omp_get_max_threads());
-    for (UnwrappedFrame& frame : unwrap_batch(recording, done, end, options)) {
-      if (frame.record) result.frames.push_back(std::move(*frame.record));
+    for (const UnwrappedFrame& frame : unwrap_batch(recording, done, end, options)) {
+      if (frame.record) result.frames.push_back(*frame.record);
       if (first_damage.empty()) first_damage = frame.damage;
     }
     progress.show(done = end);

@@ -52,7 +52,7 @@ void refuse_foreign(const fs::path& folder, Replaces replaces) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(fs::path folder, Replaces replaces)
+OutputFolder::OutputFolder(const fs::path& folder, Replaces replaces)
     : folder_(normalised(folder)), partial_(sibling(folder_, ".partial-")), replaces_(replaces) {
   std::error_code error;
   if (fs::exists(folder_, error)) refuse_foreign(folder_, replaces_);
@@ -73,7 +73,7 @@ OutputFolder::~OutputFolder() {
 }
 
 fs::path OutputFolder::make(const std::string& name) const {
-  const fs::path path = partial_ / name;
+  fs::path path = partial_ / name;
   std::error_code error;
   fs::create_directories(path, error);
   if (error) throw InputError(path.string() + ": cannot be made (" + error.message() + ")");

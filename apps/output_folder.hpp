@@ -22,7 +22,7 @@ enum class Replaces {
 class OutputFolder {
  public:
   /// Throws InputError that names the folder and the remedy if it cannot be made, or is in use.
-  explicit OutputFolder(std::filesystem::path folder, Replaces replaces = Replaces::results);
+  explicit OutputFolder(const std::filesystem::path& folder, Replaces replaces = Replaces::results);
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
   ~OutputFolder();

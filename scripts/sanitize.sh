@@ -10,7 +10,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 bash scripts/packages.sh
 build=${BUILD_DIR:-build-sanitize}
 
-cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1" \
+cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O2 -g1" \
   -DTOFMAP_WARNINGS_AS_ERRORS=ON -DTOFMAP_SANITIZE=address,undefined -DTOFMAP_COVERAGE=ON \
   -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
 cmake --build "$build"

@@ -50,7 +50,8 @@ class FloorPlan {
   double cell_m() const { return cell_m_; }
 
   Vector3d middle(int cell) const {
-    return origin_ + cell_m_ * Vector3d(cell % cols_ + 0.5, cell / cols_ + 0.5, 0);
+    const int row = cell / cols_;
+    return origin_ + cell_m_ * Vector3d(cell % cols_ + 0.5, row + 0.5, 0);
   }
 
   std::vector<int> free_neighbours(int cell) const {

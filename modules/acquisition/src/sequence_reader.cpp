@@ -19,7 +19,7 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint16_t no_return = 65535;
 
 std::filesystem::path inner_path(const std::string& text, const std::string& place) {
-  const std::filesystem::path path = std::filesystem::path(text).lexically_normal();
+  std::filesystem::path path = std::filesystem::path(text).lexically_normal();
   if (path.is_absolute() || *path.begin() == "..") {
     throw InputError(place + ": the path '" + text +
                      "' leads out of the sequence; paths are relative to its folder");

@@ -65,8 +65,10 @@ std::vector<Eigen::Vector3f> subpixel_rays(const CameraModel& camera, int n) {
   for (int v = 0; v < camera.height_px; ++v) {
     for (int u = 0; u < camera.width_px; ++u) {
       for (int i = 0; i < n * n; ++i) {
-        const double du = (i % n + 0.5) / n - 0.5;
-        const double dv = (i / n + 0.5) / n - 0.5;
+        const int row = i / n;
+        const int col = i % n;
+        const double du = (col + 0.5) / n - 0.5;
+        const double dv = (row + 0.5) / n - 0.5;
         rays.push_back(pixel_ray(camera, u + du, v + dv).cast<float>());
       }
     }

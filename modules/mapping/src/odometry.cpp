@@ -68,7 +68,7 @@ Odometry::Odometry(const CameraModel& camera, const OdometryOptions& options,
     : camera_(camera), options_(options), registration_(registration) {}
 
 TrackingResult Odometry::track(int frame_index, double timestamp_s,
-                               std::shared_ptr<const SurfaceCloud> cloud) {
+                               const std::shared_ptr<const SurfaceCloud>& cloud) {
   TrackingResult result;
   ++frames_since_placed_;
   if (!has_surface(*cloud, registration_.min_correspondences)) {

@@ -25,7 +25,7 @@ struct OptionField {
   double max = std::numeric_limits<double>::infinity();   ///< numbers only
   std::string_view unit;                                  ///< empty if it has none
   std::string_view meaning;
-  std::string_view choices = "";  ///< strings only: "a | b | c"; empty: any text
+  std::string_view choices{};  ///< strings only: "a | b | c"; empty: any text
 };
 
 /// The options of a program: bound structs, addressed as `group.name`.

@@ -67,7 +67,7 @@ class Odometry {
 
   /// Frames come in the order of time.
   TrackingResult track(int frame_index, double timestamp_s,
-                       std::shared_ptr<const SurfaceCloud> cloud);
+                       const std::shared_ptr<const SurfaceCloud>& cloud);
 
   /// The keyframes that are still held, oldest first.
   const std::deque<Keyframe>& recent_keyframes() const { return keyframes_; }
