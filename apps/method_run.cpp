@@ -8,21 +8,15 @@
 #include "progress.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <exception>
-#include <sstream>
-#include <string_view>
 
 #include <omp.h>
 
-#include <tofmap/core/error.hpp>
+#include <tofmap/pipeline/side_by_side.hpp>
 
 namespace tofmap::app {
 namespace {
-
-constexpr std::array<std::string_view, 4> all_methods{"none", "pixel", "single", "jump"};
 
 /// The true pose of a frame; nothing if none is within half a frame of a slow camera.
 std::optional<Pose> true_pose(const Trajectory& poses, double timestamp_s) {
@@ -62,53 +56,7 @@ UnwrappedFrame unwrap_frame(const SequenceReader& recording, int index,
   return {record_of(unwrapped, spent.count(), recording, index), ""};
 }
 
-std::vector<UnwrappedFrame> unwrap_batch(const SequenceReader& recording, int begin, int end,
-                                         const UnwrapOptions& options) {
-  std::vector<UnwrappedFrame> frames(static_cast<std::size_t>(end - begin));
-  std::vector<std::exception_ptr> errors(frames.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int i = begin; i < end; ++i) {
-    try {
-      frames[i - begin] = unwrap_frame(recording, i, options);
-    } catch (...) {
-      errors[i - begin] = std::current_exception();
-    }
-  }
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
-  return frames;
-}
-
 }  // namespace
-
-std::vector<OptionField<EvaluationOptions>> EvaluationOptions::fields() {
-  using O = EvaluationOptions;
-  return {
-      {"methods", &O::methods, 0, 0, "",
-       "methods to compare, separated by spaces: none, pixel, single, jump"},
-      {"down_to", &O::down_to, 0, 0, "", "how far to go", "unwrapping | map"},
-  };
-}
-
-std::vector<std::string> method_names(const EvaluationOptions& options) {
-  std::vector<std::string> names;
-  std::istringstream words(options.methods);
-  for (std::string name; words >> name;) {
-    if (std::ranges::find(all_methods, name) == all_methods.end()) {
-      throw UsageError("option evaluation.methods: '" + name +
-                       "' is no method; allowed: none pixel single jump");
-    }
-    if (std::ranges::find(names, name) != names.end()) {
-      throw UsageError("option evaluation.methods: '" + name + "' is named twice");
-    }
-    names.push_back(name);
-  }
-  if (names.empty()) {
-    throw UsageError("option evaluation.methods: names no method; allowed: none pixel single jump");
-  }
-  return names;
-}
 
 Truth read_truth(const SequenceReader& source) {
   Truth truth;
@@ -162,7 +110,8 @@ MethodResult run_unwrapping(const std::string& method, const SequenceReader& rec
   std::string first_damage;
   while (done < total && !is_interrupted()) {
     const int end = std::min(total, done + omp_get_max_threads());
-    for (const UnwrappedFrame& frame : unwrap_batch(recording, done, end, options)) {
+    const auto unwrap_one = [&](int i) { return unwrap_frame(recording, done + i, options); };
+    for (const UnwrappedFrame& frame : side_by_side(end - done, unwrap_one)) {
       if (frame.record) result.frames.push_back(*frame.record);
       if (first_damage.empty()) first_damage = frame.damage;
     }

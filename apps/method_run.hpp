@@ -7,25 +7,12 @@
 #include <vector>
 
 #include <tofmap/acquisition/sequence.hpp>
-#include <tofmap/core/option_table.hpp>
 #include <tofmap/evaluation/map_score.hpp>
 #include <tofmap/evaluation/range_score.hpp>
 #include <tofmap/evaluation/trajectory_score.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
 
 namespace tofmap::app {
-
-/// What `evaluate` compares, group `evaluation`.
-struct EvaluationOptions {
-  std::string methods = "none pixel single jump";
-  std::string down_to = "map";
-
-  static std::vector<OptionField<EvaluationOptions>> fields();
-};
-
-/// The names in `methods`, in their order. Throws UsageError for one that is no method, for one
-/// that comes twice, and if there is none.
-std::vector<std::string> method_names(const EvaluationOptions& options);
 
 /// What is known of the truth; any part may be missing.
 struct Truth {

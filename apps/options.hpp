@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "method_run.hpp"
+#include "evaluation_options.hpp"
 #include "pictures.hpp"
 
 #include <string>

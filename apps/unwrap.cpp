@@ -12,7 +12,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -24,6 +23,7 @@
 #include <tofmap/core/error.hpp>
 #include <tofmap/filters/filter_chain.hpp>
 #include <tofmap/filters/gates.hpp>
+#include <tofmap/pipeline/side_by_side.hpp>
 #include <tofmap/unwrap/beat.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
@@ -109,27 +109,6 @@ UnwrappedFrame unwrap_frame(const SequenceReader& source, int index, const Pixel
   return {std::move(report), false, ""};
 }
 
-/// All frames from `begin` to `end`, side by side.
-std::vector<UnwrappedFrame> unwrap_batch(const SequenceReader& source, int begin, int end,
-                                         const PixelRays& rays, const PipelineOptions& options,
-                                         const UnwrapArguments& arguments,
-                                         const std::filesystem::path& out) {
-  std::vector<UnwrappedFrame> frames(static_cast<std::size_t>(end - begin));
-  std::vector<std::exception_ptr> errors(frames.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int i = begin; i < end; ++i) {
-    try {
-      frames[i - begin] = unwrap_frame(source, i, rays, options, arguments, out);
-    } catch (...) {
-      errors[i - begin] = std::current_exception();
-    }
-  }
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
-  return frames;
-}
-
 Json summary(const Json& frames, int damaged, bool interrupted) {
   double milliseconds = 0;
   double iterations = 0;
@@ -171,8 +150,10 @@ int run_unwrap(const UnwrapArguments& arguments) {
     Progress progress("unwrapping frame", total, arguments.common.quiet);
     for (int begin = 0; begin < total && !is_interrupted();) {
       const int end = std::min(total, begin + omp_get_max_threads());
-      for (auto& frame :
-           unwrap_batch(source, begin, end, rays, options.pipeline, arguments, out.path())) {
+      const auto unwrap_one = [&](int i) {
+        return unwrap_frame(source, begin + i, rays, options.pipeline, arguments, out.path());
+      };
+      for (UnwrappedFrame& frame : side_by_side(end - begin, unwrap_one)) {
         damaged += frame.is_damaged ? 1 : 0;
         if (first_damage.empty()) first_damage = frame.damage;
         frames.push_back(std::move(frame.report));

@@ -3,9 +3,10 @@
 
 #include "tofmap/pipeline/pipeline.hpp"
 
+#include "tofmap/pipeline/side_by_side.hpp"
+
 #include <algorithm>
 #include <chrono>
-#include <exception>
 #include <optional>
 
 #include <omp.h>
@@ -39,21 +40,10 @@ std::vector<std::optional<PreparedFrame>> prepare_all(const std::vector<SourcedF
                                                       const SensorModel& sensor,
                                                       const PixelRays& rays,
                                                       const PipelineOptions& options) {
-  std::vector<std::optional<PreparedFrame>> prepared(frames.size());
-  std::vector<std::exception_ptr> errors(frames.size());
-  const int count = static_cast<int>(frames.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int i = 0; i < count; ++i) {
-    try {
-      if (frames[i].frame) prepared[i] = prepare_frame(*frames[i].frame, sensor, rays, options);
-    } catch (...) {
-      errors[i] = std::current_exception();
-    }
-  }
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
-  return prepared;
+  return side_by_side(static_cast<int>(frames.size()), [&](int i) {
+    const std::optional<DualFrequencyFrame>& frame = frames[static_cast<std::size_t>(i)].frame;
+    return frame ? std::optional(prepare_frame(*frame, sensor, rays, options)) : std::nullopt;
+  });
 }
 
 FrameRecord damaged_record(const SourcedFrame& frame) {

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <exception>
+#include <vector>
+
+namespace tofmap {
+
+/// The results of step(0) … step(count − 1) in their order, computed by as many threads as
+/// OpenMP has. If steps throw, the first of them, by number, is rethrown once all have ended.
+template <class Step>
+auto side_by_side(int count, const Step& step) {
+  using Result = decltype(step(0));
+  std::vector<Result> results(static_cast<std::size_t>(count));
+  std::vector<std::exception_ptr> errors(results.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int i = 0; i < count; ++i) {
+    try {
+      results[i] = step(i);
+    } catch (...) {
+      errors[i] = std::current_exception();
+    }
+  }
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+  return results;
+}
+
+}  // namespace tofmap
