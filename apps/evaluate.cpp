@@ -80,15 +80,17 @@ int run_evaluate(const EvaluateArguments& arguments) {
     write_method(out, result);
     results.push_back(std::move(result));
   }
-  if (down_to_map && !results.empty()) {
-    try_to_draw([&] { write_comparison(out.make("pictures"), results, options.pictures); });
-  }
   report["interrupted"] = interrupted;
   out.write_text("report.json", report.dump(1) + "\n");
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit();
   if (!results.empty()) print_table(report);
   if (!quiet) std::printf("report: %s\n", (out.final_path() / "report.json").c_str());
+  if (down_to_map && !results.empty()) {
+    add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
+      write_comparison(folder, results, options.pictures);
+    });
+  }
   return interrupted ? exit_status::interrupted : exit_status::done;
 }
 

@@ -57,8 +57,7 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
   std::printf("%zu of %zu frames registered, %zu keyframes, %zu map points\n",
               map.trajectory.size(), map.frames.size(), map.keyframes.size(), map.surface.size());
   if (map.damaged() > 0) std::printf("%d frames were damaged, see report.json\n", map.damaged());
-  std::printf("map: %s\npictures: %s\n", (folder / "map.ply").c_str(),
-              (folder / "pictures").c_str());
+  std::printf("map: %s, pictures beside it\n", (folder / "map.ply").c_str());
 }
 
 int run_map(const MapArguments& arguments) {
@@ -80,14 +79,13 @@ int run_map(const MapArguments& arguments) {
   }
   check_result(map);
   write_result(out, map, table.to_yaml(false));
-  try_to_draw([&] {
-    const std::filesystem::path folder = out.make("pictures");
+  out.commit();
+  if (!arguments.common.quiet) print_summary(map, out.final_path());
+  add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
     write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
     if (map.interrupted) return;
     write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures);
   });
-  out.commit();
-  if (!arguments.common.quiet) print_summary(map, out.final_path());
   return map.interrupted ? exit_status::interrupted : exit_status::done;
 }
 

@@ -3,6 +3,8 @@
 
 #include "pictures.hpp"
 
+#include "output_folder.hpp"
+
 #include <algorithm>
 #include <cstdio>
 
@@ -78,7 +80,6 @@ std::vector<OptionField<PictureOptions>> PictureOptions::fields() {
 
 void write_frame_pictures(const std::filesystem::path& folder, const SequenceReader& source,
                           const UnwrapOptions& unwrap, const PictureOptions& options) {
-  std::filesystem::create_directories(folder);
   const PixelRays rays = pixel_rays(source.sensor().camera);
   for (const int index : spread_indices(*source.frame_count(), options.frames)) {
     const SourcedFrame frame = source.read(index);
@@ -97,14 +98,15 @@ void write_map_pictures(const std::filesystem::path& folder, const MapCloud& map
                 map_from_inside(map, trajectory, frame, options.map_size_px));
 }
 
-std::string try_to_draw(const std::function<void()>& step) {
+void add_pictures(const std::filesystem::path& result,
+                  const std::function<void(const std::filesystem::path& folder)>& draw) {
   try {
-    step();
+    OutputFolder pictures(result / "pictures");
+    draw(pictures.path());
+    pictures.commit();
   } catch (const DrawingError& error) {
     std::fprintf(stderr, "tofmap: no pictures: %s\n", error.what());
-    return error.what();
   }
-  return {};
 }
 
 }  // namespace tofmap::app

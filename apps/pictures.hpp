@@ -24,17 +24,18 @@ struct PictureOptions {
 };
 
 /// Writes ranges, wrap counts, jump probabilities and clouds of a few frames, spread evenly over
-/// the recording, as `<frame>_<what>.png` into a new folder. Damaged frames have none.
+/// the recording, as `<frame>_<what>.png`. Damaged frames have none.
 void write_frame_pictures(const std::filesystem::path& folder, const SequenceReader& source,
                           const UnwrapOptions& unwrap, const PictureOptions& options);
 
-/// Writes the map from above and from inside, as map_above.png and map_inside.png, into a folder
-/// that is there.
+/// Writes the map from above and from inside, as map_above.png and map_inside.png.
 void write_map_pictures(const std::filesystem::path& folder, const MapCloud& map,
                         const Trajectory& trajectory, const PictureOptions& options);
 
-/// Runs a step that draws; where there is nothing to draw with, says so on stderr and goes on, as
-/// a result without pictures is better than none. Returns what went wrong, or nothing.
-std::string try_to_draw(const std::function<void()>& step);
+/// Draws into the folder `pictures` of a result that is in place already, so that nothing is lost
+/// if this fails. The folder appears when all pictures are there. Where there is nothing to draw
+/// with, says so on stderr and goes on; throws InputError if pictures cannot be written.
+void add_pictures(const std::filesystem::path& result,
+                  const std::function<void(const std::filesystem::path& folder)>& draw);
 
 }  // namespace tofmap::app

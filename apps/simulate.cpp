@@ -20,16 +20,16 @@ namespace {
 struct SimulateArguments {
   std::string scene;
   std::filesystem::path out;
-  int seed = -1;
-  int frames = -1;
+  std::string seed;
+  std::string frames;
   CommonArguments common;
 };
 
 int run_simulate(const SimulateArguments& arguments) {
   ProgramOptions options;
   OptionTable table = arguments.common.resolve("simulate", options);
-  if (arguments.seed >= 0) options.simulator.seed = arguments.seed;
-  if (arguments.frames >= 0) options.simulator.frames = arguments.frames;
+  if (!arguments.seed.empty()) table.set("simulator.seed", arguments.seed);
+  if (!arguments.frames.empty()) table.set("simulator.frames", arguments.frames);
 
   const Simulator simulator(find_scene(arguments.scene), options.simulator);
   OutputFolder out(arguments.out, Replaces::recordings);
@@ -58,9 +58,8 @@ void add_simulate_command(CLI::App& program, Outcome& outcome) {
   CLI::App* app = program.add_subcommand("simulate", "record a simulated camera in a scene");
   app->add_option("SCENE", arguments->scene, "a built-in scene, or a PLY or OBJ mesh")->required();
   app->add_option("--out", arguments->out, "folder for the recording")->required();
-  app->add_option("--seed", arguments->seed, "seed of the noise")->check(CLI::NonNegativeNumber);
-  app->add_option("--frames", arguments->frames, "how many frames, 0: the scene's own")
-      ->check(CLI::NonNegativeNumber);
+  app->add_option("--seed", arguments->seed, "seed of the noise");
+  app->add_option("--frames", arguments->frames, "how many frames, 0: the scene's own");
   arguments->common.add_to(*app);
   app->callback([arguments, &outcome] { outcome.status = run_simulate(*arguments); });
 }

@@ -164,18 +164,17 @@ int run_unwrap(const UnwrapArguments& arguments) {
   refuse_mostly_damaged(damaged, static_cast<int>(frames.size()), first_damage);
   const bool interrupted = static_cast<int>(frames.size()) < total;
   const Json report = {{"frames", frames}, {"summary", summary(frames, damaged, interrupted)}};
-  if (!interrupted && options.pictures.frames > 0) {
-    try_to_draw([&] {
-      write_frame_pictures(out.path() / "pictures", source, options.pipeline.unwrap,
-                           options.pictures);
-    });
-  }
   out.write_text("report.json", report.dump(1) + "\n");
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit();
   if (!arguments.common.quiet) {
     std::printf("%zu of %d frames unwrapped, %d damaged: %s\n", frames.size(), total, damaged,
                 out.final_path().c_str());
+  }
+  if (!interrupted && options.pictures.frames > 0) {
+    add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
+      write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures);
+    });
   }
   return interrupted ? exit_status::interrupted : exit_status::done;
 }

@@ -166,7 +166,7 @@ void add_view_command(CLI::App& program, Outcome& outcome) {
   app->add_option("--method", arguments->method,
                   "how to unwrap a recording: jump, single, pixel, none");
   app->add_option("--frame", arguments->frame, "frame of a recording, from 0")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, 1000000));
   app->add_option("--width", arguments->width_px, "of the picture, pixels")
       ->check(CLI::Range(16, 8000));
   app->add_option("--height", arguments->height_px, "of the picture, pixels")

@@ -64,6 +64,15 @@ TEST_F(BadOptions, UnknownArgumentIsRefused) { expect_bad_use({"--fast"}, {"--fa
 
 TEST_F(BadOptions, NumberOfThreadsIsChecked) { expect_bad_use({"--threads", "-1"}, {"--threads"}); }
 
+TEST_F(BadOptions, SeedAndFramesOfASimulationAreChecked) {
+  for (const std::string argument : {"--seed", "--frames"}) {
+    const Finished finished =
+        run_program({"simulate", "room", "--out", out_.string(), argument, "-1"});
+    EXPECT_EQ(finished.status, 2) << argument;
+    EXPECT_THAT(finished.err, HasSubstr("'-1' is not allowed; allowed: whole number, 0 …"));
+  }
+}
+
 TEST_F(BadOptions, ConfigurationThatIsMissingIsBadInput) {
   const Finished finished = run("map", {"--config", "/no/such/file.yaml"});
   EXPECT_EQ(finished.status, 3);

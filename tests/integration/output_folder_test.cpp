@@ -11,6 +11,7 @@ namespace tofmap::test {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 class OutputFolder : public WithRecording {
@@ -100,6 +101,15 @@ TEST_F(OutputFolder, OnAFullDiskIsAnErrorThatNamesTheFileAndLeavesNothing) {
     EXPECT_THAT(finished.err, HasSubstr("cannot be written")) << command;
     EXPECT_EQ(names_in(folder_.path()), std::vector<std::string>{"seq"}) << command;
   }
+}
+
+TEST_F(OutputFolder, KeepsTheResultWhenOnlyPicturesDoNotFit) {
+  const Finished finished =
+      run_program({"unwrap", sequence_.string(), "--out", out_.string()}, {.max_file_bytes = 5000});
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, HasSubstr("cannot be written"));
+  EXPECT_THAT(names_in(out_),
+              ElementsAre("confidence", "options.yaml", "range", "report.json", "wraps"));
 }
 
 TEST_F(OutputFolder, OfASimulationOnAFullDiskIsAnErrorToo) {

@@ -100,6 +100,7 @@ MapCloud read_map(const std::filesystem::path& file) {
   const pcl::PCLPointCloud2 cloud = read_any(file);
   const QuietPcl quiet;
   MapCloud map;
+  if (cloud.data.empty()) return map;  // PCL would take the address of a point there is not
   pcl::fromPCLPointCloud2(cloud, map);
   for (MapPoint& point : map.points) {
     if (!has_field(cloud, "normal_x")) point.normal_x = point.normal_y = point.normal_z = nan;

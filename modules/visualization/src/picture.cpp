@@ -148,6 +148,8 @@ void write_picture(const std::filesystem::path& file, const Picture& picture) {
   out.write(reinterpret_cast<const char*>(png->GetPointer(0)), png->GetNumberOfValues());
   out.close();
   if (!out) {
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
     throw InputError(file.string() + ": cannot be written; is the disk full, the folder writable?");
   }
 }
