@@ -14,6 +14,15 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+/// The program under a limit on the size of files, as on a full disk.
+class FullDisk : public WithRecording {
+ protected:
+  void SetUp() override {
+    if (TOFMAP_COVERAGE) GTEST_SKIP() << "coverage is written to files, too";
+    WithRecording::SetUp();
+  }
+};
+
 class OutputFolder : public WithRecording {
  protected:
   /// Expects status 3, the part in the message, and no partial folder.
@@ -93,7 +102,7 @@ TEST_F(OutputFolder, KeepsTheEarlierResultWhenANewRunFails) {
   EXPECT_EQ(read_text(out_ / "report.json"), report);
 }
 
-TEST_F(OutputFolder, OnAFullDiskIsAnErrorThatNamesTheFileAndLeavesNothing) {
+TEST_F(FullDisk, IsAnErrorThatNamesTheFileAndLeavesNothing) {
   for (const std::string command : {"unwrap", "map"}) {
     const Finished finished = run_program({command, sequence_.string(), "--out", out_.string()},
                                           {.max_file_bytes = 1000});
@@ -103,7 +112,7 @@ TEST_F(OutputFolder, OnAFullDiskIsAnErrorThatNamesTheFileAndLeavesNothing) {
   }
 }
 
-TEST_F(OutputFolder, KeepsTheResultWhenOnlyPicturesDoNotFit) {
+TEST_F(FullDisk, KeepsTheResultWhenOnlyPicturesDoNotFit) {
   const Finished finished =
       run_program({"unwrap", sequence_.string(), "--out", out_.string()}, {.max_file_bytes = 5000});
   EXPECT_EQ(finished.status, 3);
@@ -112,7 +121,7 @@ TEST_F(OutputFolder, KeepsTheResultWhenOnlyPicturesDoNotFit) {
               ElementsAre("confidence", "options.yaml", "range", "report.json", "wraps"));
 }
 
-TEST_F(OutputFolder, OfASimulationOnAFullDiskIsAnErrorToo) {
+TEST_F(FullDisk, IsAnErrorOfASimulationToo) {
   const Finished finished = run_program(
       {"simulate", "room", "--out", out_.string(), "--frames", "1"}, {.max_file_bytes = 1000});
   EXPECT_EQ(finished.status, 3);

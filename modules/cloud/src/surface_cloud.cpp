@@ -23,6 +23,7 @@ SurfacePoint point_on_ray(const PixelRays& rays, int row, int col, float range_m
   point.normal_x = point.normal_y = point.normal_z = nan;
   point.data_n[3] = 0;
   point.sigma_m = nan;
+  point.normal_sigma_rad = nan;
   point.confidence = 0;
   return point;
 }
@@ -66,12 +67,14 @@ SurfacePoint surface_point(const InverseDepthImage& inverse, const RangeImage& i
       Eigen::Vector3f(plane.a, plane.b, plane.q0 - plane.a * x0 - plane.b * y0).normalized();
   const float ray_z = rays.z(row, col);
   const float incidence_cos = away.dot(Eigen::Vector3f(rays.x(row, col), rays.y(row, col), ray_z));
-  if (normal_sigma_rad(plane, incidence_cos) > options.max_normal_sigma_rad) return raw;
+  const float tilt_rad = normal_sigma_rad(plane, incidence_cos);
+  if (tilt_rad > options.max_normal_sigma_rad) return raw;
 
   const float range_m = 1 / (plane.q0 * ray_z);
   SurfacePoint point = point_on_ray(rays, row, col, range_m);
   point.getNormalVector3fMap() = -away;
   point.sigma_m = std::sqrt(plane.covariance(0, 0)) * range_m / plane.q0;
+  point.normal_sigma_rad = tilt_rad;
   point.confidence = raw.confidence;
   return point;
 }

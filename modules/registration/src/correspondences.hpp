@@ -11,10 +11,11 @@ namespace tofmap {
 
 /// A source point and the plane of a target it fell on, in world axes about a local origin.
 struct Correspondence {
-  Eigen::Vector3d point_m;  ///< source point, relative to the origin
-  Eigen::Vector3d normal;   ///< of the target's plane
-  double residual_m = 0;    ///< signed, from plane to point
-  double variance_m2 = 0;   ///< predicted, of the residual
+  Eigen::Vector3d point_m;      ///< source point, relative to the origin
+  Eigen::Vector3d normal;       ///< of the target's plane
+  double residual_m = 0;        ///< signed, from plane to point
+  double variance_m2 = 0;       ///< predicted, of the residual
+  double normal_sigma_rad = 0;  ///< of the plane's tilt
 };
 
 /// The source points that take part: every stride-th pixel in both axes that has a normal.

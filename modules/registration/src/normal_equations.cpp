@@ -33,6 +33,27 @@ double geman_mcclure_weight(double normalised_residual, double width) {
   return ratio * ratio;
 }
 
+namespace {
+
+/// Adds the covariance of a Jacobian whose normal is tilted at random, times `weight`.
+void add_feigned(const Correspondence& pair, double weight, Matrix6d& feigned) {
+  const double variance = pair.normal_sigma_rad * pair.normal_sigma_rad;
+  const Eigen::Vector3d along = pair.normal.unitOrthogonal();
+  const Eigen::Vector3d across = pair.normal.cross(along);
+  for (const Eigen::Vector3d& tilt : {along, across}) {
+    Vector6d jacobian;
+    jacobian << pair.point_m.cross(tilt), tilt;
+    feigned.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight * variance);
+  }
+}
+
+void fill_upper(Matrix6d& lower) {
+  lower.triangularView<Eigen::StrictlyUpper>() =
+      lower.transpose().triangularView<Eigen::StrictlyUpper>();
+}
+
+}  // namespace
+
 NormalEquations build_equations(const std::vector<Correspondence>& pairs, double kernel_width) {
   NormalEquations equations;
   for (const Correspondence& pair : pairs) {
@@ -42,9 +63,10 @@ NormalEquations build_equations(const std::vector<Correspondence>& pairs, double
     equations.information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
     equations.gradient += weight * pair.residual_m * jacobian;
     equations.weight_sum += weight;
+    add_feigned(pair, weight, equations.feigned);
   }
-  equations.information.triangularView<Eigen::StrictlyUpper>() =
-      equations.information.transpose().triangularView<Eigen::StrictlyUpper>();
+  fill_upper(equations.information);
+  fill_upper(equations.feigned);
   return equations;
 }
 
@@ -81,23 +103,23 @@ Observability observability(const NormalEquations& equations, double lever_m) {
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scaled);
   seen.shares = solver.eigenvalues().cwiseMax(0);
   seen.directions = solver.eigenvectors();
+  const Matrix6d feigned = seen.scale.asDiagonal() * equations.feigned * seen.scale.asDiagonal();
+  for (int i = 0; i < 6; ++i) {
+    seen.feigned[i] =
+        seen.directions.col(i).dot(feigned * seen.directions.col(i)) / equations.weight_sum;
+  }
   return seen;
 }
 
-int drop_open_directions(NormalEquations& equations, const Observability& seen, double min_share) {
+int open_directions(const NormalEquations& equations, const Observability& seen,
+                    const Vector6d& prior_sigmas) {
   int open = 0;
-  while (open < 6 && seen.shares[open] < min_share) ++open;
-  if (open == 0) return 0;
-  // In scaled coordinates the directions are orthonormal: project the system onto the rest.
-  const Vector6d unscale = seen.scale.cwiseInverse();
-  const Eigen::Matrix<double, 6, Eigen::Dynamic> kept = seen.directions.rightCols(6 - open);
-  const Matrix6d projector = kept * kept.transpose();
-  const Matrix6d scaled =
-      projector * (seen.scale.asDiagonal() * equations.information * seen.scale.asDiagonal()) *
-      projector;
-  equations.information = unscale.asDiagonal() * scaled * unscale.asDiagonal();
-  equations.gradient =
-      unscale.asDiagonal() * projector * seen.scale.cwiseProduct(equations.gradient);
+  for (int i = 0; i < 6; ++i) {
+    const Vector6d twist = seen.scale.cwiseProduct(seen.directions.col(i));
+    const double of_prior = twist.cwiseQuotient(prior_sigmas).squaredNorm();
+    const double of_surfaces = (seen.shares[i] - seen.feigned[i]) * equations.weight_sum;
+    open += of_surfaces < of_prior ? 1 : 0;
+  }
   return open;
 }
 

@@ -71,13 +71,13 @@ System build_system(const std::vector<Correspondence>& pairs, const Pose& pose, 
   system.equations.information *= independent;
   system.equations.gradient *= independent;
   system.equations.weight_sum *= independent;
+  system.equations.feigned *= independent;
 
   system.seen = observability(system.equations, lever_m);
-  system.open_directions =
-      drop_open_directions(system.equations, system.seen, options.min_direction_share);
   Vector6d sigmas;
   sigmas << Eigen::Vector3d::Constant(prior.rotation_sigma_rad),
       Eigen::Vector3d::Constant(prior.translation_sigma_m);
+  system.open_directions = open_directions(system.equations, system.seen, sigmas);
   add_prior(system.equations, twist_between(pose, prior.world_from_camera), sigmas);
   return system;
 }
@@ -107,8 +107,6 @@ std::vector<OptionField<RegistrationOptions>> RegistrationOptions::fields() {
        "error of a point that averaging does not lower, added to its predicted noise"},
       {"correlated_observations", &O::correlated_observations, 1, 1000, "",
        "how many correspondences count as one independent observation"},
-      {"min_direction_share", &O::min_direction_share, 0, 1, "",
-       "share of the observations a direction of motion needs; else the motion prior decides"},
       {"min_correspondences", &O::min_correspondences, 6, 1000000, "",
        "a frame with fewer is not registered"},
       {"min_overlap", &O::min_overlap, 0, 1, "",

@@ -21,13 +21,14 @@
 namespace tofmap {
 
 /// A point on a surface as one frame saw it: position in metres, unit normal towards the
-/// camera, standard deviation along the viewing ray, probability that its wrap count is
-/// right. A pixel without a point is NaN throughout; one without a normal (too few
+/// camera, standard deviation along the viewing ray and of the normal's direction (radians),
+/// probability that its wrap count is right. A pixel without a point is NaN throughout; one without a normal (too few
 /// neighbours on its surface) has a position and a NaN normal.
 struct EIGEN_ALIGN16 SurfacePoint {
   PCL_ADD_POINT4D;
   PCL_ADD_NORMAL4D;
   float sigma_m;
+  float normal_sigma_rad;
   float confidence;
   PCL_MAKE_ALIGNED_OPERATOR_NEW
 
@@ -67,5 +68,6 @@ SurfaceCloud raw_cloud(const RangeImage& image, const PixelRays& rays);
 POINT_CLOUD_REGISTER_POINT_STRUCT(tofmap::SurfacePoint,
     (float, x, x)(float, y, y)(float, z, z)
     (float, normal_x, normal_x)(float, normal_y, normal_y)(float, normal_z, normal_z)
-    (float, sigma_m, sigma_m)(float, confidence, confidence))
+    (float, sigma_m, sigma_m)(float, normal_sigma_rad, normal_sigma_rad)
+    (float, confidence, confidence))
 // clang-format on

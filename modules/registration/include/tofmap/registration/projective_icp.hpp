@@ -33,7 +33,6 @@ struct RegistrationOptions {
   double kernel_width = 3;
   double systematic_sigma_m = 0.003;
   double correlated_observations = 12;
-  double min_direction_share = 0.002;
   int min_correspondences = 200;
   double min_overlap = 0.15;
   double min_inlier_share = 0.5;
@@ -67,8 +66,7 @@ struct RegistrationResult {
   /// in world axes, prior included.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
-  /// How many of the six directions of motion the geometry leaves open. In these the pose
-  /// is the prior's.
+  /// How many of the six directions of motion the surfaces say less of than the prior does.
   int degenerate_directions = 0;
   /// Shares of the observations that constrain each direction, ascending: 0 (free) … 1, rotations
   /// measured at the source's typical range.
@@ -82,9 +80,9 @@ struct RegistrationResult {
 /// Gauss-Newton in double precision about the camera's centre. Each correspondence is
 /// weighted by the inverse of its predicted variance (noise of both points along the normal,
 /// plus `systematic_sigma_m`) and by a Geman-McClure kernel whose width is kernel_width times
-/// the robust scale of the residuals. Directions of motion that too few observations constrain
-/// are left to the prior (Zhang, Kaess and Singh, ICRA 2016). `camera` took source and targets.
-/// The result is the same for any number of threads.
+/// the robust scale of the residuals. The prior has its say in every direction of motion by its
+/// standard deviations, so it decides where the surfaces say little. `camera` took source and
+/// targets. The result is the same for any number of threads.
 RegistrationResult register_to_targets(const SurfaceCloud& source,
                                        std::span<const RegistrationTarget> targets,
                                        const CameraModel& camera, const MotionPrior& prior,
