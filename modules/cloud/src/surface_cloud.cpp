@@ -110,19 +110,4 @@ SurfaceCloud surface_cloud(const RangeImage& image, const PixelRays& rays,
   return cloud;
 }
 
-SurfaceCloud raw_cloud(const RangeImage& image, const PixelRays& rays) {
-  check_sizes(image, rays);
-  SurfaceCloud cloud = empty_cloud(image);
-  const int cols = static_cast<int>(image.cols());
-  for (int row = 0; row < image.rows(); ++row) {
-    for (int col = 0; col < cols; ++col) {
-      SurfacePoint& point = cloud.points[row * cols + col];
-      point = point_on_ray(rays, row, col, image.range_m(row, col));
-      point.sigma_m = image.sigma_m(row, col);
-      point.confidence = image.confidence(row, col);
-    }
-  }
-  return cloud;
-}
-
 }  // namespace tofmap

@@ -59,9 +59,6 @@ struct CloudOptions {
 SurfaceCloud surface_cloud(const RangeImage& image, const PixelRays& rays,
                            const CloudOptions& options);
 
-/// The points of a range image as they are, without normals.
-SurfaceCloud raw_cloud(const RangeImage& image, const PixelRays& rays);
-
 }  // namespace tofmap
 
 // clang-format off
