@@ -3,6 +3,7 @@
 
 #include "tofmap/visualization/cloud_pictures.hpp"
 
+#include "quantile.hpp"
 #include "tofmap/visualization/drawing.hpp"
 
 #include <algorithm>
@@ -48,16 +49,8 @@ LineLayer camera_outline(const PixelRays& rays, float depth_m) {
 
 /// The z-depth that nearly all points stay below; 1 m if there are none.
 double reach_m(const ImageF& range_m, const PixelRays& rays) {
-  std::vector<float> depths;
-  const ImageF depth_m = depth_from_range(range_m, rays);
-  for (const float depth : depth_m.reshaped()) {
-    if (std::isfinite(depth)) depths.push_back(depth);
-  }
-  if (depths.empty()) return 1;
   constexpr double share = 0.99;
-  const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(depths.size() - 1));
-  std::nth_element(depths.begin(), depths.begin() + place, depths.end());
-  return std::max(1.0F, depths[static_cast<std::size_t>(place)]);
+  return std::max(1.0F, finite_quantile(depth_from_range(range_m, rays), share).value_or(1));
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include "tofmap/visualization/frame_pictures.hpp"
 
+#include "quantile.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -27,15 +29,8 @@ Picture image_picture(Eigen::Index rows, Eigen::Index cols, const Color& color) 
 
 /// A round number that all but the farthest few of the ranges stay below; 1 if there are none.
 double round_limit_m(const ImageF& range_m) {
-  std::vector<float> ranges;
-  for (const float range : range_m.reshaped()) {
-    if (std::isfinite(range)) ranges.push_back(range);
-  }
-  if (ranges.empty()) return 1;
   constexpr double share = 0.998;
-  const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(ranges.size() - 1));
-  std::nth_element(ranges.begin(), ranges.begin() + place, ranges.end());
-  return std::max(1.0F, std::ceil(ranges[static_cast<std::size_t>(place)]));
+  return std::max(1.0F, std::ceil(finite_quantile(range_m, share).value_or(1)));
 }
 
 Picture jump_panel(const std::array<ImageF, 3>& planes) {
