@@ -35,16 +35,10 @@ double geman_mcclure_weight(double normalised_residual, double width) {
 
 namespace {
 
-/// Adds the covariance of a Jacobian whose normal is tilted at random, times `weight`.
-void add_feigned(const Correspondence& pair, double weight, Matrix6d& feigned) {
-  const double variance = pair.normal_sigma_rad * pair.normal_sigma_rad;
-  const Eigen::Vector3d along = pair.normal.unitOrthogonal();
-  const Eigen::Vector3d across = pair.normal.cross(along);
-  for (const Eigen::Vector3d& tilt : {along, across}) {
-    Vector6d jacobian;
-    jacobian << pair.point_m.cross(tilt), tilt;
-    feigned.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight * variance);
-  }
+/// Geman-McClure times the inverse of the predicted variance.
+double weight_of(const Correspondence& pair, double kernel_width) {
+  const double normalised = pair.residual_m / std::sqrt(pair.variance_m2);
+  return geman_mcclure_weight(normalised, kernel_width) / pair.variance_m2;
 }
 
 void fill_upper(Matrix6d& lower) {
@@ -57,17 +51,31 @@ void fill_upper(Matrix6d& lower) {
 NormalEquations build_equations(const std::vector<Correspondence>& pairs, double kernel_width) {
   NormalEquations equations;
   for (const Correspondence& pair : pairs) {
-    const double normalised = pair.residual_m / std::sqrt(pair.variance_m2);
-    const double weight = geman_mcclure_weight(normalised, kernel_width) / pair.variance_m2;
+    const double weight = weight_of(pair, kernel_width);
     const Vector6d jacobian = residual_jacobian(pair);
     equations.information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
     equations.gradient += weight * pair.residual_m * jacobian;
     equations.weight_sum += weight;
-    add_feigned(pair, weight, equations.feigned);
   }
   fill_upper(equations.information);
-  fill_upper(equations.feigned);
   return equations;
+}
+
+Matrix6d feigned_information(const std::vector<Correspondence>& pairs, double kernel_width) {
+  Matrix6d feigned = Matrix6d::Zero();
+  for (const Correspondence& pair : pairs) {
+    const double weight =
+        weight_of(pair, kernel_width) * pair.normal_sigma_rad * pair.normal_sigma_rad;
+    const Eigen::Vector3d along = pair.normal.unitOrthogonal();
+    const Eigen::Vector3d across = pair.normal.cross(along);
+    for (const Eigen::Vector3d& tilt : {along, across}) {
+      Vector6d jacobian;
+      jacobian << pair.point_m.cross(tilt), tilt;
+      feigned.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
+    }
+  }
+  fill_upper(feigned);
+  return feigned;
 }
 
 ResidualStatistics residual_statistics(const std::vector<Correspondence>& pairs,
@@ -103,21 +111,16 @@ Observability observability(const NormalEquations& equations, double lever_m) {
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scaled);
   seen.shares = solver.eigenvalues().cwiseMax(0);
   seen.directions = solver.eigenvectors();
-  const Matrix6d feigned = seen.scale.asDiagonal() * equations.feigned * seen.scale.asDiagonal();
-  for (int i = 0; i < 6; ++i) {
-    seen.feigned[i] =
-        seen.directions.col(i).dot(feigned * seen.directions.col(i)) / equations.weight_sum;
-  }
   return seen;
 }
 
-int open_directions(const NormalEquations& equations, const Observability& seen,
+int open_directions(const Observability& seen, const Matrix6d& surface_information,
                     const Vector6d& prior_sigmas) {
   int open = 0;
-  for (int i = 0; i < 6; ++i) {
-    const Vector6d twist = seen.scale.cwiseProduct(seen.directions.col(i));
+  for (const auto& direction : seen.directions.colwise()) {
+    const Vector6d twist = seen.scale.cwiseProduct(direction);
     const double of_prior = twist.cwiseQuotient(prior_sigmas).squaredNorm();
-    const double of_surfaces = (seen.shares[i] - seen.feigned[i]) * equations.weight_sum;
+    const double of_surfaces = twist.dot(surface_information * twist);
     open += of_surfaces < of_prior ? 1 : 0;
   }
   return open;

@@ -17,8 +17,6 @@ struct NormalEquations {
   Matrix6d information = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
   double weight_sum = 0;  ///< of 1 / variance, kernel included
-  /// What of the information is expected to come from the noise of the normals alone.
-  Matrix6d feigned = Matrix6d::Zero();
 };
 
 /// How well the residuals fit at one pose.
@@ -40,6 +38,9 @@ double geman_mcclure_weight(double normalised_residual, double width);
 
 NormalEquations build_equations(const std::vector<Correspondence>& pairs, double kernel_width);
 
+/// What of that information is expected to come from the noise of the normals alone.
+Matrix6d feigned_information(const std::vector<Correspondence>& pairs, double kernel_width);
+
 ResidualStatistics residual_statistics(const std::vector<Correspondence>& pairs,
                                        double kernel_scale, double kernel_width);
 
@@ -49,17 +50,16 @@ void add_prior(NormalEquations& equations, const Vector6d& expected, const Vecto
 /// Which directions the observations constrain. Rotations are measured as the motion of points
 /// at `lever_m`, so that all six compare.
 struct Observability {
-  Vector6d shares = Vector6d::Zero();          ///< of all observations, ascending
-  Vector6d feigned = Vector6d::Zero();         ///< shares that the noise of normals accounts for
+  Vector6d shares = Vector6d::Zero();          ///< ascending
   Matrix6d directions = Matrix6d::Identity();  ///< columns: scaled twists, same order
   Vector6d scale = Vector6d::Ones();           ///< twist = scale ∘ direction
 };
 
 Observability observability(const NormalEquations& equations, double lever_m);
 
-/// How many directions are open: the observations, without what noisy normals feign, say less of
-/// them than a prior of these standard deviations.
-int open_directions(const NormalEquations& equations, const Observability& seen,
+/// How many directions are open: the surfaces, whose information is without what noisy normals
+/// feign, say less of them than a prior of these standard deviations.
+int open_directions(const Observability& seen, const Matrix6d& surface_information,
                     const Vector6d& prior_sigmas);
 
 }  // namespace tofmap

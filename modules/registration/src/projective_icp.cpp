@@ -50,36 +50,51 @@ double median_range_m(const std::vector<const SurfacePoint*>& points) {
   return *middle;
 }
 
-/// The system at one pose, open directions left to the prior.
-struct System {
-  NormalEquations equations;
-  ResidualStatistics statistics;
-  Observability seen;
-  int open_directions = 0;
-};
-
-System build_system(const std::vector<Correspondence>& pairs, const Pose& pose, double lever_m,
-                    const MotionPrior& prior, const RegistrationOptions& options) {
-  System system;
-  const double scale = robust_scale(pairs);
-  const double width = options.kernel_width * scale;
-  system.equations = build_equations(pairs, width);
-  system.statistics = residual_statistics(pairs, scale, width);
-  // Points whose plane fits share pixels are no independent observations, and residuals
-  // above the predicted noise tell of less information than predicted.
-  const double independent = 1 / (options.correlated_observations * scale * scale);
-  system.equations.information *= independent;
-  system.equations.gradient *= independent;
-  system.equations.weight_sum *= independent;
-  system.equations.feigned *= independent;
-
-  system.seen = observability(system.equations, lever_m);
+/// The standard deviations of a prior, as those of a twist.
+Vector6d prior_sigmas(const MotionPrior& prior) {
   Vector6d sigmas;
   sigmas << Eigen::Vector3d::Constant(prior.rotation_sigma_rad),
       Eigen::Vector3d::Constant(prior.translation_sigma_m);
-  system.open_directions = open_directions(system.equations, system.seen, sigmas);
-  add_prior(system.equations, twist_between(pose, prior.world_from_camera), sigmas);
+  return sigmas;
+}
+
+/// The system at one pose, prior included.
+struct System {
+  std::vector<Correspondence> pairs;
+  NormalEquations equations;
+  ResidualStatistics statistics;
+  Observability seen;
+  Matrix6d information = Matrix6d::Zero();  ///< without the prior
+  double kernel_width = 0;
+  double independent = 0;  ///< observations a correspondence is worth
+};
+
+System build_system(std::vector<Correspondence> pairs, const Pose& pose, double lever_m,
+                    const MotionPrior& prior, const RegistrationOptions& options) {
+  System system;
+  const double scale = robust_scale(pairs);
+  system.kernel_width = options.kernel_width * scale;
+  system.equations = build_equations(pairs, system.kernel_width);
+  system.statistics = residual_statistics(pairs, scale, system.kernel_width);
+  // Points whose plane fits share pixels are no independent observations, and residuals
+  // above the predicted noise tell of less information than predicted.
+  system.independent = 1 / (options.correlated_observations * scale * scale);
+  system.equations.information *= system.independent;
+  system.equations.gradient *= system.independent;
+  system.equations.weight_sum *= system.independent;
+
+  system.seen = observability(system.equations, lever_m);
+  system.information = system.equations.information;
+  add_prior(system.equations, twist_between(pose, prior.world_from_camera), prior_sigmas(prior));
+  system.pairs = std::move(pairs);
   return system;
+}
+
+/// Directions of which the surfaces say less than the prior, at the pose of a system.
+int open_directions(const System& system, const MotionPrior& prior) {
+  const Matrix6d feigned =
+      system.independent * feigned_information(system.pairs, system.kernel_width);
+  return open_directions(system.seen, system.information - feigned, prior_sigmas(prior));
 }
 
 RegistrationStatus verdict(const RegistrationResult& result, bool has_converged,
@@ -87,6 +102,37 @@ RegistrationStatus verdict(const RegistrationResult& result, bool has_converged,
   if (result.overlap < options.min_overlap) return RegistrationStatus::low_overlap;
   if (result.inlier_share < options.min_inlier_share) return RegistrationStatus::low_inliers;
   return has_converged ? RegistrationStatus::converged : RegistrationStatus::iteration_limit;
+}
+
+/// Gauss-Newton from the pose of `result`, which it keeps up to date; `last` is the last system
+/// that was solved.
+RegistrationStatus refine(const std::vector<const SurfacePoint*>& points,
+                          std::span<const RegistrationTarget> targets, const CameraModel& camera,
+                          const MotionPrior& prior, const RegistrationOptions& options,
+                          RegistrationResult& result, System& last) {
+  const double lever_m = median_range_m(points);
+  bool has_converged = false;
+  while (result.iterations < options.max_iterations && !has_converged) {
+    Correspondences found =
+        find_correspondences(points, result.world_from_camera, targets, camera, options);
+    result.correspondences = static_cast<int>(found.pairs.size());
+    if (result.correspondences < options.min_correspondences) {
+      return RegistrationStatus::few_correspondences;
+    }
+    last = build_system(std::move(found.pairs), result.world_from_camera, lever_m, prior, options);
+    const Eigen::LDLT<Matrix6d> solver(last.equations.information);
+    const Vector6d twist = -solver.solve(last.equations.gradient);
+    result.world_from_camera = moved(result.world_from_camera, twist);
+    result.covariance = solver.solve(Matrix6d::Identity());
+    result.overlap = found.overlap;
+    result.inlier_share = last.statistics.inlier_share;
+    result.rmse_m = last.statistics.rmse_m;
+    result.residual_scale = last.statistics.scale;
+    result.direction_shares = last.seen.shares;
+    has_converged = is_below_tolerance(twist);
+    ++result.iterations;
+  }
+  return verdict(result, has_converged, options);
 }
 
 }  // namespace
@@ -147,32 +193,9 @@ RegistrationResult register_to_targets(const SurfaceCloud& source,
   result.world_from_camera = prior.world_from_camera;
   const auto points = select_points(source, options.source_stride_px);
   if (points.empty() || targets.empty()) return result;
-  const double lever_m = median_range_m(points);
-
-  bool has_converged = false;
-  while (result.iterations < options.max_iterations && !has_converged) {
-    const auto [pairs, overlap] =
-        find_correspondences(points, result.world_from_camera, targets, camera, options);
-    result.correspondences = static_cast<int>(pairs.size());
-    if (result.correspondences < options.min_correspondences) {
-      result.status = RegistrationStatus::few_correspondences;
-      return result;
-    }
-    const System system = build_system(pairs, result.world_from_camera, lever_m, prior, options);
-    const Eigen::LDLT<Matrix6d> solver(system.equations.information);
-    const Vector6d twist = -solver.solve(system.equations.gradient);
-    result.world_from_camera = moved(result.world_from_camera, twist);
-    result.covariance = solver.solve(Matrix6d::Identity());
-    result.overlap = overlap;
-    result.inlier_share = system.statistics.inlier_share;
-    result.rmse_m = system.statistics.rmse_m;
-    result.residual_scale = system.statistics.scale;
-    result.degenerate_directions = system.open_directions;
-    result.direction_shares = system.seen.shares;
-    has_converged = is_below_tolerance(twist);
-    ++result.iterations;
-  }
-  result.status = verdict(result, has_converged, options);
+  System last;
+  result.status = refine(points, targets, camera, prior, options, result, last);
+  if (result.iterations > 0) result.degenerate_directions = open_directions(last, prior);
   return result;
 }
 

@@ -22,8 +22,8 @@ namespace tofmap {
 
 /// A point on a surface as one frame saw it: position in metres, unit normal towards the
 /// camera, standard deviation along the viewing ray and of the normal's direction (radians),
-/// probability that its wrap count is right. A pixel without a point is NaN throughout; one without a normal (too few
-/// neighbours on its surface) has a position and a NaN normal.
+/// probability that its wrap count is right. A pixel without a point is NaN throughout; one
+/// without a normal (too few neighbours on its surface) has a position and a NaN normal.
 struct EIGEN_ALIGN16 SurfacePoint {
   PCL_ADD_POINT4D;
   PCL_ADD_NORMAL4D;
