@@ -31,7 +31,7 @@ int run_simulate(const SimulateArguments& arguments) {
   if (!arguments.seed.empty()) table.set("simulator.seed", arguments.seed);
   if (!arguments.frames.empty()) table.set("simulator.frames", arguments.frames);
 
-  const Simulator simulator(find_scene(arguments.scene), options.simulator);
+  const Simulator simulator(find_scene(arguments.scene, options.simulator.seed), options.simulator);
   OutputFolder out(arguments.out, Replaces::recordings);
   const int total = *simulator.frame_count();
   int written = 0;

@@ -13,6 +13,9 @@ Scene beyond_scene();
 Scene corridor_scene();
 Scene room_scene();
 Scene flat_scene();
+Scene hall_scene();
+Scene atrium_scene();
+Scene random_scene(int seed);
 
 /// Floor, ceiling and four walls of a room with one corner at the origin.
 void add_hull(TriangleMesh& mesh, const Eigen::Vector3d& size_m, double floor, double ceiling,

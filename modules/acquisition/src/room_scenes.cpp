@@ -178,4 +178,71 @@ Scene flat_scene() {
   return scene;
 }
 
+/// A hall of a school: mostly within one wavelength of where the camera walks, columns, benches,
+/// and a far end.
+Scene hall_scene() {
+  Scene scene{.name = "hall", .min_frames = 120, .max_range_m = 10.5};
+  TriangleMesh& mesh = scene.surface;
+  add_hull(mesh, {9, 5.5, 3.2}, 0.4, 0.8, 0.65);
+  for (const double x : {2.2, 4.5, 6.8}) {
+    add_cylinder(mesh, {x, 1.1, 0}, 0.18, 3.2, 0.7);
+    add_box(mesh, {x - 0.15, 4.25, 0}, {x + 0.15, 4.55, 3.2}, 0.6);
+    add_box(mesh, {x - 1.0, 5.05, 0}, {x + 0.4, 5.45, 0.45}, 0.35);
+    add_box(mesh, {x - 0.2, 0, 2.8}, {x + 0.2, 5.5, 3.2}, 0.75);
+  }
+  add_shelf(mesh, {0.6, 0.02, 0}, {2.0, 0.4, 1.9}, true, 0.5);
+  add_shelf(mesh, {7.2, 0.02, 0}, {8.6, 0.4, 1.9}, true, 0.3);
+  add_box(mesh, {8.6, 2.0, 0}, {8.98, 3.4, 2.1}, 0.2);
+  add_table(mesh, {4.0, 2.2, 0}, {5.4, 3.0, 0.75}, 0.55);
+  add_cylinder(mesh, {8.2, 4.8, 0}, 0.03, 1.9, 0.4);
+  std::vector<Waypoint> waypoints;
+  constexpr int count = 12;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * std::numbers::pi * i / count;
+    const Vector3d place(4.6 + 2.9 * std::cos(angle), 2.7 + 0.75 * std::sin(angle), 1.5);
+    waypoints.push_back(
+        {place, {-std::sin(angle) - 0.6 * std::cos(angle), 0.8 * std::cos(angle), -0.1}});
+  }
+  scene.path = CameraPath(std::move(waypoints), true);
+  return scene;
+}
+
+/// An atrium of 30 m with galleries around it, most of it several wavelengths away.
+Scene atrium_scene() {
+  Scene scene{.name = "atrium", .min_frames = 120, .max_range_m = 38};
+  TriangleMesh& mesh = scene.surface;
+  constexpr double length = 30;
+  constexpr double width = 18;
+  constexpr double height = 12;
+  add_hull(mesh, {length, width, height}, 0.6, 0.85, 0.75);
+  for (const double level : {3.6, 7.4}) {
+    add_box(mesh, {0, 0, level}, {length, 2.6, level + 0.3}, 0.7);
+    add_box(mesh, {0, width - 2.6, level}, {length, width, level + 0.3}, 0.7);
+    add_box(mesh, {length - 3, 2.6, level}, {length, width - 2.6, level + 0.3}, 0.65);
+    add_box(mesh, {0, 2.5, level + 0.3}, {length, 2.6, level + 1.3}, 0.8);
+    add_box(mesh, {0, width - 2.6, level + 0.3}, {length, width - 2.5, level + 1.3}, 0.8);
+  }
+  for (double x = 4; x < length - 2; x += 5) {
+    add_cylinder(mesh, {x, 2.4, 0}, 0.3, height, 0.75);
+    add_box(mesh, {x - 0.25, width - 2.9, 0}, {x + 0.25, width - 2.4, height}, 0.7);
+    add_box(mesh, {x - 0.6, 7.0, 0}, {x + 0.6, 8.2, 0.5}, 0.5);
+    add_cylinder(mesh, {x + 1.5, 11.2, 0}, 0.45, 0.9, 0.3);
+    add_cylinder(mesh, {x + 1.5, 11.2, 0.9}, 0.12, 2.4, 0.35);
+  }
+  add_box(mesh, {19, 8.2, 0}, {22, 10.6, 2.4}, 0.55);
+  add_box(mesh, {12, 4.6, 0}, {13.2, 5.4, 1.1}, 0.85);
+  // Stairs to the first gallery.
+  for (int step = 0; step < 12; ++step) {
+    const double x = 23 + 0.32 * step;
+    add_box(mesh, {x, 3.2, 0}, {x + 0.32, 4.6, 0.3 * (step + 1)}, 0.6);
+  }
+  std::vector<Waypoint> waypoints;
+  for (int i = 0; i <= 8; ++i) {
+    const double sway = i % 2 == 0 ? 0.3 : -0.3;
+    waypoints.push_back({{1.6 + 0.9 * i, 9.2 + sway, 1.6}, {1, 0.35 * std::sin(0.8 * i), 0.02}});
+  }
+  scene.path = CameraPath(std::move(waypoints), false);
+  return scene;
+}
+
 }  // namespace tofmap

@@ -14,15 +14,23 @@ namespace {
 
 struct NamedScene {
   const char* name;
-  Scene (*make)();
+  Scene (*make)(int seed);
 };
 
-constexpr std::array<NamedScene, 6> builtin{{{"wall", wall_scene},
-                                             {"slope", slope_scene},
-                                             {"beyond", beyond_scene},
-                                             {"corridor", corridor_scene},
-                                             {"room", room_scene},
-                                             {"flat", flat_scene}}};
+template <Scene (*make)()>
+Scene without_seed(int /*seed*/) {
+  return make();
+}
+
+constexpr std::array<NamedScene, 9> builtin{{{"wall", without_seed<wall_scene>},
+                                             {"slope", without_seed<slope_scene>},
+                                             {"beyond", without_seed<beyond_scene>},
+                                             {"corridor", without_seed<corridor_scene>},
+                                             {"room", without_seed<room_scene>},
+                                             {"flat", without_seed<flat_scene>},
+                                             {"hall", without_seed<hall_scene>},
+                                             {"atrium", without_seed<atrium_scene>},
+                                             {"random", random_scene}}};
 
 bool is_mesh_name(const std::string& text) {
   const std::string ending = std::filesystem::path(text).extension().string();
@@ -40,9 +48,9 @@ const std::vector<std::string>& scene_names() {
   return names;
 }
 
-Scene make_scene(const std::string& name) {
+Scene make_scene(const std::string& name, int seed) {
   for (const NamedScene& scene : builtin) {
-    if (name == scene.name) return scene.make();
+    if (name == scene.name) return scene.make(seed);
   }
   std::string known;
   for (const std::string& other : scene_names()) known += (known.empty() ? "" : ", ") + other;
@@ -50,8 +58,9 @@ Scene make_scene(const std::string& name) {
                    ", or a mesh file (.ply, .obj)");
 }
 
-Scene find_scene(const std::string& name_or_file) {
-  return is_mesh_name(name_or_file) ? make_mesh_scene(name_or_file) : make_scene(name_or_file);
+Scene find_scene(const std::string& name_or_file, int seed) {
+  return is_mesh_name(name_or_file) ? make_mesh_scene(name_or_file)
+                                    : make_scene(name_or_file, seed);
 }
 
 }  // namespace tofmap

@@ -23,14 +23,15 @@ struct Scene {
 /// The built-in scenes, in the order of docs/simulator.md.
 const std::vector<std::string>& scene_names();
 
-/// A built-in scene. Throws UsageError that lists the names if there is none of that name.
-Scene make_scene(const std::string& name);
+/// A built-in scene; the seed draws the room of `random`, and means nothing to the others. Throws
+/// UsageError that lists the names if there is none of that name.
+Scene make_scene(const std::string& name, int seed = 1);
 
 /// A mesh from a file, with a path that is found by ray casting: a loop at eye height through the
 /// largest free space inside; if there is none (the mesh is an object), an orbit around it.
 Scene make_mesh_scene(const std::filesystem::path& file);
 
 /// A built-in scene, or a mesh where the text names a PLY or OBJ file.
-Scene find_scene(const std::string& name_or_file);
+Scene find_scene(const std::string& name_or_file, int seed = 1);
 
 }  // namespace tofmap
