@@ -11,8 +11,8 @@
 namespace tofmap {
 namespace {
 
-TEST(PhaseNoise, IsFoundOnAWrappedSlopeOfVaryingAmplitude) {
-  constexpr double scale = 2.0;
+/// Noise of σ = scale / amplitude on a wrapped slope with a step, under varying amplitudes.
+DualFrequencyFrame noisy_slope(double scale) {
   std::mt19937 random(11);
   std::normal_distribution<double> normal(0, 1);
   DualFrequencyFrame frame;
@@ -20,17 +20,40 @@ TEST(PhaseNoise, IsFoundOnAWrappedSlopeOfVaryingAmplitude) {
   frame.amplitude_a.resize(96, 128);
   for (Eigen::Index v = 0; v < 96; ++v) {
     for (Eigen::Index u = 0; u < 128; ++u) {
-      const double amplitude = 50 + 3.0 * static_cast<double>(u);
-      const double cycles = 0.021 * static_cast<double>(u) + 0.013 * static_cast<double>(v) +
-                            scale / amplitude * normal(random);
+      const double amplitude = 50 + 3.0 * static_cast<double>(u % 40);
+      const double cycles = 0.011 * static_cast<double>(u) + 0.007 * static_cast<double>(v) +
+                            (u > 60 ? 0.4 : 0) + scale / amplitude * normal(random);
       frame.amplitude_a(v, u) = static_cast<float>(amplitude);
       frame.phase_a(v, u) = static_cast<float>(cycles - std::floor(cycles));
     }
   }
   frame.phase_b = frame.phase_a;
   frame.amplitude_b = frame.amplitude_a;
-  // The median of 24 000 second differences scatters by about one percent.
-  EXPECT_NEAR(estimate_phase_noise(frame).scale_a, scale, 0.05 * scale);
+  return frame;
+}
+
+class PhaseNoiseOf : public testing::TestWithParam<double> {};
+// At an amplitude of 100 from a thousandth of a cycle to 1.6 radians, where most differences wrap.
+INSTANTIATE_TEST_SUITE_P(Scales, PhaseNoiseOf,
+                         testing::Values(0.1, 2.0, 5.0, 8.0, 12.0, 16.0, 20.0, 25.0));
+
+TEST_P(PhaseNoiseOf, IsFoundOnAWrappedSlopeOfVaryingAmplitude) {
+  // The median of 16 000 second differences scatters by about one percent; slopes and steps
+  // add a little.
+  EXPECT_NEAR(estimate_phase_noise(noisy_slope(GetParam())).scale_a, GetParam(), 0.05 * GetParam());
+}
+
+TEST(PhaseNoise, IsNoLessThanTheQuantisationOfPhases) {
+  DualFrequencyFrame frame;
+  frame.phase_a = frame.phase_b = ImageF::Constant(20, 20, 0.5F);
+  EXPECT_GT(estimate_phase_noise(frame).scale_a, 0.1 / 65535);
+}
+
+TEST(PhaseNoise, IsAGuessWherePixelsAreTooFewToTell) {
+  DualFrequencyFrame frame;
+  frame.phase_a = frame.phase_b = ImageF::Constant(1, 2, 0.5F);
+  frame.amplitude_a = frame.amplitude_b = ImageF::Constant(1, 2, 50.0F);
+  EXPECT_DOUBLE_EQ(estimate_phase_noise(frame).scale_a, 0.01 * 50);
 }
 
 }  // namespace
