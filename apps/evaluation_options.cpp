@@ -4,24 +4,29 @@
 #include "evaluation_options.hpp"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 #include <sstream>
-#include <string_view>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap::app {
 namespace {
 
-constexpr std::array<std::string_view, 4> all_methods{"none", "pixel", "single", "jump"};
+bool is_method(const std::string& name) {
+  std::istringstream all(unwrap_method_names(" "));
+  using Words = std::istream_iterator<std::string>;
+  return std::find(Words(all), Words(), name) != Words();
+}
 
 }  // namespace
 
 std::vector<OptionField<EvaluationOptions>> EvaluationOptions::fields() {
   using O = EvaluationOptions;
+  static const std::string methods_meaning =
+      "methods to compare, separated by spaces: " + unwrap_method_names(", ");
   return {
-      {"methods", &O::methods, 0, 0, "",
-       "methods to compare, separated by spaces: none, pixel, single, jump"},
+      {"methods", &O::methods, 0, 0, "", methods_meaning},
       {"down_to", &O::down_to, 0, 0, "", "how far to go", "unwrapping | map"},
   };
 }
@@ -30,9 +35,9 @@ std::vector<std::string> method_names(const EvaluationOptions& options) {
   std::vector<std::string> names;
   std::istringstream words(options.methods);
   for (std::string name; words >> name;) {
-    if (std::ranges::find(all_methods, name) == all_methods.end()) {
+    if (!is_method(name)) {
       throw UsageError("option evaluation.methods: '" + name +
-                       "' is no method; allowed: none pixel single jump");
+                       "' is no method; allowed: " + unwrap_method_names(" "));
     }
     if (std::ranges::find(names, name) != names.end()) {
       throw UsageError("option evaluation.methods: '" + name + "' is named twice");
@@ -40,7 +45,8 @@ std::vector<std::string> method_names(const EvaluationOptions& options) {
     names.push_back(name);
   }
   if (names.empty()) {
-    throw UsageError("option evaluation.methods: names no method; allowed: none pixel single jump");
+    throw UsageError("option evaluation.methods: names no method; allowed: " +
+                     unwrap_method_names(" "));
   }
   return names;
 }

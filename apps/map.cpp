@@ -96,7 +96,7 @@ void add_map_command(CLI::App& program, Outcome& outcome) {
   CLI::App* app = program.add_subcommand("map", "make a map of the room from a recording");
   app->add_option("SEQ", arguments->sequence, "folder of the recording")->required();
   app->add_option("--out", arguments->out, "folder for the result")->required();
-  app->add_option("--method", arguments->method, "how to unwrap: jump, single, pixel, none");
+  app->add_option("--method", arguments->method, "how to unwrap: " + unwrap_method_names(", "));
   arguments->common.add_to(*app);
   app->callback([arguments, &outcome] { outcome.status = run_map(*arguments); });
 }

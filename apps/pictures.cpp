@@ -63,6 +63,7 @@ void write_pictures_of(const DualFrequencyFrame& frame, const SensorModel& senso
   };
   write("range", range_picture(wrapped_m, unwrapped.range_m));
   write("wraps", wrap_count_picture(unwrapped.wrap_count));
+  write("confidence", confidence_picture(unwrapped));
   if (finds_jumps(options)) write("jumps", jump_stages_picture(frame, sensor, options));
   write("cloud", cloud_picture(unwrapped, wrapped_m, rays));
 }

@@ -95,6 +95,7 @@ UnwrappedFrame unwrap_frame(const SequenceReader& source, int index, const Pixel
                  {"largest_message_change", result.largest_message_change},
                  {"phase_noise_cycles", result.phase_noise_cycles},
                  {"regions", result.regions},
+                 {"ambiguous_pixels", count_reason(result.image, InvalidReason::ambiguous)},
                  {"valid_pixels", image.count_valid()}};
   if (arguments.with_filters) {
     FilterResult filtered = apply_filters(image, *sourced.frame, rays, options.filters);
@@ -105,7 +106,7 @@ UnwrappedFrame unwrap_frame(const SequenceReader& source, int index, const Pixel
   write_png(out / "range" / name, range_mm(image, name.string()));
   write_png(out / "wraps" / name, image.wrap_count);
   write_png(out / "confidence" / name, confidence_u16(image.confidence));
-  if (arguments.with_filters) write_png(out / "reason" / name, image.reason);
+  write_png(out / "reason" / name, image.reason);
   return {std::move(report), false, ""};
 }
 
@@ -138,8 +139,7 @@ int run_unwrap(const UnwrapArguments& arguments) {
   const SequenceReader source(arguments.sequence);
   limit_to_image_format(options.pipeline.unwrap, source.sensor());
   OutputFolder out(arguments.out);
-  for (const char* name : {"range", "wraps", "confidence"}) out.make(name);
-  if (arguments.with_filters) out.make("reason");
+  for (const char* name : {"range", "wraps", "confidence", "reason"}) out.make(name);
 
   const PixelRays rays = pixel_rays(source.sensor().camera);
   const int total = *source.frame_count();
@@ -186,11 +186,11 @@ void add_unwrap_command(CLI::App& program, Outcome& outcome) {
   CLI::App* app = program.add_subcommand("unwrap", "make unwrapped range images of a recording");
   app->add_option("SEQ", arguments->sequence, "folder of the recording")->required();
   app->add_option("--out", arguments->out, "folder for the result")->required();
-  app->add_option("--method", arguments->method, "how to unwrap: jump, single, pixel, none");
+  app->add_option("--method", arguments->method, "how to unwrap: " + unwrap_method_names(", "));
   app->add_option("--min-confidence", arguments->min_confidence,
                   "pixels less sure than this become invalid")
       ->check(CLI::Range(0.0, 1.0));
-  app->add_flag("--filters", arguments->with_filters, "apply the filter chain, write reasons");
+  app->add_flag("--filters", arguments->with_filters, "apply the filter chain");
   arguments->common.add_to(*app);
   app->callback([arguments, &outcome] { outcome.status = run_unwrap(*arguments); });
 }

@@ -164,7 +164,7 @@ void add_view_command(CLI::App& program, Outcome& outcome) {
   app->add_option("--from", arguments->from, "viewpoint: outside, above, inside")
       ->check(CLI::IsMember({"outside", "above", "inside"}));
   app->add_option("--method", arguments->method,
-                  "how to unwrap a recording: jump, single, pixel, none");
+                  "how to unwrap a recording: " + unwrap_method_names(", "));
   app->add_option("--frame", arguments->frame, "frame of a recording, from 0")
       ->check(CLI::Range(0, 1000000));
   app->add_option("--width", arguments->width_px, "of the picture, pixels")

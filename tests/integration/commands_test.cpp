@@ -53,7 +53,7 @@ TEST_F(Commands, UnwrapWritesImagesOfTheFixedFormats) {
   ASSERT_EQ(finished.status, 0) << finished.err;
   EXPECT_EQ(finished.err, "") << "no progress bar where stderr is no terminal";
   EXPECT_THAT(names_in(out_),
-              ElementsAre("confidence", "options.yaml", "range", "report.json", "wraps"));
+              ElementsAre("confidence", "options.yaml", "range", "reason", "report.json", "wraps"));
   EXPECT_THAT(names_in(out_ / "range"),
               ElementsAre("000000.png", "000001.png", "000002.png", "000003.png"));
   const ImageU16 range_mm = read_png_16(out_ / "range" / "000002.png");
@@ -61,11 +61,12 @@ TEST_F(Commands, UnwrapWritesImagesOfTheFixedFormats) {
   const ImageU16 confidence = read_png_16(out_ / "confidence" / "000002.png");
   ASSERT_TRUE(same_size(range_mm, wraps) && same_size(range_mm, confidence));
   EXPECT_TRUE(((range_mm == 0) == (wraps == 255)).all()) << "invalid in one, invalid in all";
-  // The wrap count is the range in whole wavelengths; half a millimetre is rounded off.
+  // The wrap count is the range in whole wavelengths; at their bounds noise of both frequencies
+  // decides, five standard deviations of some 10 cm in the darkest corners.
   for (Eigen::Index i = 0; i < wraps.size(); ++i) {
     if (wraps.data()[i] == 255) continue;
     const double wavelengths = range_mm.data()[i] / 5168.835;
-    EXPECT_NEAR(wavelengths, wraps.data()[i] + 0.5, 0.5 + 1e-4);
+    EXPECT_NEAR(wavelengths, wraps.data()[i] + 0.5, 0.5 + 0.1);
   }
 }
 
@@ -147,10 +148,17 @@ TEST_F(Commands, MapTakesTheOptionsItWrote) {
 
 TEST_F(Commands, UnwrapDrawsAFewFrames) {
   ASSERT_EQ(run("unwrap", {"--set", "pictures.frames=2"}).status, 0);
-  EXPECT_THAT(
-      names_in(out_ / "pictures"),
-      ElementsAre("000001_cloud.png", "000001_jumps.png", "000001_range.png", "000001_wraps.png",
-                  "000003_cloud.png", "000003_jumps.png", "000003_range.png", "000003_wraps.png"));
+  EXPECT_THAT(names_in(out_ / "pictures"),
+              ElementsAre("000001_cloud.png", "000001_confidence.png", "000001_range.png",
+                          "000001_wraps.png", "000003_cloud.png", "000003_confidence.png",
+                          "000003_range.png", "000003_wraps.png"));
+}
+
+TEST_F(Commands, UnwrapDrawsTheJumpsOfTheMethodThatHasThem) {
+  ASSERT_EQ(run("unwrap", {"--method", "jump", "--set", "pictures.frames=1"}).status, 0);
+  EXPECT_THAT(names_in(out_ / "pictures"),
+              ElementsAre("000002_cloud.png", "000002_confidence.png", "000002_jumps.png",
+                          "000002_range.png", "000002_wraps.png"));
 }
 
 TEST_F(Commands, MapDrawsTheRoom) {
@@ -201,7 +209,7 @@ TEST_F(Commands, EvaluateComparesTheMethods) {
   const Finished finished = run("evaluate");
   ASSERT_EQ(finished.status, 0) << finished.err;
   const auto report = read_json(out_ / "report.json");
-  for (const char* method : {"none", "pixel", "single", "jump"}) {
+  for (const char* method : {"none", "pixel", "single", "jump", "joint"}) {
     EXPECT_THAT(finished.out, HasSubstr(method));
     const auto& unwrapping = report["unwrapping"][method];
     for (const char* key : {"wrong_wrap_percent", "coverage_percent", "range_rmse_m"}) {

@@ -85,10 +85,10 @@ TEST_F(OutputFolder, ThatHoldsTheRecordingIsKept) {
 }
 
 TEST_F(OutputFolder, IsReplacedWholeByANewResult) {
-  ASSERT_EQ(run("unwrap", {"--filters"}).status, 0);
-  ASSERT_TRUE(fs::exists(out_ / "reason"));
+  ASSERT_EQ(run("map").status, 0);
+  ASSERT_TRUE(fs::exists(out_ / "map.ply"));
   ASSERT_EQ(run("unwrap").status, 0);
-  EXPECT_FALSE(fs::exists(out_ / "reason")) << "of the earlier result";
+  EXPECT_FALSE(fs::exists(out_ / "map.ply")) << "of the earlier result";
   EXPECT_EQ(names_in(folder_.path()), (std::vector<std::string>{"out", "seq"}));
 }
 
@@ -118,7 +118,7 @@ TEST_F(FullDisk, KeepsTheResultWhenOnlyPicturesDoNotFit) {
   EXPECT_EQ(finished.status, 3);
   EXPECT_THAT(finished.err, HasSubstr("cannot be written"));
   EXPECT_THAT(names_in(out_),
-              ElementsAre("confidence", "options.yaml", "range", "report.json", "wraps"));
+              ElementsAre("confidence", "options.yaml", "range", "reason", "report.json", "wraps"));
 }
 
 TEST_F(FullDisk, IsAnErrorOfASimulationToo) {

@@ -163,7 +163,7 @@ TEST(Unwrapping, GivesPixelsWithoutAReturnNoRange) {
 TEST(Unwrapping, OfAnImageWithoutAnyReturnIsEmpty) {
   TwoWalls walls = two_walls(3, 9);
   walls.frame.phase_a.setConstant(NAN);
-  for (const char* method : {"none", "pixel", "single", "jump"}) {
+  for (const char* method : {"none", "pixel", "single", "jump", "joint"}) {
     UnwrapOptions options;
     options.method = method;
     EXPECT_EQ(unwrap(walls.frame, walls.sensor, options).image.count_valid(), 0) << method;

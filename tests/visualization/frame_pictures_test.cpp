@@ -60,6 +60,21 @@ TEST(JumpPicture, MixesColorsByProbability) {
   EXPECT_NEAR(count(picture, jump_color(0, 1, 0)), (180 + 190) * square, square);
 }
 
+TEST(ConfidencePicture, ColoursSureUnsureAndInvalidPixelsApart) {
+  RangeImage image(20, 30);
+  image.reason.leftCols(20).setZero();
+  image.range_m.leftCols(20).setConstant(3);
+  image.confidence.leftCols(10).setConstant(1);
+  image.confidence.middleCols(10, 10).setConstant(0.2F);
+  const ColorScale scale(0, 1, "");
+  const Picture picture = confidence_picture(image);
+  const int square = (530 / 30) * (530 / 30);
+  for (const double confidence : {1.0, 0.2}) {
+    EXPECT_GE(count(picture, scale(confidence)), 200 * square) << confidence;
+  }
+  EXPECT_GE(count(picture, colors::invalid), 200 * square);
+}
+
 TEST(CloudPicture, ShowsCorrectedPixelsInRed) {
   CameraModel camera;
   camera.width_px = 40;

@@ -26,6 +26,8 @@ const char* reason_name(InvalidReason reason) {
       return "jump_edge";
     case InvalidReason::out_of_range:
       return "out_of_range";
+    case InvalidReason::ambiguous:
+      return "ambiguous";
   }
   return "unknown";
 }

@@ -50,6 +50,11 @@ bool count_within_limits(const BeatLimits& limits, float phase_a, int n_a) {
          range_m <= limits.max_range_m + noise_tolerance_cycles * limits.wavelength_a_m;
 }
 
+bool can_tell_apart(const BeatLimits& limits, int n_a, int other_n_a) {
+  const double cycles_b = (n_a - other_n_a) * limits.wavelength_a_m / limits.wavelength_b_m;
+  return std::abs(cycles_b - std::round(cycles_b)) > noise_tolerance_cycles;
+}
+
 ImageU8 nearest_pair_counts(const DualFrequencyFrame& frame, const BeatLimits& limits) {
   ImageU8 counts =
       ImageU8::Constant(frame.phase_a.rows(), frame.phase_a.cols(), invalid_wrap_count);

@@ -5,18 +5,33 @@
 
 #include "confidence.hpp"
 #include "tofmap/unwrap/beat.hpp"
+#include "tofmap/unwrap/count_estimate.hpp"
 #include "tofmap/unwrap/jump_estimate.hpp"
 #include "tofmap/unwrap/jump_integration.hpp"
 #include "tofmap/unwrap/phase_noise.hpp"
+#include "tofmap/unwrap/range_fusion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include <tofmap/core/error.hpp>
 
 namespace tofmap {
 namespace {
+
+struct NamedMethod {
+  std::string_view name;
+  UnwrapMethod method;
+};
+
+constexpr std::array<NamedMethod, 5> methods{{{"joint", UnwrapMethod::joint},
+                                              {"jump", UnwrapMethod::jump},
+                                              {"single", UnwrapMethod::single},
+                                              {"pixel", UnwrapMethod::pixel},
+                                              {"none", UnwrapMethod::none}}};
 
 void check(const DualFrequencyFrame& frame) {
   const bool agree = same_size(frame.phase_a, frame.phase_b) &&
@@ -80,6 +95,48 @@ ImageU8 absolute_counts(const RelativeCounts& relative, const Anchors& anchors, 
   return counts;
 }
 
+/// The options of `joint` as its stages know them.
+CountEstimation count_estimation(const UnwrapOptions& options) {
+  return {.prior = {.outlier_share = options.outlier_share,
+                    .slope_m = options.slope_m,
+                    .edge_share = options.edge_share,
+                    .edge_height_m = options.edge_height_m,
+                    .amplitude_edges = options.amplitude_edges},
+          .iterations = options.count_iterations,
+          .scales = options.scales};
+}
+
+/// Makes pixels invalid that have a rival count which the pair of frequencies cannot tell from
+/// the chosen one, and which is nearly as likely.
+void drop_ambiguous(const CountBeliefs& beliefs, const BeatLimits& limits, RangeImage& image) {
+  constexpr float nearly = 0.5F;
+  for (Eigen::Index v = 0; v < image.rows(); ++v) {
+    for (Eigen::Index u = 0; u < image.cols(); ++u) {
+      if (!image.valid(v, u)) continue;
+      if (beliefs.rival_probability(v, u) < nearly * beliefs.probability(v, u)) continue;
+      if (can_tell_apart(limits, beliefs.count(v, u), beliefs.rival(v, u))) continue;
+      image.invalidate(v, u, InvalidReason::ambiguous);
+    }
+  }
+}
+
+UnwrapResult unwrap_jointly(CountEstimator& estimator, const DualFrequencyFrame& frame,
+                            const BeatLimits& limits, const PhaseNoise& noise,
+                            const UnwrapOptions& options) {
+  const CountBeliefs beliefs = estimator.estimate(frame, limits, noise, count_estimation(options));
+  UnwrapResult result;
+  result.image = make_range_image(frame, beliefs.count, beliefs.probability, limits, noise);
+  if (options.fuse_frequencies) {
+    FusedRanges fused = fuse_ranges(frame, beliefs.count, limits, noise);
+    result.image.range_m = std::move(fused.range_m);
+    result.image.sigma_m = std::move(fused.sigma_m);
+  }
+  drop_ambiguous(beliefs, limits, result.image);
+  result.iterations = beliefs.iterations;
+  result.largest_message_change = beliefs.largest_message_change;
+  return result;
+}
+
 /// The paper: evidence, propagation, integration, anchors.
 UnwrapResult unwrap_by_jumps(const DualFrequencyFrame& frame, const ImageU8& valid,
                              const BeatLimits& limits, const PhaseNoise& noise,
@@ -140,49 +197,94 @@ double median_phase_noise_cycles(const DualFrequencyFrame& frame, const PhaseNoi
 }  // namespace
 
 std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
+  static const std::string method_choices = unwrap_method_names(" | ");
   using O = UnwrapOptions;
   return {
-      {"method", &O::method, 0, 0, "", "how wraps are found", "jump | single | pixel | none"},
+      {"method", &O::method, 0, 0, "", "how wraps are found", method_choices},
       {"max_range_m", &O::max_range_m, 0, 100000, "m",
        "farthest range that the scene can hold; 0: the recording's, else what the pair can tell "
        "apart"},
-      {"iterations", &O::iterations, 1, 1000, "", "most iterations of belief propagation"},
+      {"count_iterations", &O::count_iterations, 1, 1000, "",
+       "joint: iterations of belief propagation over counts"},
+      {"scales", &O::scales, 1, 6, "",
+       "joint: pixels, blocks of 2 x 2, of 4 x 4 ... where noise asks for it; 1: pixels alone"},
+      {"outlier_share", &O::outlier_share, 1e-6, 0.5, "",
+       "joint: pixels whose beat says nothing of their surface"},
+      {"slope_m", &O::slope_m, 0.001, 10, "m",
+       "joint: typical difference of true ranges between neighbours on a surface"},
+      {"edge_share", &O::edge_share, 1e-6, 0.5, "",
+       "joint: neighbours of equal amplitude that lie on different surfaces"},
+      {"edge_height_m", &O::edge_height_m, 0.01, 1000, "m",
+       "joint: typical step from one surface to another"},
+      {"amplitude_edges", &O::amplitude_edges, 0, 1, "",
+       "joint: a change of amplitude makes an edge likelier"},
+      {"fuse_frequencies", &O::fuse_frequencies, 0, 1, "",
+       "joint: ranges from both frequencies, weighted by their noise, not from A alone"},
+      {"iterations", &O::iterations, 1, 1000, "",
+       "jump, single: most iterations of belief propagation"},
       {"trust_discontinuity", &O::trust_discontinuity, 0, 1, "",
-       "c_d: trust in phases of neighbours being close"},
+       "jump, single: c_d, trust in phases of neighbours being close"},
       {"trust_frequency", &O::trust_frequency, 0, 1, "",
-       "c_f: trust in the difference of the two frequencies"},
-      {"window_px", &O::window_px, 1, 99, "px", "k: pixels on each side of a jump in the medians"},
+       "jump: c_f, trust in the difference of the two frequencies"},
+      {"window_px", &O::window_px, 1, 99, "px",
+       "jump: k, pixels on each side of a jump in the medians"},
       {"sigma_cycles", &O::sigma_cycles, 0.001, 10, "cycles",
-       "sigma of f_d and f_f: of true differences between neighbours; noise comes on top"},
+       "jump, single: sigma of f_d and f_f: of true differences between neighbours; noise comes on "
+       "top"},
       {"objection_share", &O::objection_share, 0, 1e6, "",
-       "regions stay apart where the beat objects by more than this share of a jump's log odds"},
+       "jump: regions stay apart where the beat objects by more than this share of a jump's log "
+       "odds"},
   };
 }
 
+std::string unwrap_method_names(const std::string& separator) {
+  std::string names;
+  for (const NamedMethod& named : methods) {
+    names += (names.empty() ? "" : separator) + std::string(named.name);
+  }
+  return names;
+}
+
 UnwrapMethod unwrap_method(const UnwrapOptions& options) {
-  if (options.method == "none") return UnwrapMethod::none;
-  if (options.method == "pixel") return UnwrapMethod::pixel;
-  if (options.method == "single") return UnwrapMethod::single;
-  if (options.method == "jump") return UnwrapMethod::jump;
+  for (const NamedMethod& named : methods) {
+    if (options.method == named.name) return named.method;
+  }
   throw UsageError("option unwrap.method: '" + options.method +
-                   "' is not allowed; allowed: jump | single | pixel | none");
+                   "' is not allowed; allowed: " + unwrap_method_names(" | "));
+}
+
+Unwrapper::Unwrapper(const SensorModel& sensor, const UnwrapOptions& options)
+    : options_(options),
+      method_(unwrap_method(options)),
+      limits_(beat_limits(sensor, options.max_range_m)) {}
+
+UnwrapResult Unwrapper::unwrap(const DualFrequencyFrame& frame) {
+  check(frame);
+  const ImageU8 valid = pixels_with_return(frame);
+  const DualFrequencyFrame returns = with_returns_only(frame, valid);
+  const PhaseNoise noise = estimate_phase_noise(returns);
+  const auto unwrap_returns = [&] {
+    switch (method_) {
+      case UnwrapMethod::joint:
+        return unwrap_jointly(estimator_, returns, limits_, noise, options_);
+      case UnwrapMethod::jump:
+      case UnwrapMethod::single:
+        return unwrap_by_jumps(returns, valid, limits_, noise, options_);
+      case UnwrapMethod::pixel:
+        return unwrap_by_pixel(returns, limits_, noise);
+      case UnwrapMethod::none:
+        break;
+    }
+    return leave_wrapped(returns, valid, limits_, noise);
+  };
+  UnwrapResult result = unwrap_returns();
+  result.phase_noise_cycles = median_phase_noise_cycles(returns, noise);
+  return result;
 }
 
 UnwrapResult unwrap(const DualFrequencyFrame& frame, const SensorModel& sensor,
                     const UnwrapOptions& options) {
-  check(frame);
-  const UnwrapMethod method = unwrap_method(options);
-  const BeatLimits limits = beat_limits(sensor, options.max_range_m);
-  const ImageU8 valid = pixels_with_return(frame);
-  const DualFrequencyFrame returns = with_returns_only(frame, valid);
-  const PhaseNoise noise = estimate_phase_noise(returns);
-
-  UnwrapResult result = method == UnwrapMethod::none ? leave_wrapped(returns, valid, limits, noise)
-                        : method == UnwrapMethod::pixel
-                            ? unwrap_by_pixel(returns, limits, noise)
-                            : unwrap_by_jumps(returns, valid, limits, noise, options);
-  result.phase_noise_cycles = median_phase_noise_cycles(returns, noise);
-  return result;
+  return Unwrapper(sensor, options).unwrap(frame);
 }
 
 }  // namespace tofmap

@@ -72,6 +72,21 @@ Picture wrap_count_picture(const ImageU8& wrap_count) {
   return with_margin(beside({titled(panel, "wrap count"), color_key(entries)}, gap_px), gap_px);
 }
 
+Picture confidence_picture(const RangeImage& unwrapped) {
+  const ColorScale scale(0, 1, "confidence");
+  const Picture panel = titled(image_picture(unwrapped.rows(), unwrapped.cols(),
+                                             [&](int v, int u) {
+                                               return unwrapped.valid(v, u)
+                                                          ? scale(unwrapped.confidence(v, u))
+                                                          : colors::invalid;
+                                             }),
+                               "confidence of the wrap count");
+  const Picture legend = stacked(
+      {color_bar(scale, panel.height_px - 3 * gap_px), color_key({{colors::invalid, "no range"}})},
+      gap_px);
+  return with_margin(beside({panel, legend}, gap_px), gap_px);
+}
+
 Picture jump_picture(const std::vector<JumpStage>& stages) {
   std::vector<Picture> rows;
   for (const JumpStage& stage : stages) {

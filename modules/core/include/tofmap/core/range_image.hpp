@@ -16,6 +16,7 @@ enum class InvalidReason : std::uint8_t {
   low_confidence = 3,  ///< the wrap count is less sure than asked for
   jump_edge = 4,       ///< a flying pixel between two surfaces
   out_of_range = 5,    ///< the range lies outside what is allowed
+  ambiguous = 6,       ///< the frequencies cannot tell two equally likely wrap counts apart
 };
 
 /// The name of a reason, as the documentation spells it.

@@ -31,6 +31,10 @@ float beat_residual_m(const BeatLimits& limits, float phase_a, float phase_b, in
 /// tolerated above for noise at the limit; count 0 is always within.
 bool count_within_limits(const BeatLimits& limits, float phase_a, int n_a);
 
+/// False if the beat of both counts is the same to a twentieth of a cycle of B: whole combined
+/// ranges lie between them.
+bool can_tell_apart(const BeatLimits& limits, int n_a, int other_n_a);
+
 /// Equation 2 for any number of wraps: per pixel the n_A of the nearest pair, i.e. the least
 /// |beat residual|; invalid_wrap_count where either phase is NaN. Equal residuals: the smaller.
 /// For two counts it is the paper's threshold at τ = |λ_A − λ_B| / 2.

@@ -8,20 +8,36 @@
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/core/range_image.hpp>
+#include <tofmap/unwrap/beat.hpp>
+#include <tofmap/unwrap/count_estimate.hpp>
 
 namespace tofmap {
 
 enum class UnwrapMethod {
+  joint,   ///< beliefs over wrap counts, from both frequencies and all pixels together
   none,    ///< wrapped: count 0 everywhere
   pixel,   ///< equation 2 for any number of wraps: each pixel by itself
   single,  ///< the paper without its frequency term; needs no second frequency
   jump,    ///< the paper
 };
 
+/// The names of all methods, the best first, with `separator` between them.
+std::string unwrap_method_names(const std::string& separator);
+
 /// The options of unwrapping, group `unwrap`. docs/unwrapping.md has the effect of each.
 struct UnwrapOptions {
-  std::string method = "jump";
+  std::string method = "joint";
   double max_range_m = 0;
+  // Of joint.
+  int count_iterations = 4;
+  int scales = 3;
+  double outlier_share = 0.02;
+  double slope_m = 0.08;
+  double edge_share = 0.02;
+  double edge_height_m = 2;
+  bool amplitude_edges = true;
+  bool fuse_frequencies = true;
+  // Of jump and single.
   int iterations = 10;
   double trust_discontinuity = 0.9;  ///< c_d of the paper
   double trust_frequency = 0.5;      ///< c_f
@@ -45,16 +61,35 @@ struct UnwrapResult {
   int regions = 0;                    ///< anchored each by itself; 0 for none and pixel
 };
 
-/// Finds how many wavelengths to add to the phase of A in every pixel
-/// (Droeschel, Holz, Behnke: Multi-frequency Phase Unwrapping for Time-of-Flight Cameras, 2010).
+/// Finds how many wavelengths to add to the phase of A in every pixel, for the frames of one camera
+/// (Droeschel, Holz, Behnke: Multi-frequency Phase Unwrapping for Time-of-Flight Cameras, 2010;
+/// docs/unwrapping.md).
 ///
-/// range_m is (phase_a + n) λ_A, radial. Pixels without a return at either frequency are
-/// invalid (no_return) and take no part, for every method, so that methods compare.
-/// sigma_m is what the phase noise, estimated from this frame, makes of A's range.
-/// confidence combines what the beat of the pixel says of its count with what the jump nodes
-/// around it say; it orders pixels, and is not calibrated yet.
-/// Works on one frame at a time; the same frame and options give the same bits.
-/// Throws UsageError if images differ in size or options are not allowed.
+/// range_m is radial: (phase_a + n) λ_A, or for `joint` what both frequencies say together. Pixels
+/// without a return at either frequency are invalid (no_return) and take no part, for every
+/// method, so that methods compare. `joint` makes those invalid (ambiguous) that have two equally
+/// likely counts which the pair of frequencies cannot tell apart.
+/// sigma_m is what the phase noise, estimated from each frame, makes of the range.
+/// confidence is the probability that the count is right. That of `joint` is calibrated
+/// (docs/unwrapping.md has the measurement); those of the other methods order pixels.
+/// Frames do not depend on one another; the same frame and options give the same bits. The object
+/// keeps its buffers, so that frames of one size cost few allocations. One thread at a time.
+class Unwrapper {
+ public:
+  /// Throws UsageError if options are not allowed.
+  Unwrapper(const SensorModel& sensor, const UnwrapOptions& options);
+
+  /// Throws UsageError if the frame's images differ in size.
+  UnwrapResult unwrap(const DualFrequencyFrame& frame);
+
+ private:
+  UnwrapOptions options_;
+  UnwrapMethod method_;
+  BeatLimits limits_;
+  CountEstimator estimator_;
+};
+
+/// One frame by itself.
 UnwrapResult unwrap(const DualFrequencyFrame& frame, const SensorModel& sensor,
                     const UnwrapOptions& options);
 

@@ -19,6 +19,9 @@ Picture range_picture(const ImageF& wrapped_m, const ImageF& unwrapped_m);
 /// The wrap counts of an image, with a legend of the counts that occur.
 Picture wrap_count_picture(const ImageU8& wrap_count);
 
+/// How sure the wrap counts are, on a scale from 0 to 1, with a legend.
+Picture confidence_picture(const RangeImage& unwrapped);
+
 /// The probabilities of jump nodes, as in figure 7 of the paper: a row a stage, the nodes in x
 /// direction left and those in y direction right. Planes are of configurations −1, 0, +1.
 struct JumpStage {

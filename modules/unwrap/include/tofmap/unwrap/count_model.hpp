@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <tofmap/core/frame.hpp>
+#include <tofmap/core/image.hpp>
+#include <tofmap/unwrap/beat.hpp>
+#include <tofmap/unwrap/diagonal_layout.hpp>
+#include <tofmap/unwrap/phase_noise.hpp>
+
+namespace tofmap {
+
+/// What is assumed of scenes, for the method `joint`. docs/unwrapping.md has the effect of each.
+struct CountPrior {
+  double outlier_share = 0.02;  ///< pixels whose beat says nothing of their surface
+  double slope_m = 0.08;        ///< typical difference of true ranges between neighbours
+  double edge_share = 0.02;     ///< neighbours on different surfaces, at equal amplitude
+  double edge_height_m = 2;     ///< typical step from one surface to another
+  bool amplitude_edges = true;  ///< edges are likelier where the amplitude changes
+};
+
+/// Probabilities of the wrap counts of all pixels, as a grid of factors (docs/unwrapping.md,
+/// equations 11 to 14), stored diagonal by diagonal.
+///
+/// evidence: of each pixel for each count, from its beat; the best is 1.
+/// right, down: of each pixel and that neighbour for the two steps in count that make their ranges
+/// lie close, relative to all other steps, which count 0: `same` for no step, `next` for the other;
+/// that is one up if the number is positive, one down, of its absolute value, if it is negative.
+class CountModel {
+ public:
+  struct Edges {
+    std::vector<float> same;
+    std::vector<float> next;
+  };
+
+  /// Replaces the model by that of a frame, whose phases are NaN where there is no return. Keeps
+  /// its memory, so that frames of one size cost no allocation.
+  void assign(const DualFrequencyFrame& frame, const BeatLimits& limits, const PhaseNoise& noise,
+              const CountPrior& prior);
+
+  const DiagonalLayout& layout() const { return layout_; }
+  int counts() const { return counts_; }
+  const std::vector<std::uint16_t>& evidence() const { return evidence_; }
+  /// The evidence of one pixel for every count: for tests and for those who look closely.
+  std::vector<double> evidence_of(int row, int col) const;
+
+  const Edges& right() const { return right_; }
+  const Edges& down() const { return down_; }
+
+ private:
+  void resize(int rows, int cols, int counts);
+
+  DiagonalLayout layout_;
+  int counts_ = 0;
+  std::vector<std::uint16_t> evidence_;  ///< upper halves of floats
+  Edges right_;
+  Edges down_;
+  // What a frame says of its pixels, diagonal by diagonal.
+  std::vector<float> phase_a_;
+  std::vector<float> phase_b_;
+  std::vector<float> amplitude_;
+  std::vector<float> variance_a_m2_;
+  std::vector<float> variance_b_m2_;
+};
+
+}  // namespace tofmap

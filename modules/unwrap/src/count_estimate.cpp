@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/unwrap/count_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+#include <tofmap/core/range_image.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+/// Phase noise from which on neighbouring pixels alone do not tell which way a phase wraps.
+constexpr float loud_cycles = 0.08F;
+
+/// A coarser scale is worth its time if at least this share of the pixels is that noisy.
+constexpr float loud_share = 0.02F;
+
+std::complex<float> phasor(float phase, float amplitude) {
+  return std::polar(amplitude, 2 * std::numbers::pi_v<float> * phase);
+}
+
+float phase_of(std::complex<float> sum) {
+  const float cycles = std::arg(sum) / (2 * std::numbers::pi_v<float>);
+  return cycles < 0 ? std::min(cycles + 1, std::nextafter(1.0F, 0.0F)) : cycles;
+}
+
+/// σ of A's phase in one pixel, cycles.
+float sigma_cycles(const DualFrequencyFrame& frame, const PhaseNoise& noise, Eigen::Index v,
+                   Eigen::Index u) {
+  const auto scale = static_cast<float>(noise.scale_a);
+  return frame.has_amplitude() ? scale / frame.amplitude_a(v, u) : scale;
+}
+
+bool is_loud(const DualFrequencyFrame& frame, const PhaseNoise& noise) {
+  int returns = 0;
+  int loud = 0;
+  for (Eigen::Index v = 0; v < frame.phase_a.rows(); ++v) {
+    for (Eigen::Index u = 0; u < frame.phase_a.cols(); ++u) {
+      if (std::isnan(frame.phase_a(v, u))) continue;
+      ++returns;
+      loud += sigma_cycles(frame, noise, v, u) > loud_cycles ? 1 : 0;
+    }
+  }
+  return static_cast<float>(loud) > loud_share * static_cast<float>(returns);
+}
+
+/// The count that brings the pixel nearest to the range of a block, both in cycles.
+std::uint8_t nearest_count(float block_cycles, float phase, int counts) {
+  return static_cast<std::uint8_t>(
+      std::clamp(static_cast<int>(std::lround(block_cycles - phase)), 0, counts - 1));
+}
+
+/// What two scales together give to the count of the coarse one, which is the surer: both see the
+/// same light, so agreement makes nothing surer, and the choice of the surer one errs to its side.
+float joint_probability(float coarse, float fine, bool agree) {
+  return agree ? (coarse + fine) / 2 : coarse * coarse / (coarse + fine);
+}
+
+/// Takes over what the blocks know better: where pixels are loud and the block is surer.
+void adopt(const DualFrequencyFrame& pixels, const DualFrequencyFrame& blocks, int block_px,
+           const CountBeliefs& coarse, const PhaseNoise& block_noise, int counts,
+           CountBeliefs& fine) {
+  for (Eigen::Index v = 0; v < pixels.phase_a.rows(); ++v) {
+    for (Eigen::Index u = 0; u < pixels.phase_a.cols(); ++u) {
+      const Eigen::Index row = v / block_px;
+      const Eigen::Index col = u / block_px;
+      const float pixel_sigma =
+          static_cast<float>(block_px) * sigma_cycles(blocks, block_noise, row, col);
+      if (std::isnan(pixels.phase_a(v, u)) || pixel_sigma <= loud_cycles) continue;
+      if (coarse.probability(row, col) <= fine.probability(v, u)) continue;
+      const float phase = pixels.phase_a(v, u);
+      const float block_phase = blocks.phase_a(row, col);
+      const auto count = [&](std::uint8_t n) {
+        return nearest_count(block_phase + static_cast<float>(n), phase, counts);
+      };
+      const std::uint8_t adopted = count(coarse.count(row, col));
+      const bool agree = adopted == fine.count(v, u);
+      fine.count(v, u) = adopted;
+      fine.probability(v, u) =
+          joint_probability(coarse.probability(row, col), fine.probability(v, u), agree);
+      fine.rival(v, u) = count(coarse.rival(row, col));
+      fine.rival_probability(v, u) = coarse.rival_probability(row, col);
+    }
+  }
+}
+
+}  // namespace
+
+DualFrequencyFrame halve(const DualFrequencyFrame& frame) {
+  const Eigen::Index rows = (frame.phase_a.rows() + 1) / 2;
+  const Eigen::Index cols = (frame.phase_a.cols() + 1) / 2;
+  DualFrequencyFrame out;
+  out.index = frame.index;
+  out.timestamp_s = frame.timestamp_s;
+  for (ImageF* image : {&out.phase_a, &out.phase_b}) image->setConstant(rows, cols, nan);
+  for (ImageF* image : {&out.amplitude_a, &out.amplitude_b}) image->setZero(rows, cols);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    for (Eigen::Index col = 0; col < cols; ++col) {
+      std::complex<float> a = 0;
+      std::complex<float> b = 0;
+      int count = 0;
+      for (Eigen::Index v = 2 * row; v < std::min(2 * row + 2, frame.phase_a.rows()); ++v) {
+        for (Eigen::Index u = 2 * col; u < std::min(2 * col + 2, frame.phase_a.cols()); ++u) {
+          if (std::isnan(frame.phase_a(v, u)) || std::isnan(frame.phase_b(v, u))) continue;
+          const bool weighted = frame.has_amplitude();
+          a += phasor(frame.phase_a(v, u), weighted ? frame.amplitude_a(v, u) : 1.0F);
+          b += phasor(frame.phase_b(v, u), weighted ? frame.amplitude_b(v, u) : 1.0F);
+          ++count;
+        }
+      }
+      if (count == 0) continue;
+      // The noise of a mean goes as 1 / √count, that of a whole block as 1 / 2.
+      const float size = 2 * std::sqrt(static_cast<float>(count));
+      out.phase_a(row, col) = phase_of(a);
+      out.phase_b(row, col) = phase_of(b);
+      out.amplitude_a(row, col) = std::max(std::abs(a) / size, 1e-6F);
+      out.amplitude_b(row, col) = std::max(std::abs(b) / size, 1e-6F);
+    }
+  }
+  return out;
+}
+
+CountBeliefs CountEstimator::estimate(const DualFrequencyFrame& frame, const BeatLimits& limits,
+                                      const PhaseNoise& noise, const CountEstimation& options) {
+  scales_.resize(static_cast<std::size_t>(options.scales));
+  scales_[0].model.assign(frame, limits, noise, options.prior);
+  CountBeliefs beliefs = scales_[0].propagation.run(scales_[0].model, options.iterations);
+
+  DualFrequencyFrame blocks = frame;
+  PhaseNoise block_noise = noise;
+  CountPrior prior = options.prior;
+  int block_px = 1;
+  for (std::size_t s = 1; s < scales_.size() && is_loud(blocks, block_noise); ++s) {
+    blocks = halve(blocks);
+    block_noise = {block_noise.scale_a / 2, block_noise.scale_b / 2};
+    prior.slope_m *= 2;
+    block_px *= 2;
+    Scale& scale = scales_[s];
+    scale.model.assign(blocks, limits, block_noise, prior);
+    const CountBeliefs coarse = scale.propagation.run(scale.model, options.iterations);
+    adopt(frame, blocks, block_px, coarse, block_noise, limits.count_a, beliefs);
+    beliefs.iterations += coarse.iterations;
+    beliefs.largest_message_change =
+        std::max(beliefs.largest_message_change, coarse.largest_message_change);
+  }
+  beliefs.count = frame.phase_a.isNaN().select(invalid_wrap_count, beliefs.count);
+  beliefs.probability = frame.phase_a.isNaN().select(0.0F, beliefs.probability);
+  return beliefs;
+}
+
+}  // namespace tofmap

@@ -1,0 +1,233 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/unwrap/count_model.hpp"
+
+#include "fast_math.hpp"
+#include "vector_clones.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace tofmap {
+namespace {
+
+/// No probability ratio of an edge is larger: it bounds the messages, so that products of them
+/// stay floats.
+constexpr float largest_ratio = 1e12F;
+
+/// The evidence for a range beyond the limits.
+constexpr float impossible = 1e-8F;
+
+/// One diagonal of pixels and what is known of them.
+struct Pixels {
+  int rows;
+  const float* phase_a;
+  const float* phase_b;
+  const float* amplitude;
+  const float* variance_a_m2;
+  const float* variance_b_m2;
+};
+
+struct EvidenceScale {
+  float wavelength_a_m;
+  float wavelength_b_m;
+  float farthest_cycles_a;
+  float outlier_share;
+};
+
+/// A number for each pixel of a diagonal.
+struct EvidenceScratch {
+  std::vector<float> precision;
+  std::vector<float> height;
+  std::vector<float> best;
+
+  explicit EvidenceScratch(int rows)
+      : precision(static_cast<std::size_t>(rows)), height(precision), best(precision) {}
+};
+
+/// Equation 11: the probability of every count given the beat of the pixel.
+TOFMAP_VECTOR_CLONES void fill_evidence(const Pixels& pixels, const EvidenceScale& scale,
+                                        int counts, HalfFloat* evidence, std::size_t step,
+                                        EvidenceScratch& scratch) {
+  float* precision = scratch.precision.data();
+  float* height = scratch.height.data();
+  float* best = scratch.best.data();
+  const int rows = pixels.rows;
+  const float ratio = scale.wavelength_a_m / scale.wavelength_b_m;
+  const float squared_b = scale.wavelength_b_m * scale.wavelength_b_m;
+#pragma GCC ivdep
+  for (int i = 0; i < rows; ++i) {
+    precision[i] = squared_b / (pixels.variance_a_m2[i] + pixels.variance_b_m2[i]);
+    height[i] = std::sqrt(precision[i] * (0.5F / std::numbers::pi_v<float>));
+    best[i] = 0;
+  }
+  for (int k = 0; k < counts; ++k) {
+    HalfFloat* at = evidence + static_cast<std::size_t>(k) * step;
+    const auto count = static_cast<float>(k);
+    const float farthest = k == 0 ? 1 : scale.farthest_cycles_a - count;
+#pragma GCC ivdep
+    for (int i = 0; i < rows; ++i) {
+      const float offset = to_half_cycle((pixels.phase_a[i] + count) * ratio - pixels.phase_b[i]);
+      const float size = offset < 0 ? -offset : offset;
+      const float other = 1 - size;
+      // The density of the offset against that of any: B's noise may pass half a cycle, too.
+      const float density = height[i] * (exp_of_negative(-0.5F * precision[i] * size * size) +
+                                         exp_of_negative(-0.5F * precision[i] * other * other));
+      const float likelihood = scale.outlier_share + (1 - scale.outlier_share) * density;
+      const float within = pixels.phase_a[i] <= farthest ? 1.0F : 0.0F;
+      const float value = within * likelihood;
+      at[i] = halved(value);
+      best[i] = value > best[i] ? value : best[i];
+    }
+  }
+  for (int k = 0; k < counts; ++k) {
+    HalfFloat* at = evidence + static_cast<std::size_t>(k) * step;
+#pragma GCC ivdep
+    for (int i = 0; i < rows; ++i) {
+      const float share = widened(at[i]) / best[i];
+      const float bold = share * share;
+      at[i] = halved(bold > impossible ? bold : impossible);
+    }
+  }
+}
+
+struct EdgeScale {
+  float wavelength_a_m;
+  float slope_m2;
+  float edge_share;
+  float edge_height_m;
+  float other_density;  ///< of the steps that bring neighbours not close
+  float amplitude_weight;
+};
+
+/// Equations 12 to 14: the steps between pixels and their neighbours.
+TOFMAP_VECTOR_CLONES void fill_edges(const Pixels& from, const Pixels& to, const EdgeScale& scale,
+                                     float* same, float* next) {
+  const float* phase_from = from.phase_a;
+  const float* phase_to = to.phase_a;
+  const float* variance_from = from.variance_a_m2;
+  const float* variance_to = to.variance_a_m2;
+  const float* amplitude_from = from.amplitude;
+  const float* amplitude_to = to.amplitude;
+#pragma GCC ivdep
+  for (int i = 0; i < from.rows; ++i) {
+    const float difference = phase_to[i] - phase_from[i];
+    const float toward = difference > 0 ? -1.0F : 1.0F;
+    const float spread_m = std::sqrt(variance_from[i] + variance_to[i] + scale.slope_m2);
+    const float lesser = amplitude_from[i] < amplitude_to[i] ? amplitude_from[i] : amplitude_to[i];
+    const float greater = amplitude_from[i] < amplitude_to[i] ? amplitude_to[i] : amplitude_from[i];
+    const float likeness =
+        scale.amplitude_weight * (lesser / greater) + (1 - scale.amplitude_weight);
+    const float edge = 1 - (1 - scale.edge_share) * likeness;
+    const auto density = [&](float cycles) {
+      const float step_m = (cycles < 0 ? -cycles : cycles) * scale.wavelength_a_m;
+      const float deviation = step_m / spread_m;
+      const float surface =
+          1 / (std::numbers::pi_v<float> * spread_m * (1 + deviation * deviation));
+      const float height = 1 + step_m / scale.edge_height_m;
+      return (1 - edge) * surface + edge / (2 * scale.edge_height_m * height * height);
+    };
+    const float other = edge * scale.other_density;
+    const auto ratio = [&](float cycles) {
+      const float r = density(cycles) / other;
+      const float squared = r * r;
+      const float bold = squared * squared;
+      return (bold < largest_ratio ? bold : largest_ratio) - 1;
+    };
+    const float ratio_same = ratio(difference);
+    const float ratio_next = ratio(difference + toward);
+    // A pixel without a return has no variance: its neighbours learn nothing from it.
+    const float present = variance_from[i] + variance_to[i] < largest_ratio ? 1.0F : 0.0F;
+    same[i] = present * (ratio_same > 0 ? ratio_same : 0.0F);
+    next[i] = present * toward * (ratio_next > 0 ? ratio_next : 0.0F);
+  }
+}
+
+}  // namespace
+
+void CountModel::resize(int rows, int cols, int counts) {
+  if (!(layout_ == DiagonalLayout(rows, cols))) layout_ = DiagonalLayout(rows, cols);
+  counts_ = counts;
+  evidence_.resize(layout_.size(static_cast<std::size_t>(counts)));
+  for (std::vector<float>* plane :
+       {&right_.same, &right_.next, &down_.same, &down_.next, &phase_a_, &phase_b_}) {
+    plane->assign(layout_.size(1), 0.0F);
+  }
+  amplitude_.assign(layout_.size(1), 1.0F);
+  for (std::vector<float>* plane : {&variance_a_m2_, &variance_b_m2_}) {
+    plane->assign(layout_.size(1), 4 * largest_ratio);
+  }
+}
+
+void CountModel::assign(const DualFrequencyFrame& frame, const BeatLimits& limits,
+                        const PhaseNoise& noise, const CountPrior& prior) {
+  const auto rows = static_cast<int>(frame.phase_a.rows());
+  const auto cols = static_cast<int>(frame.phase_a.cols());
+  resize(rows, cols, limits.count_a);
+  const auto wavelength_a = static_cast<float>(limits.wavelength_a_m);
+  const auto wavelength_b = static_cast<float>(limits.wavelength_b_m);
+  const auto scale_a = static_cast<float>(noise.scale_a) * wavelength_a;
+  const auto scale_b = static_cast<float>(noise.scale_b) * wavelength_b;
+  for (int v = 0; v < rows; ++v) {
+    for (int u = 0; u < cols; ++u) {
+      const float a = frame.phase_a(v, u);
+      const float b = frame.phase_b(v, u);
+      if (std::isnan(a) || std::isnan(b)) continue;
+      const std::size_t at = layout_.place(u + v, v, 1);
+      const float amplitude_a = frame.has_amplitude() ? frame.amplitude_a(v, u) : 1.0F;
+      const float amplitude_b = frame.has_amplitude() ? frame.amplitude_b(v, u) : 1.0F;
+      phase_a_[at] = a;
+      phase_b_[at] = b;
+      amplitude_[at] = amplitude_a;
+      variance_a_m2_[at] = scale_a * scale_a / (amplitude_a * amplitude_a);
+      variance_b_m2_[at] = scale_b * scale_b / (amplitude_b * amplitude_b);
+    }
+  }
+
+  const auto pixels = [&](int d, int row, int count) {
+    const std::size_t at = layout_.place(d, row, 1);
+    return Pixels{count,           &phase_a_[at],       &phase_b_[at],
+                  &amplitude_[at], &variance_a_m2_[at], &variance_b_m2_[at]};
+  };
+  const EvidenceScale evidence_scale{
+      wavelength_a, wavelength_b,
+      static_cast<float>(limits.max_range_m / limits.wavelength_a_m + 0.05),
+      static_cast<float>(prior.outlier_share)};
+  const double far_step_m = 1.25 * limits.wavelength_a_m;
+  const double far_height = 1 + far_step_m / prior.edge_height_m;
+  const EdgeScale edge_scale{
+      wavelength_a,
+      static_cast<float>(prior.slope_m * prior.slope_m),
+      static_cast<float>(prior.edge_share),
+      static_cast<float>(prior.edge_height_m),
+      static_cast<float>(0.9 / (2 * prior.edge_height_m * far_height * far_height)),
+      prior.amplitude_edges ? 1.0F : 0.0F};
+  const auto counts = static_cast<std::size_t>(counts_);
+  EvidenceScratch scratch(rows);
+  for (int d = 0; d < layout_.diagonals(); ++d) {
+    const int first = layout_.begin(d);
+    const int count = layout_.end(d) - first;
+    const Pixels here = pixels(d, first, count);
+    fill_evidence(here, evidence_scale, counts_, &evidence_[layout_.place(d, first, counts)],
+                  layout_.plane_step(d), scratch);
+    if (d + 1 == layout_.diagonals()) break;
+    const std::size_t edge = layout_.place(d, first, 1);
+    fill_edges(here, pixels(d + 1, first, count), edge_scale, &right_.same[edge],
+               &right_.next[edge]);
+    fill_edges(here, pixels(d + 1, first + 1, count), edge_scale, &down_.same[edge],
+               &down_.next[edge]);
+  }
+}
+
+std::vector<double> CountModel::evidence_of(int row, int col) const {
+  const auto counts = static_cast<std::size_t>(counts_);
+  std::size_t at = layout_.place(row + col, row, counts);
+  std::vector<double> evidence;
+  for (std::size_t n = 0; n < counts; ++n, at += layout_.plane_step(row + col)) {
+    evidence.push_back(widened(evidence_[at]));
+  }
+  return evidence;
+}
+
+}  // namespace tofmap

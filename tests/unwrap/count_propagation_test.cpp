@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "fast_math.hpp"
+#include "plain_count_propagation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include <tofmap/unwrap/count_model.hpp>
+#include <tofmap/unwrap/count_propagation.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr double noise_cycles = 0.03;
+
+BeatLimits limits_up_to(double range_m) {
+  SensorModel sensor;
+  sensor.modulation = {29e6, 31e6};
+  return beat_limits(sensor, range_m);
+}
+
+/// Two noisy walls, one behind the other, and a few pixels without a return.
+DualFrequencyFrame noisy_walls(int rows, int cols, const BeatLimits& limits, int seed) {
+  std::mt19937 random(static_cast<unsigned>(seed));
+  std::normal_distribution<double> normal(0, noise_cycles);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const double near_m = 1 + 3 * uniform(random);
+  const double far_m = near_m + 0.8 * limits.max_range_m * uniform(random) * 0.7;
+  DualFrequencyFrame frame;
+  for (ImageF* image : {&frame.phase_a, &frame.phase_b, &frame.amplitude_a, &frame.amplitude_b}) {
+    image->resize(rows, cols);
+  }
+  for (int v = 0; v < rows; ++v) {
+    for (int u = 0; u < cols; ++u) {
+      const bool is_far = 2 * u > cols;
+      const double range_m = (is_far ? far_m : near_m) + 0.1 * u + 0.03 * v;
+      const auto phase = [&](double wavelength_m) {
+        const double cycles = range_m / wavelength_m + normal(random);
+        return static_cast<float>(cycles - std::floor(cycles));
+      };
+      frame.phase_a(v, u) = phase(limits.wavelength_a_m);
+      frame.phase_b(v, u) = phase(limits.wavelength_b_m);
+      frame.amplitude_a(v, u) = is_far ? 40.0F : 100.0F;
+      frame.amplitude_b(v, u) = frame.amplitude_a(v, u);
+      if (uniform(random) < 0.05) frame.phase_a(v, u) = frame.phase_b(v, u) = NAN;
+    }
+  }
+  return frame;
+}
+
+CountModel model_of(const DualFrequencyFrame& frame, const BeatLimits& limits) {
+  CountModel model;
+  model.assign(frame, limits, {noise_cycles * 100, noise_cycles * 100}, {});
+  return model;
+}
+
+TEST(DiagonalLayout, GivesEveryPixelOfEveryPlaneAPlaceOfItsOwn) {
+  for (const auto& [rows, cols] : {std::pair{1, 1}, {1, 7}, {7, 1}, {5, 9}, {9, 5}, {20, 20}}) {
+    const DiagonalLayout layout(rows, cols);
+    constexpr std::size_t planes = 3;
+    std::set<std::size_t> places;
+    for (int v = 0; v < rows; ++v) {
+      for (int u = 0; u < cols; ++u) {
+        for (std::size_t k = 0; k < planes; ++k) {
+          places.insert(layout.place(u + v, v, planes) + k * layout.plane_step(u + v));
+        }
+      }
+    }
+    EXPECT_EQ(places.size(), planes * static_cast<std::size_t>(rows * cols));
+    EXPECT_LT(*places.rbegin(), layout.size(planes));
+  }
+}
+
+TEST(DiagonalLayout, HasRoomForWhatIsSentOutOfTheImage) {
+  const DiagonalLayout layout(6, 4);
+  constexpr std::size_t planes = 2;
+  std::set<std::size_t> pixels;
+  for (int v = 0; v < 6; ++v) {
+    for (int u = 0; u < 4; ++u) {
+      for (std::size_t k = 0; k < planes; ++k) {
+        pixels.insert(layout.place(u + v, v, planes) + k * layout.plane_step(u + v));
+      }
+    }
+  }
+  const auto is_outside = [&](int row, int col) {
+    const std::size_t last = (planes - 1) * layout.plane_step(row + col);
+    const std::size_t place = layout.place(row + col, row, planes);
+    return !pixels.contains(place) && !pixels.contains(place + last) &&
+           place + last < layout.size(planes);
+  };
+  for (int v = 0; v < 6; ++v) EXPECT_TRUE(is_outside(v, -1) && is_outside(v, 4)) << v;
+  for (int u = 0; u < 4; ++u) EXPECT_TRUE(is_outside(-1, u) && is_outside(6, u)) << u;
+}
+
+struct GridSize {
+  int rows;
+  int cols;
+};
+
+class CountPropagationOn : public testing::TestWithParam<GridSize> {};
+INSTANTIATE_TEST_SUITE_P(Grids, CountPropagationOn,
+                         testing::Values(GridSize{1, 1}, GridSize{1, 9}, GridSize{9, 1},
+                                         GridSize{13, 17}, GridSize{40, 11}, GridSize{170, 165}),
+                         [](const auto& grid) {
+                           return std::to_string(grid.param.rows) + "x" +
+                                  std::to_string(grid.param.cols);
+                         });
+
+TEST_P(CountPropagationOn, GivesTheBeliefsOfThePlainVersion) {
+  const BeatLimits limits = limits_up_to(25);
+  CountPropagation propagation;
+  for (int seed = 0; seed < 3; ++seed) {
+    const DualFrequencyFrame frame = noisy_walls(GetParam().rows, GetParam().cols, limits, seed);
+    const CountModel model = model_of(frame, limits);
+    const CountBeliefs fast = propagation.run(model, 3);
+    const test::PlainCountModel plain_model(model);
+    const auto plain = test::PlainCountPropagation(plain_model).run(3);
+    for (std::size_t p = 0; p < plain.size(); ++p) {
+      const auto best = std::ranges::max_element(plain[p]);
+      // Messages are rounded to 8 binary digits, 0.2 %; a belief is a product of four, and each
+      // of them has passed many pixels.
+      EXPECT_NEAR(fast.probability.data()[p], *best, 0.05);
+      EXPECT_NEAR(plain[p][fast.count.data()[p]], *best, 0.05);
+    }
+  }
+}
+
+TEST(CountPropagation, AgreesWithExactEnumerationWhereThatIsSure) {
+  const BeatLimits limits = limits_up_to(15);
+  CountPropagation propagation;
+  int sure = 0;
+  for (int seed = 0; seed < 20; ++seed) {
+    const DualFrequencyFrame frame = noisy_walls(3, 4, limits, seed);
+    const CountModel model = model_of(frame, limits);
+    const CountBeliefs beliefs = propagation.run(model, 10);
+    const auto exact = test::exact_marginals(test::PlainCountModel(model));
+    for (std::size_t p = 0; p < exact.size(); ++p) {
+      const auto best = std::ranges::max_element(exact[p]);
+      if (*best < 0.9) continue;
+      ++sure;
+      EXPECT_EQ(beliefs.count.data()[p], best - exact[p].begin()) << "seed " << seed;
+    }
+  }
+  EXPECT_GT(sure, 150);
+}
+
+TEST(CountPropagation, ForgetsTheFrameBefore) {
+  const BeatLimits limits = limits_up_to(25);
+  const CountModel first = model_of(noisy_walls(30, 20, limits, 1), limits);
+  const CountModel second = model_of(noisy_walls(30, 20, limits, 2), limits);
+  CountPropagation used;
+  used.run(first, 2);
+  const CountBeliefs after_another = used.run(second, 2);
+  const CountBeliefs fresh = CountPropagation().run(second, 2);
+  EXPECT_TRUE((after_another.count == fresh.count).all());
+  EXPECT_TRUE((after_another.probability == fresh.probability).all());
+}
+
+TEST(CountPropagation, SettlesWithIterations) {
+  const BeatLimits limits = limits_up_to(25);
+  const CountModel model = model_of(noisy_walls(40, 40, limits, 5), limits);
+  CountPropagation propagation;
+  EXPECT_LT(propagation.run(model, 30).largest_message_change,
+            0.5 * propagation.run(model, 2).largest_message_change);
+}
+
+TEST(CountModel, KeepsPixelsWithoutAReturnOutOfIt) {
+  const BeatLimits limits = limits_up_to(25);
+  DualFrequencyFrame frame = noisy_walls(5, 5, limits, 3);
+  frame.phase_a(2, 2) = frame.phase_b(2, 2) = NAN;
+  const CountModel model = model_of(frame, limits);
+  const DiagonalLayout& layout = model.layout();
+  for (const double value : model.evidence_of(2, 2)) EXPECT_EQ(value, 1);
+  for (const auto& [v, u] : {std::pair{2, 2}, {2, 1}}) {
+    EXPECT_EQ(model.right().same[layout.place(u + v, v, 1)], 0);
+    EXPECT_EQ(model.right().next[layout.place(u + v, v, 1)], 0);
+  }
+  for (const auto& [v, u] : {std::pair{2, 2}, {1, 2}}) {
+    EXPECT_EQ(model.down().same[layout.place(u + v, v, 1)], 0);
+    EXPECT_EQ(model.down().next[layout.place(u + v, v, 1)], 0);
+  }
+}
+
+TEST(FastMath, ExponentialIsThatOfTheLibrary) {
+  for (double x = 0; x > -86; x -= 0.01) {
+    const auto argument = static_cast<float>(x);
+    EXPECT_NEAR(exp_of_negative(argument) / std::exp(static_cast<double>(argument)), 1, 1e-5);
+  }
+  EXPECT_LT(exp_of_negative(-1e9F), 1e-37F);
+  EXPECT_EQ(exp_of_negative(0), 1);
+}
+
+TEST(FastMath, HalfCycleIsTheDistanceToTheNearestWholeNumber) {
+  for (const float x : {-2.7F, -0.6F, -0.4F, 0.0F, 0.4F, 0.6F, 3.2F, 3.9F}) {
+    EXPECT_NEAR(to_half_cycle(x), x - std::round(x), 1e-6);
+  }
+}
+
+TEST(FastMath, HalvedFloatsComeBackWithinTheirPrecision) {
+  for (float x = 1e-12F; x < 2; x *= 1.37F) EXPECT_NEAR(widened(halved(x)) / x, 1, 1.0 / 256);
+  EXPECT_EQ(widened(half_one), 1);
+}
+
+}  // namespace
+}  // namespace tofmap

@@ -1,0 +1,280 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What `joint` promises, on simulated scenes that none of its numbers was fitted to alone.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include <tofmap/acquisition/simulator.hpp>
+#include <tofmap/unwrap/range_fusion.hpp>
+#include <tofmap/unwrap/unwrap.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Counts right and wrong, of many frames.
+struct Tally {
+  double all = 0;
+  double wrong = 0;
+  double sure = 0;  ///< the most confident 90 % of each frame
+  double sure_and_wrong = 0;
+  std::array<double, 10> in_bin{};
+  std::array<double, 10> right_in_bin{};
+  std::array<double, 10> confidence_in_bin{};
+
+  double wrong_percent() const { return 100 * wrong / all; }
+  double sure_and_wrong_percent() const { return 100 * sure_and_wrong / sure; }
+
+  /// Mean difference between confidence and share of right counts, over bins of confidence.
+  double calibration_error_percent() const {
+    double sum = 0;
+    for (std::size_t b = 0; b < in_bin.size(); ++b) {
+      sum += std::abs(confidence_in_bin[b] - right_in_bin[b]);
+    }
+    return 100 * sum / all;
+  }
+};
+
+void add_frame(const RangeImage& image, const ImageF& truth_m, double wavelength_m, Tally& tally) {
+  struct Pixel {
+    float confidence;
+    bool is_right;
+  };
+  std::vector<Pixel> pixels;
+  for (Eigen::Index i = 0; i < truth_m.size(); ++i) {
+    if (image.reason.data()[i] != 0 || std::isnan(truth_m.data()[i])) continue;
+    const double error_m = std::abs(image.range_m.data()[i] - truth_m.data()[i]);
+    pixels.push_back({image.confidence.data()[i], error_m <= wavelength_m / 2});
+  }
+  std::ranges::stable_sort(pixels, std::ranges::greater(), &Pixel::confidence);
+  const auto sure = static_cast<std::size_t>(0.9 * static_cast<double>(pixels.size()));
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const double is_wrong = pixels[i].is_right ? 0 : 1;
+    tally.all += 1;
+    tally.wrong += is_wrong;
+    if (i < sure) {
+      tally.sure += 1;
+      tally.sure_and_wrong += is_wrong;
+    }
+    const auto bin = std::min<std::size_t>(static_cast<std::size_t>(10 * pixels[i].confidence), 9);
+    tally.in_bin[bin] += 1;
+    tally.right_in_bin[bin] += 1 - is_wrong;
+    tally.confidence_in_bin[bin] += pixels[i].confidence;
+  }
+}
+
+/// Frames spread over the path through a scene.
+Tally unwrap_frames(const Simulator& simulator, int frames, const UnwrapOptions& options) {
+  Tally tally;
+  Unwrapper unwrapper(simulator.sensor(), options);
+  const int total = *simulator.frame_count();
+  for (int i = 0; i < frames; ++i) {
+    const SimulatedFrame simulated = simulator.simulate((2 * i + 1) * total / (2 * frames));
+    add_frame(unwrapper.unwrap(simulated.frame).image, simulated.range_truth_m,
+              simulator.sensor().modulation.wavelength_a_m(), tally);
+  }
+  return tally;
+}
+
+Tally unwrap_scene(const std::string& scene, const SimulatorOptions& simulation,
+                   const UnwrapOptions& options = {}, int frames = 3) {
+  return unwrap_frames(Simulator(make_scene(scene), simulation), frames, options);
+}
+
+struct Pair {
+  const char* name;
+  double frequency_a_hz;
+  double frequency_b_hz;
+};
+
+class JointAt : public testing::TestWithParam<Pair> {};
+INSTANTIATE_TEST_SUITE_P(Pairs, JointAt,
+                         testing::Values(Pair{"29and31MHz", 29e6, 31e6},
+                                         Pair{"31and29MHz", 31e6, 29e6},
+                                         Pair{"80and100MHz", 80e6, 100e6},
+                                         Pair{"37and45MHz", 37.65e6, 45.18e6}),
+                         [](const auto& pair) { return std::string(pair.param.name); });
+
+TEST_P(JointAt, UnwrapsAFlat) {
+  SimulatorOptions simulation;
+  simulation.frequency_a_hz = GetParam().frequency_a_hz;
+  simulation.frequency_b_hz = GetParam().frequency_b_hz;
+  UnwrapOptions options;
+  options.max_range_m = 7.4;  // no place in the flat is farther; at 80 and 100 MHz, none may be
+  const Tally joint = unwrap_scene("flat", simulation, options);
+  UnwrapOptions pixel = options;
+  pixel.method = "pixel";
+  // Mixed pixels, whose truth is that of one of two surfaces, are 0.2 % here.
+  EXPECT_LT(joint.wrong_percent(), 0.5);
+  EXPECT_LT(joint.wrong_percent(), 0.6 * unwrap_scene("flat", simulation, pixel).wrong_percent());
+}
+
+TEST(Joint, UnwrapsACorridorOfSeveralWrapsWhereverItMayEnd) {
+  // No limit of range is given: fourteen counts compete.
+  SimulatorOptions simulation;
+  const Tally joint = unwrap_scene("corridor", simulation);
+  UnwrapOptions jump;
+  jump.method = "jump";
+  EXPECT_LT(joint.wrong_percent(), 0.3);
+  EXPECT_LT(joint.wrong_percent(), unwrap_scene("corridor", simulation, jump).wrong_percent());
+  EXPECT_LT(joint.sure_and_wrong_percent(), 0.02);
+}
+
+/// Rooms drawn at random, three frames of each.
+Tally unwrap_random_rooms(double range_noise_m) {
+  Tally tally;
+  for (int seed = 1; seed <= 8; ++seed) {
+    SimulatorOptions simulation;
+    simulation.seed = seed;
+    simulation.range_noise_m = range_noise_m;
+    const Simulator simulator(make_scene("random", seed), simulation);
+    const int total = *simulator.frame_count();
+    Unwrapper unwrapper(simulator.sensor(), {});
+    for (int i = 0; i < 3; ++i) {
+      const SimulatedFrame frame = simulator.simulate((2 * i + 1) * total / 6);
+      add_frame(unwrapper.unwrap(frame.frame).image, frame.range_truth_m,
+                simulator.sensor().modulation.wavelength_a_m(), tally);
+    }
+  }
+  return tally;
+}
+
+class JointInRandomRooms : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Noise, JointInRandomRooms, testing::Values(0.02, 0.05));
+
+TEST_P(JointInRandomRooms, KnowsHowSureItIs) {
+  const Tally tally = unwrap_random_rooms(GetParam());
+  EXPECT_LT(tally.wrong_percent(), GetParam() < 0.03 ? 2 : 5);
+  EXPECT_LT(tally.sure_and_wrong_percent(), 0.35 * tally.wrong_percent());
+  EXPECT_LT(tally.calibration_error_percent(), 2);
+}
+
+TEST(Joint, UnwrapsWhereOnlyNeighbourhoodsCarryInformation) {
+  SimulatorOptions simulation;
+  simulation.range_noise_m = 0.8;  // about one radian a pixel
+  UnwrapOptions options;
+  options.max_range_m = 60;
+  const double percent = unwrap_scene("flat", simulation, options).wrong_percent();
+  UnwrapOptions pixels_alone = options;
+  pixels_alone.scales = 1;
+  UnwrapOptions jump = options;
+  jump.method = "jump";
+  EXPECT_LT(percent, 3);
+  EXPECT_LT(percent, 0.7 * unwrap_scene("flat", simulation, pixels_alone).wrong_percent());
+  EXPECT_LT(percent, 0.5 * unwrap_scene("flat", simulation, jump).wrong_percent());
+}
+
+TEST(Joint, NeedsNoAmplitudes) {
+  const Simulator simulator(make_scene("room"), {});
+  SimulatedFrame simulated = simulator.simulate(40);
+  simulated.frame.amplitude_a.resize(0, 0);
+  simulated.frame.amplitude_b.resize(0, 0);
+  Tally tally;
+  add_frame(unwrap(simulated.frame, simulator.sensor(), {}).image, simulated.range_truth_m,
+            simulator.sensor().modulation.wavelength_a_m(), tally);
+  EXPECT_LT(tally.wrong_percent(), 2);
+}
+
+TEST(Joint, ReportsCountsThatThePairCannotTellApart) {
+  // 80 and 100 MHz repeat after 7.5 m; if the room may be 14 m long, most pixels have two ranges.
+  SimulatorOptions simulation;
+  simulation.frequency_a_hz = 80e6;
+  simulation.frequency_b_hz = 100e6;
+  const Simulator simulator(make_scene("flat"), simulation);
+  const SimulatedFrame simulated = simulator.simulate(20);
+  UnwrapOptions options;
+  options.max_range_m = 14;
+  const RangeImage image = unwrap(simulated.frame, simulator.sensor(), options).image;
+  EXPECT_GT(count_reason(image, InvalidReason::ambiguous),
+            0.9 * static_cast<double>(image.reason.size()));
+  options.max_range_m = 7.4;
+  const RangeImage certain = unwrap(simulated.frame, simulator.sensor(), options).image;
+  EXPECT_EQ(count_reason(certain, InvalidReason::ambiguous), 0);
+}
+
+TEST(Joint, GivesTheSameBitsFrameAfterFrame) {
+  const Simulator simulator(make_scene("corridor"), {});
+  const SimulatedFrame first = simulator.simulate(10);
+  const SimulatedFrame second = simulator.simulate(60);
+  Unwrapper unwrapper(simulator.sensor(), {});
+  unwrapper.unwrap(first.frame);
+  const RangeImage used = unwrapper.unwrap(second.frame).image;
+  const RangeImage fresh = unwrap(second.frame, simulator.sensor(), {}).image;
+  EXPECT_TRUE((used.wrap_count == fresh.wrap_count).all());
+  EXPECT_TRUE((used.confidence == fresh.confidence).all());
+  EXPECT_TRUE((used.range_m == fresh.range_m || used.range_m.isNaN()).all());
+}
+
+/// Root mean square error of the ranges with right counts, and the predicted one.
+struct RangeErrors {
+  double measured_m = 0;
+  double predicted_m = 0;
+};
+
+RangeErrors range_errors(bool fuse) {
+  SimulatorOptions simulation;
+  simulation.subpixels = 1;
+  simulation.b_delay_share = 0;
+  const Simulator simulator(make_scene("wall"), simulation);
+  const SimulatedFrame simulated = simulator.simulate(5);
+  UnwrapOptions options;
+  options.fuse_frequencies = fuse;
+  const RangeImage image = unwrap(simulated.frame, simulator.sensor(), options).image;
+  const ImageF error = image.range_m - simulated.range_truth_m;
+  double squares = 0;
+  double variances = 0;
+  int count = 0;
+  for (Eigen::Index i = 0; i < error.size(); ++i) {
+    if (image.reason.data()[i] != 0 || std::abs(error.data()[i]) > 1) continue;
+    squares += error.data()[i] * error.data()[i];
+    variances += image.sigma_m.data()[i] * image.sigma_m.data()[i];
+    ++count;
+  }
+  return {std::sqrt(squares / count), std::sqrt(variances / count)};
+}
+
+TEST(Fusion, HasLessNoiseThanEitherFrequencyAndPredictsIt) {
+  const RangeErrors alone = range_errors(false);
+  const RangeErrors fused = range_errors(true);
+  // A and B have nearly the same noise: half the variance, from 25 000 pixels.
+  EXPECT_NEAR(fused.measured_m / alone.measured_m, 1 / std::sqrt(2.0), 0.04);
+  EXPECT_NEAR(fused.measured_m / fused.predicted_m, 1, 0.06);
+}
+
+TEST(Fusion, LeavesAPixelAloneWhoseFrequenciesDisagree) {
+  SensorModel sensor;
+  sensor.modulation = {29e6, 31e6};
+  const BeatLimits limits = beat_limits(sensor, 20);
+  DualFrequencyFrame frame;
+  frame.phase_a = ImageF::Constant(1, 1, 0.5F);
+  frame.phase_b = ImageF::Constant(1, 1, 0.9F);
+  frame.amplitude_a = frame.amplitude_b = ImageF::Constant(1, 1, 1.0F);
+  const FusedRanges out = fuse_ranges(frame, ImageU8::Constant(1, 1, 1), limits, {0.01, 0.01});
+  EXPECT_FLOAT_EQ(out.range_m(0, 0), static_cast<float>(1.5 * limits.wavelength_a_m));
+  EXPECT_FLOAT_EQ(out.sigma_m(0, 0), static_cast<float>(0.01 * limits.wavelength_a_m));
+}
+
+TEST(Halving, AveragesPhasorsAndTheirNoise) {
+  DualFrequencyFrame frame;
+  frame.phase_a.resize(3, 2);
+  frame.phase_a << 0.95F, 0.05F, 0.95F, 0.05F, 0.25F, NAN;
+  frame.phase_b = frame.phase_a;
+  frame.amplitude_a = frame.amplitude_b = ImageF::Constant(3, 2, 10.0F);
+  const DualFrequencyFrame half = halve(frame);
+  ASSERT_EQ(half.phase_a.rows(), 2);
+  ASSERT_EQ(half.phase_a.cols(), 1);
+  const float from_zero = half.phase_a(0, 0) - std::round(half.phase_a(0, 0));
+  EXPECT_NEAR(from_zero, 0, 1e-6) << "the mean of phases on both sides of 0";
+  EXPECT_NEAR(half.amplitude_a(0, 0), 10 * std::cos(0.1 * 3.14159265), 1e-4);
+  // One pixel alone is no less noisy in a block: half the scale takes half the amplitude.
+  EXPECT_NEAR(half.phase_a(1, 0), 0.25, 1e-6);
+  EXPECT_NEAR(half.amplitude_a(1, 0), 5, 1e-4);
+}
+
+}  // namespace
+}  // namespace tofmap
