@@ -214,17 +214,17 @@ Scene atrium_scene() {
   constexpr double length = 30;
   constexpr double width = 18;
   constexpr double height = 12;
-  add_hull(mesh, {length, width, height}, 0.6, 0.85, 0.75);
+  add_hull(mesh, {length, width, height}, 0.8, 0.95, 0.9);
   for (const double level : {3.6, 7.4}) {
-    add_box(mesh, {0, 0, level}, {length, 2.6, level + 0.3}, 0.7);
-    add_box(mesh, {0, width - 2.6, level}, {length, width, level + 0.3}, 0.7);
-    add_box(mesh, {length - 3, 2.6, level}, {length, width - 2.6, level + 0.3}, 0.65);
-    add_box(mesh, {0, 2.5, level + 0.3}, {length, 2.6, level + 1.3}, 0.8);
-    add_box(mesh, {0, width - 2.6, level + 0.3}, {length, width - 2.5, level + 1.3}, 0.8);
+    add_box(mesh, {0, 0, level}, {length, 2.6, level + 0.3}, 0.9);
+    add_box(mesh, {0, width - 2.6, level}, {length, width, level + 0.3}, 0.9);
+    add_box(mesh, {length - 3, 2.6, level}, {length, width - 2.6, level + 0.3}, 0.85);
+    add_box(mesh, {0, 2.5, level + 0.3}, {length, 2.6, level + 1.3}, 0.95);
+    add_box(mesh, {0, width - 2.6, level + 0.3}, {length, width - 2.5, level + 1.3}, 0.95);
   }
   for (double x = 4; x < length - 2; x += 5) {
-    add_cylinder(mesh, {x, 2.4, 0}, 0.3, height, 0.75);
-    add_box(mesh, {x - 0.25, width - 2.9, 0}, {x + 0.25, width - 2.4, height}, 0.7);
+    add_cylinder(mesh, {x, 2.4, 0}, 0.3, height, 0.9);
+    add_box(mesh, {x - 0.25, width - 2.9, 0}, {x + 0.25, width - 2.4, height}, 0.85);
     add_box(mesh, {x - 0.6, 7.0, 0}, {x + 0.6, 8.2, 0.5}, 0.5);
     add_cylinder(mesh, {x + 1.5, 11.2, 0}, 0.45, 0.9, 0.3);
     add_cylinder(mesh, {x + 1.5, 11.2, 0.9}, 0.12, 2.4, 0.35);

@@ -60,7 +60,7 @@ std::uint8_t nearest_count(float block_cycles, float phase, int counts) {
 /// What two scales together give to the count of the coarse one, which is the surer: both see the
 /// same light, so agreement makes nothing surer, and the choice of the surer one errs to its side.
 float joint_probability(float coarse, float fine, bool agree) {
-  return agree ? (coarse + fine) / 2 : coarse * coarse / (coarse + fine);
+  return agree ? coarse : coarse * coarse / (coarse + fine);
 }
 
 /// Takes over what the blocks know better: where pixels are loud and the block is surer.

@@ -86,7 +86,8 @@ TOFMAP_VECTOR_CLONES void fill_evidence(const Pixels& pixels, const EvidenceScal
 #pragma GCC ivdep
     for (int i = 0; i < rows; ++i) {
       const float share = widened(at[i]) / best[i];
-      const float bold = share * share;
+      const float squared = share * share;
+      const float bold = squared * squared;
       at[i] = halved(bold > impossible ? bold : impossible);
     }
   }
@@ -96,8 +97,7 @@ struct EdgeScale {
   float wavelength_a_m;
   float slope_m2;
   float edge_share;
-  float edge_height_m;
-  float other_density;  ///< of the steps that bring neighbours not close
+  float edge_density;  ///< of any step between surfaces, 1 / m
   float amplitude_weight;
 };
 
@@ -120,17 +120,11 @@ TOFMAP_VECTOR_CLONES void fill_edges(const Pixels& from, const Pixels& to, const
     const float likeness =
         scale.amplitude_weight * (lesser / greater) + (1 - scale.amplitude_weight);
     const float edge = 1 - (1 - scale.edge_share) * likeness;
-    const auto density = [&](float cycles) {
-      const float step_m = (cycles < 0 ? -cycles : cycles) * scale.wavelength_a_m;
-      const float deviation = step_m / spread_m;
-      const float surface =
-          1 / (std::numbers::pi_v<float> * spread_m * (1 + deviation * deviation));
-      const float height = 1 + step_m / scale.edge_height_m;
-      return (1 - edge) * surface + edge / (2 * scale.edge_height_m * height * height);
-    };
-    const float other = edge * scale.other_density;
+    const float other = edge * scale.edge_density;
     const auto ratio = [&](float cycles) {
-      const float r = density(cycles) / other;
+      const float deviation = (cycles < 0 ? -cycles : cycles) * scale.wavelength_a_m / spread_m;
+      const float surface = exp_of_negative(-deviation) / (2 * spread_m);
+      const float r = ((1 - edge) * surface + other) / other;
       const float squared = r * r;
       const float bold = squared * squared;
       return (bold < largest_ratio ? bold : largest_ratio) - 1;
@@ -194,15 +188,10 @@ void CountModel::assign(const DualFrequencyFrame& frame, const BeatLimits& limit
       wavelength_a, wavelength_b,
       static_cast<float>(limits.max_range_m / limits.wavelength_a_m + 0.05),
       static_cast<float>(prior.outlier_share)};
-  const double far_step_m = 1.25 * limits.wavelength_a_m;
-  const double far_height = 1 + far_step_m / prior.edge_height_m;
-  const EdgeScale edge_scale{
-      wavelength_a,
-      static_cast<float>(prior.slope_m * prior.slope_m),
-      static_cast<float>(prior.edge_share),
-      static_cast<float>(prior.edge_height_m),
-      static_cast<float>(0.9 / (2 * prior.edge_height_m * far_height * far_height)),
-      prior.amplitude_edges ? 1.0F : 0.0F};
+  const EdgeScale edge_scale{wavelength_a, static_cast<float>(prior.slope_m * prior.slope_m),
+                             static_cast<float>(prior.edge_share),
+                             static_cast<float>(1 / (2 * prior.edge_reach_m)),
+                             prior.amplitude_edges ? 1.0F : 0.0F};
   const auto counts = static_cast<std::size_t>(counts_);
   EvidenceScratch scratch(rows);
   for (int d = 0; d < layout_.diagonals(); ++d) {

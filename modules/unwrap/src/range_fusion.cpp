@@ -14,6 +14,8 @@ FusedRanges fuse_ranges(const DualFrequencyFrame& frame, const ImageU8& counts,
                         const BeatLimits& limits, const PhaseNoise& noise) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   constexpr float agreement = 4;  // standard deviations
+  // Noise that may carry B across a wrap boundary leaves no nearest range of B to trust.
+  constexpr float largest_sigma_cycles = 0.5F / agreement;
   const auto wavelength_a_m = static_cast<float>(limits.wavelength_a_m);
   const auto wavelength_b_m = static_cast<float>(limits.wavelength_b_m);
   const ImageF sigma_a =
@@ -34,7 +36,8 @@ FusedRanges fuse_ranges(const DualFrequencyFrame& frame, const ImageU8& counts,
       const float variance_a = sigma_a(v, u) * sigma_a(v, u);
       const float variance_b = sigma_b(v, u) * sigma_b(v, u);
       const float variance = variance_a + variance_b;
-      if (residual_m * residual_m > agreement * agreement * variance) continue;
+      const bool is_loud = std::sqrt(variance) > largest_sigma_cycles * wavelength_b_m;
+      if (is_loud || residual_m * residual_m > agreement * agreement * variance) continue;
       const float fused_m = range_a_m - residual_m * variance_a / variance;
       if (fused_m <= 0) continue;  // noise just before the camera
       out.range_m(v, u) = fused_m;

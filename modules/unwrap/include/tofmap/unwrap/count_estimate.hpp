@@ -16,7 +16,7 @@ namespace tofmap {
 /// How counts are estimated.
 struct CountEstimation {
   CountPrior prior;
-  int iterations = 4;
+  int iterations = 3;
   int scales = 3;  ///< pixels, blocks of 2 x 2, of 4 x 4 …, as far as the noise asks for it
 };
 

@@ -15,10 +15,10 @@ namespace tofmap {
 
 /// What is assumed of scenes, for the method `joint`. docs/unwrapping.md has the effect of each.
 struct CountPrior {
-  double outlier_share = 0.02;  ///< pixels whose beat says nothing of their surface
-  double slope_m = 0.08;        ///< typical difference of true ranges between neighbours
+  double outlier_share = 0.4;   ///< how much of the evidence of a pixel is thought to be any
+  double slope_m = 0.2;         ///< typical difference of true ranges between neighbours
   double edge_share = 0.02;     ///< neighbours on different surfaces, at equal amplitude
-  double edge_height_m = 2;     ///< typical step from one surface to another
+  double edge_reach_m = 25;     ///< steps from one surface to another lie within ± this
   bool amplitude_edges = true;  ///< edges are likelier where the amplitude changes
 };
 

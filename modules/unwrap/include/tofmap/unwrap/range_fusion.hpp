@@ -18,7 +18,8 @@ struct FusedRanges {
 
 /// Once the counts are known, A and B are two measurements of one range: their mean, weighted
 /// by the inverse variances, has less noise than either. Where they differ by more than noise
-/// explains (a mixed pixel, or a wrong count), A's range stays as it is.
+/// explains (a mixed pixel, or a wrong count), or noise is so large that B's own count is not
+/// known, A's range stays as it is.
 FusedRanges fuse_ranges(const DualFrequencyFrame& frame, const ImageU8& counts,
                         const BeatLimits& limits, const PhaseNoise& noise);
 

@@ -29,12 +29,10 @@ struct UnwrapOptions {
   std::string method = "joint";
   double max_range_m = 0;
   // Of joint.
-  int count_iterations = 4;
+  int count_iterations = 3;
   int scales = 3;
-  double outlier_share = 0.02;
-  double slope_m = 0.08;
-  double edge_share = 0.02;
-  double edge_height_m = 2;
+  double outlier_share = 0.4;
+  double slope_m = 0.2;
   bool amplitude_edges = true;
   bool fuse_frequencies = true;
   // Of jump and single.
