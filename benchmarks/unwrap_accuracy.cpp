@@ -243,13 +243,15 @@ void print_table(const std::string& title, const std::vector<Case>& cases,
                  const std::vector<Variant>& variants,
                  const std::vector<std::vector<Score>>& scores, const Cell& cell) {
   std::cout << "\n| " << title << " |";
-  for (const Case& data : cases) std::cout << ' ' << data.name << " |";
+  for (const Variant& variant : variants) std::cout << ' ' << variant.name << " |";
   std::cout << "\n|---|";
-  for (std::size_t c = 0; c < cases.size(); ++c) std::cout << "---|";
+  for (std::size_t v = 0; v < variants.size(); ++v) std::cout << "---|";
   std::cout << '\n';
-  for (std::size_t v = 0; v < variants.size(); ++v) {
-    std::cout << "| " << variants[v].name << " |";
-    for (const Score& score : scores[v]) std::cout << ' ' << cell(score) << " |";
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    std::cout << "| " << cases[c].name << " |";
+    for (const std::vector<Score>& of_variant : scores) {
+      std::cout << ' ' << cell(of_variant[c]) << " |";
+    }
     std::cout << '\n';
   }
   std::cout.flush();

@@ -18,7 +18,7 @@ tofmap="$build/apps/tofmap"
 
 "$tofmap" simulate room --out "$out/recording"
 "$tofmap" info "$out/recording"
-"$tofmap" map "$out/recording" --out "$out/map" --method jump
+"$tofmap" map "$out/recording" --out "$out/map"
 "$tofmap" map "$out/recording" --out "$out/map_wrapped" --method none
 "$tofmap" evaluate "$out/recording" --out "$out/evaluation"
 
