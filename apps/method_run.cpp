@@ -46,12 +46,11 @@ struct UnwrappedFrame {
   std::string damage;
 };
 
-UnwrappedFrame unwrap_frame(const SequenceReader& recording, int index,
-                            const UnwrapOptions& options) {
+UnwrappedFrame unwrap_frame(const SequenceReader& recording, int index, Unwrapper& unwrapper) {
   const SourcedFrame sourced = recording.read(index);
   if (!sourced.frame) return {std::nullopt, sourced.damage};
   const auto start = std::chrono::steady_clock::now();
-  const UnwrapResult unwrapped = unwrap(*sourced.frame, recording.sensor(), options);
+  const UnwrapResult unwrapped = unwrapper.unwrap(*sourced.frame);
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
   return {record_of(unwrapped, spent.count(), recording, index), ""};
 }
@@ -105,13 +104,17 @@ MethodResult run_unwrapping(const std::string& method, const SequenceReader& rec
   result.name = method;
   options.method = method;
   const int total = *recording.frame_count();
+  std::vector<Unwrapper> unwrappers(static_cast<std::size_t>(omp_get_max_threads()),
+                                    Unwrapper(recording.sensor(), options));
   Progress progress("method " + method + ", frame", total, quiet);
   int done = 0;
   std::string first_damage;
   while (done < total && !is_interrupted()) {
     const int end = std::min(total, done + omp_get_max_threads());
-    const auto unwrap_one = [&](int i) { return unwrap_frame(recording, done + i, options); };
-    for (const UnwrappedFrame& frame : side_by_side(end - done, unwrap_one)) {
+    const auto unwrap_one = [&](Unwrapper& unwrapper, int i) {
+      return unwrap_frame(recording, done + i, unwrapper);
+    };
+    for (const UnwrappedFrame& frame : side_by_side(end - done, unwrappers, unwrap_one)) {
       if (frame.record) result.frames.push_back(*frame.record);
       if (first_damage.empty()) first_damage = frame.damage;
     }

@@ -76,14 +76,14 @@ struct UnwrappedFrame {
 };
 
 /// Unwraps one frame and writes its images; what became of it is in the report.
-UnwrappedFrame unwrap_frame(const SequenceReader& source, int index, const PixelRays& rays,
-                            const PipelineOptions& options, const UnwrapArguments& arguments,
-                            const std::filesystem::path& out) {
+UnwrappedFrame unwrap_frame(const SequenceReader& source, int index, Unwrapper& unwrapper,
+                            const PixelRays& rays, const PipelineOptions& options,
+                            const UnwrapArguments& arguments, const std::filesystem::path& out) {
   const SourcedFrame sourced = source.read(index);
   if (!sourced.frame) return {damaged_json(sourced), true, sourced.damage};
 
   const auto start = std::chrono::steady_clock::now();
-  UnwrapResult result = unwrap(*sourced.frame, source.sensor(), options.unwrap);
+  UnwrapResult result = unwrapper.unwrap(*sourced.frame);
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
   RangeImage image = drop_low_confidence(result.image, arguments.min_confidence);
   Json report = {{"index", index},
@@ -142,6 +142,8 @@ int run_unwrap(const UnwrapArguments& arguments) {
   for (const char* name : {"range", "wraps", "confidence", "reason"}) out.make(name);
 
   const PixelRays rays = pixel_rays(source.sensor().camera);
+  std::vector<Unwrapper> unwrappers(static_cast<std::size_t>(omp_get_max_threads()),
+                                    Unwrapper(source.sensor(), options.pipeline.unwrap));
   const int total = *source.frame_count();
   Json frames = Json::array();
   int damaged = 0;
@@ -150,10 +152,11 @@ int run_unwrap(const UnwrapArguments& arguments) {
     Progress progress("unwrapping frame", total, arguments.common.quiet);
     for (int begin = 0; begin < total && !is_interrupted();) {
       const int end = std::min(total, begin + omp_get_max_threads());
-      const auto unwrap_one = [&](int i) {
-        return unwrap_frame(source, begin + i, rays, options.pipeline, arguments, out.path());
+      const auto unwrap_one = [&](Unwrapper& unwrapper, int i) {
+        return unwrap_frame(source, begin + i, unwrapper, rays, options.pipeline, arguments,
+                            out.path());
       };
-      for (UnwrappedFrame& frame : side_by_side(end - begin, unwrap_one)) {
+      for (UnwrappedFrame& frame : side_by_side(end - begin, unwrappers, unwrap_one)) {
         damaged += frame.is_damaged ? 1 : 0;
         if (first_damage.empty()) first_damage = frame.damage;
         frames.push_back(std::move(frame.report));

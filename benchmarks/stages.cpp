@@ -25,8 +25,9 @@ struct Example {
     omp_set_num_threads(1);
     const int middle = *simulator.frame_count() / 2;
     frame = simulator.simulate(middle).frame;
-    prepared = prepare_frame(frame, simulator.sensor(), rays, options);
-    next = prepare_frame(simulator.simulate(middle + 1).frame, simulator.sensor(), rays, options);
+    Unwrapper unwrapper(simulator.sensor(), options.unwrap);
+    prepared = prepare_frame(frame, unwrapper, rays, options);
+    next = prepare_frame(simulator.simulate(middle + 1).frame, unwrapper, rays, options);
   }
 };
 
@@ -39,13 +40,13 @@ void unwrap_by(benchmark::State& state, const std::string& method) {
   const Example& e = example();
   UnwrapOptions options;
   options.method = method;
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(unwrap(e.frame, e.simulator.sensor(), options));
-  }
+  Unwrapper unwrapper(e.simulator.sensor(), options);
+  for (auto _ : state) benchmark::DoNotOptimize(unwrapper.unwrap(e.frame));
 }
 BENCHMARK_CAPTURE(unwrap_by, pixel, "pixel")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(unwrap_by, single, "single")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(unwrap_by, jump, "jump")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(unwrap_by, joint, "joint")->Unit(benchmark::kMillisecond);
 
 void filter(benchmark::State& state) {
   const Example& e = example();

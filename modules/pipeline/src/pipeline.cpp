@@ -37,13 +37,15 @@ std::vector<SourcedFrame> take(FrameSource& source, int count) {
 
 /// Prepares frames side by side; damaged ones stay empty.
 std::vector<std::optional<PreparedFrame>> prepare_all(const std::vector<SourcedFrame>& frames,
-                                                      const SensorModel& sensor,
+                                                      std::vector<Unwrapper>& unwrappers,
                                                       const PixelRays& rays,
                                                       const PipelineOptions& options) {
-  return side_by_side(static_cast<int>(frames.size()), [&](int i) {
-    const std::optional<DualFrequencyFrame>& frame = frames[static_cast<std::size_t>(i)].frame;
-    return frame ? std::optional(prepare_frame(*frame, sensor, rays, options)) : std::nullopt;
-  });
+  return side_by_side(
+      static_cast<int>(frames.size()), unwrappers, [&](Unwrapper& unwrapper, int i) {
+        const std::optional<DualFrequencyFrame>& frame = frames[static_cast<std::size_t>(i)].frame;
+        return frame ? std::optional(prepare_frame(*frame, unwrapper, rays, options))
+                     : std::nullopt;
+      });
 }
 
 FrameRecord damaged_record(const SourcedFrame& frame) {
@@ -99,12 +101,12 @@ int RoomMap::damaged() const {
       frames, [](const FrameRecord& record) { return !record.damage.empty(); }));
 }
 
-PreparedFrame prepare_frame(const DualFrequencyFrame& frame, const SensorModel& sensor,
+PreparedFrame prepare_frame(const DualFrequencyFrame& frame, Unwrapper& unwrapper,
                             const PixelRays& rays, const PipelineOptions& options) {
   PreparedFrame out;
   out.index = frame.index;
   out.timestamp_s = frame.timestamp_s;
-  out.unwrapped = timed(out.times.unwrap_ms, [&] { return unwrap(frame, sensor, options.unwrap); });
+  out.unwrapped = timed(out.times.unwrap_ms, [&] { return unwrapper.unwrap(frame); });
   out.filtered = timed(out.times.filter_ms, [&] {
     return apply_filters(out.unwrapped.image, frame, rays, options.filters);
   });
@@ -120,6 +122,8 @@ RoomMap map_room(FrameSource& source, const PipelineOptions& options, const MapH
   const PixelRays rays = pixel_rays(sensor.camera);
   Odometry odometry(sensor.camera, options.odometry, options.registration);
   SurfaceMap surface(options.map);
+  std::vector<Unwrapper> unwrappers(static_cast<std::size_t>(omp_get_max_threads()),
+                                    Unwrapper(sensor, options.unwrap));
   RoomMap map;
 
   const auto may_go_on = [&] {
@@ -129,7 +133,7 @@ RoomMap map_room(FrameSource& source, const PipelineOptions& options, const MapH
   while (may_go_on()) {
     const std::vector<SourcedFrame> frames = take(source, omp_get_max_threads());
     if (frames.empty()) break;
-    const auto prepared = prepare_all(frames, sensor, rays, options);
+    const auto prepared = prepare_all(frames, unwrappers, rays, options);
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (prepared[i] && hooks.on_frame) hooks.on_frame(*prepared[i]);
       map.frames.push_back(prepared[i] ? place(*prepared[i], odometry, surface, map.trajectory)

@@ -6,6 +6,7 @@
 #include "confidence.hpp"
 #include "tofmap/unwrap/beat.hpp"
 #include "tofmap/unwrap/count_estimate.hpp"
+#include "tofmap/unwrap/exposure_motion.hpp"
 #include "tofmap/unwrap/jump_estimate.hpp"
 #include "tofmap/unwrap/jump_integration.hpp"
 #include "tofmap/unwrap/phase_noise.hpp"
@@ -118,14 +119,28 @@ void drop_ambiguous(const CountBeliefs& beliefs, const BeatLimits& limits, Range
   }
 }
 
+/// Ranges from both frequencies; B's are brought back to the instant of A if the camera's rays are
+/// known.
+FusedRanges ranges_of_both(const DualFrequencyFrame& frame, const ImageU8& counts,
+                           const BeatLimits& limits, const PhaseNoise& noise,
+                           const PixelRays& rays) {
+  const RangePair pair = pair_ranges(frame, counts, limits, noise);
+  if (!same_size(rays.x, counts)) return fuse_ranges(pair, {});
+  const ImageF sigma_m = (pair.variance_a_m2 + pair.variance_b_m2).sqrt();
+  const ExposureMotion motion =
+      estimate_exposure_motion(pair.range_a_m, pair.residual_m, sigma_m, rays);
+  return fuse_ranges(
+      pair, motion.pixels > 0 ? range_shrinkage_m(motion, pair.range_a_m, rays) : ImageF());
+}
+
 UnwrapResult unwrap_jointly(CountEstimator& estimator, const DualFrequencyFrame& frame,
                             const BeatLimits& limits, const PhaseNoise& noise,
-                            const UnwrapOptions& options) {
+                            const PixelRays& rays, const UnwrapOptions& options) {
   const CountBeliefs beliefs = estimator.estimate(frame, limits, noise, count_estimation(options));
   UnwrapResult result;
   result.image = make_range_image(frame, beliefs.count, beliefs.probability, limits, noise);
   if (options.fuse_frequencies) {
-    FusedRanges fused = fuse_ranges(frame, beliefs.count, limits, noise);
+    FusedRanges fused = ranges_of_both(frame, beliefs.count, limits, noise, rays);
     result.image.range_m = std::move(fused.range_m);
     result.image.sigma_m = std::move(fused.sigma_m);
   }
@@ -214,6 +229,8 @@ std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
        "joint: a change of amplitude makes an edge likelier"},
       {"fuse_frequencies", &O::fuse_frequencies, 0, 1, "",
        "joint: ranges from both frequencies, weighted by their noise, not from A alone"},
+      {"correct_exposure", &O::correct_exposure, 0, 1, "",
+       "joint: allow for the camera's motion from A's exposure to B's when ranges are fused"},
       {"iterations", &O::iterations, 1, 1000, "",
        "jump, single: most iterations of belief propagation"},
       {"trust_discontinuity", &O::trust_discontinuity, 0, 1, "",
@@ -250,7 +267,12 @@ UnwrapMethod unwrap_method(const UnwrapOptions& options) {
 Unwrapper::Unwrapper(const SensorModel& sensor, const UnwrapOptions& options)
     : options_(options),
       method_(unwrap_method(options)),
-      limits_(beat_limits(sensor, options.max_range_m)) {}
+      limits_(beat_limits(sensor, options.max_range_m)) {
+  const bool knows_camera = sensor.camera.width_px > 0 && sensor.camera.fx_px > 0;
+  const bool needs_rays =
+      method_ == UnwrapMethod::joint && options.fuse_frequencies && options.correct_exposure;
+  if (knows_camera && needs_rays) rays_ = pixel_rays(sensor.camera);
+}
 
 UnwrapResult Unwrapper::unwrap(const DualFrequencyFrame& frame) {
   check(frame);
@@ -260,7 +282,7 @@ UnwrapResult Unwrapper::unwrap(const DualFrequencyFrame& frame) {
   const auto unwrap_returns = [&] {
     switch (method_) {
       case UnwrapMethod::joint:
-        return unwrap_jointly(estimator_, returns, limits_, noise, options_);
+        return unwrap_jointly(estimator_, returns, limits_, noise, rays_, options_);
       case UnwrapMethod::jump:
       case UnwrapMethod::single:
         return unwrap_by_jumps(returns, valid, limits_, noise, options_);

@@ -52,8 +52,9 @@ struct PreparedFrame {
   StageTimes times;
 };
 
-/// Phases to surface: a pure function, so that frames can be prepared side by side.
-PreparedFrame prepare_frame(const DualFrequencyFrame& frame, const SensorModel& sensor,
+/// Phases to surface. Depends on no other frame, so frames can be prepared side by side, each
+/// thread with an unwrapper of its own.
+PreparedFrame prepare_frame(const DualFrequencyFrame& frame, Unwrapper& unwrapper,
                             const PixelRays& rays, const PipelineOptions& options);
 
 /// What became of one frame.

@@ -5,6 +5,8 @@
 #include <exception>
 #include <vector>
 
+#include <omp.h>
+
 namespace tofmap {
 
 /// The results of step(0) … step(count − 1) in their order, computed by as many threads as
@@ -26,6 +28,15 @@ auto side_by_side(int count, const Step& step) {
     if (error) std::rethrow_exception(error);
   }
   return results;
+}
+
+/// The same with workers that keep buffers between steps: step(worker, i), where no two threads
+/// share a worker. There is one at least for each thread that OpenMP has.
+template <class Worker, class Step>
+auto side_by_side(int count, std::vector<Worker>& workers, const Step& step) {
+  return side_by_side(count, [&](int i) {
+    return step(workers[static_cast<std::size_t>(omp_get_thread_num())], i);
+  });
 }
 
 }  // namespace tofmap

@@ -35,6 +35,7 @@ struct UnwrapOptions {
   double slope_m = 0.2;
   bool amplitude_edges = true;
   bool fuse_frequencies = true;
+  bool correct_exposure = true;
   // Of jump and single.
   int iterations = 10;
   double trust_discontinuity = 0.9;  ///< c_d of the paper
@@ -84,6 +85,7 @@ class Unwrapper {
   UnwrapOptions options_;
   UnwrapMethod method_;
   BeatLimits limits_;
+  PixelRays rays_;  ///< empty if they are not needed
   CountEstimator estimator_;
 };
 
