@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <tofmap/core/frame.hpp>
+#include <tofmap/core/range_image.hpp>
+#include <tofmap/unwrap/beat.hpp>
+#include <tofmap/unwrap/phase_noise.hpp>
+
+namespace tofmap {
+
+/// The image of counts that are known: ranges, their noise, and confidences.
+RangeImage make_range_image(const DualFrequencyFrame& frame, const ImageU8& counts,
+                            const ImageF& confidence, const BeatLimits& limits,
+                            const PhaseNoise& noise);
+
+}  // namespace tofmap

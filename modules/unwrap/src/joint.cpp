@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "joint.hpp"
+
+#include "counted_ranges.hpp"
+#include "tofmap/unwrap/exposure_motion.hpp"
+#include "tofmap/unwrap/range_fusion.hpp"
+
+#include <utility>
+
+namespace tofmap {
+namespace {
+
+/// The options of `joint` as its stages know them.
+CountEstimation count_estimation(const UnwrapOptions& options) {
+  return {.prior = {.outlier_share = options.outlier_share,
+                    .slope_m = options.slope_m,
+                    .amplitude_edges = options.amplitude_edges},
+          .iterations = options.count_iterations,
+          .scales = options.scales};
+}
+
+/// Makes pixels invalid that have a rival count which the pair of frequencies cannot tell from
+/// the chosen one, and which is nearly as likely.
+void drop_ambiguous(const CountBeliefs& beliefs, const BeatLimits& limits, RangeImage& image) {
+  constexpr float nearly = 0.5F;
+  for (Eigen::Index v = 0; v < image.rows(); ++v) {
+    for (Eigen::Index u = 0; u < image.cols(); ++u) {
+      if (!image.valid(v, u)) continue;
+      if (beliefs.rival_probability(v, u) < nearly * beliefs.probability(v, u)) continue;
+      if (can_tell_apart(limits, beliefs.count(v, u), beliefs.rival(v, u))) continue;
+      image.invalidate(v, u, InvalidReason::ambiguous);
+    }
+  }
+}
+
+/// Ranges from both frequencies; B's are brought back to the instant of A if the camera's rays are
+/// known.
+FusedRanges ranges_of_both(const DualFrequencyFrame& frame, const ImageU8& counts,
+                           const BeatLimits& limits, const PhaseNoise& noise,
+                           const PixelRays& rays) {
+  const RangePair pair = pair_ranges(frame, counts, limits, noise);
+  if (!same_size(rays.x, counts)) return fuse_ranges(pair, {});
+  const ImageF sigma_m = (pair.variance_a_m2 + pair.variance_b_m2).sqrt();
+  const ExposureMotion motion =
+      estimate_exposure_motion(pair.range_a_m, pair.residual_m, sigma_m, rays);
+  return fuse_ranges(
+      pair, motion.pixels > 0 ? range_shrinkage_m(motion, pair.range_a_m, rays) : ImageF());
+}
+
+}  // namespace
+
+UnwrapResult unwrap_jointly(CountEstimator& estimator, const DualFrequencyFrame& frame,
+                            const BeatLimits& limits, const PhaseNoise& noise,
+                            const PixelRays& rays, const UnwrapOptions& options) {
+  const CountBeliefs beliefs = estimator.estimate(frame, limits, noise, count_estimation(options));
+  UnwrapResult result;
+  result.image = make_range_image(frame, beliefs.count, beliefs.probability, limits, noise);
+  if (options.fuse_frequencies) {
+    FusedRanges fused = ranges_of_both(frame, beliefs.count, limits, noise, rays);
+    result.image.range_m = std::move(fused.range_m);
+    result.image.sigma_m = std::move(fused.sigma_m);
+  }
+  drop_ambiguous(beliefs, limits, result.image);
+  result.iterations = beliefs.iterations;
+  result.largest_message_change = beliefs.largest_message_change;
+  return result;
+}
+
+}  // namespace tofmap
