@@ -194,6 +194,10 @@ TEST(Joint, ReportsCountsThatThePairCannotTellApart) {
   const RangeImage image = unwrap(simulated.frame, simulator.sensor(), options).image;
   EXPECT_GT(count_reason(image, InvalidReason::ambiguous),
             0.9 * static_cast<double>(image.reason.size()));
+  options.max_range_m = 400;  // each range fifty times
+  const RangeImage far = unwrap(simulated.frame, simulator.sensor(), options).image;
+  EXPECT_GT(count_reason(far, InvalidReason::ambiguous),
+            0.9 * static_cast<double>(far.reason.size()));
   options.max_range_m = 7.4;
   const RangeImage certain = unwrap(simulated.frame, simulator.sensor(), options).image;
   EXPECT_EQ(count_reason(certain, InvalidReason::ambiguous), 0);

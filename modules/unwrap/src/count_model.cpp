@@ -30,7 +30,7 @@ struct Pixels {
 };
 
 struct EvidenceScale {
-  float wavelength_a_m;
+  double wavelength_ratio;  ///< of A to B
   float wavelength_b_m;
   float farthest_cycles_a;
   float outlier_share;
@@ -54,7 +54,7 @@ TOFMAP_VECTOR_CLONES void fill_evidence(const Pixels& pixels, const EvidenceScal
   float* height = scratch.height.data();
   float* best = scratch.best.data();
   const int rows = pixels.rows;
-  const float ratio = scale.wavelength_a_m / scale.wavelength_b_m;
+  const auto ratio = static_cast<float>(scale.wavelength_ratio);
   const float squared_b = scale.wavelength_b_m * scale.wavelength_b_m;
 #pragma GCC ivdep
   for (int i = 0; i < rows; ++i) {
@@ -64,11 +64,14 @@ TOFMAP_VECTOR_CLONES void fill_evidence(const Pixels& pixels, const EvidenceScal
   }
   for (int k = 0; k < counts; ++k) {
     HalfFloat* at = evidence + static_cast<std::size_t>(k) * step;
-    const auto count = static_cast<float>(k);
-    const float farthest = k == 0 ? 1 : scale.farthest_cycles_a - count;
+    // Cycles of B in k wavelengths of A, without the whole ones: counts that the pair cannot tell
+    // apart get the same evidence to the last bit.
+    const double cycles_b = k * scale.wavelength_ratio;
+    const auto shift = static_cast<float>(cycles_b - std::round(cycles_b));
+    const float farthest = k == 0 ? 1 : scale.farthest_cycles_a - static_cast<float>(k);
 #pragma GCC ivdep
     for (int i = 0; i < rows; ++i) {
-      const float offset = to_half_cycle((pixels.phase_a[i] + count) * ratio - pixels.phase_b[i]);
+      const float offset = to_half_cycle(pixels.phase_a[i] * ratio + shift - pixels.phase_b[i]);
       const float size = offset < 0 ? -offset : offset;
       const float other = 1 - size;
       // The density of the offset against that of any: B's noise may pass half a cycle, too.
@@ -185,7 +188,7 @@ void CountModel::assign(const DualFrequencyFrame& frame, const BeatLimits& limit
                   &amplitude_[at], &variance_a_m2_[at], &variance_b_m2_[at]};
   };
   const EvidenceScale evidence_scale{
-      wavelength_a, wavelength_b,
+      limits.wavelength_a_m / limits.wavelength_b_m, wavelength_b,
       static_cast<float>(limits.max_range_m / limits.wavelength_a_m + 0.05),
       static_cast<float>(prior.outlier_share)};
   const EdgeScale edge_scale{wavelength_a, static_cast<float>(prior.slope_m * prior.slope_m),

@@ -24,7 +24,7 @@ CountEstimation count_estimation(const UnwrapOptions& options) {
 /// Makes pixels invalid that have a rival count which the pair of frequencies cannot tell from
 /// the chosen one, and which is nearly as likely.
 void drop_ambiguous(const CountBeliefs& beliefs, const BeatLimits& limits, RangeImage& image) {
-  constexpr float nearly = 0.5F;
+  constexpr float nearly = 0.1F;
   for (Eigen::Index v = 0; v < image.rows(); ++v) {
     for (Eigen::Index u = 0; u < image.cols(); ++u) {
       if (!image.valid(v, u)) continue;
