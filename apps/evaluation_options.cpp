@@ -4,22 +4,12 @@
 #include "evaluation_options.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <sstream>
 
 #include <tofmap/core/error.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap::app {
-namespace {
-
-bool is_method(const std::string& name) {
-  std::istringstream all(unwrap_method_names(" "));
-  using Words = std::istream_iterator<std::string>;
-  return std::find(Words(all), Words(), name) != Words();
-}
-
-}  // namespace
 
 std::vector<OptionField<EvaluationOptions>> EvaluationOptions::fields() {
   using O = EvaluationOptions;
@@ -35,7 +25,7 @@ std::vector<std::string> method_names(const EvaluationOptions& options) {
   std::vector<std::string> names;
   std::istringstream words(options.methods);
   for (std::string name; words >> name;) {
-    if (!is_method(name)) {
+    if (!find_unwrap_method(name)) {
       throw UsageError("option evaluation.methods: '" + name +
                        "' is no method; allowed: " + unwrap_method_names(" "));
     }

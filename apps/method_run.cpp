@@ -104,8 +104,7 @@ MethodResult run_unwrapping(const std::string& method, const SequenceReader& rec
   result.name = method;
   options.method = method;
   const int total = *recording.frame_count();
-  std::vector<Unwrapper> unwrappers(static_cast<std::size_t>(omp_get_max_threads()),
-                                    Unwrapper(recording.sensor(), options));
+  auto unwrappers = one_a_thread(Unwrapper(recording.sensor(), options));
   Progress progress("method " + method + ", frame", total, quiet);
   int done = 0;
   std::string first_damage;

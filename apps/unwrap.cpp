@@ -142,8 +142,7 @@ int run_unwrap(const UnwrapArguments& arguments) {
   for (const char* name : {"range", "wraps", "confidence", "reason"}) out.make(name);
 
   const PixelRays rays = pixel_rays(source.sensor().camera);
-  std::vector<Unwrapper> unwrappers(static_cast<std::size_t>(omp_get_max_threads()),
-                                    Unwrapper(source.sensor(), options.pipeline.unwrap));
+  auto unwrappers = one_a_thread(Unwrapper(source.sensor(), options.pipeline.unwrap));
   const int total = *source.frame_count();
   Json frames = Json::array();
   int damaged = 0;

@@ -122,8 +122,7 @@ RoomMap map_room(FrameSource& source, const PipelineOptions& options, const MapH
   const PixelRays rays = pixel_rays(sensor.camera);
   Odometry odometry(sensor.camera, options.odometry, options.registration);
   SurfaceMap surface(options.map);
-  std::vector<Unwrapper> unwrappers(static_cast<std::size_t>(omp_get_max_threads()),
-                                    Unwrapper(sensor, options.unwrap));
+  auto unwrappers = one_a_thread(Unwrapper(sensor, options.unwrap));
   RoomMap map;
 
   const auto may_go_on = [&] {

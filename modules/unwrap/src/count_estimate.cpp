@@ -133,12 +133,14 @@ CountBeliefs CountEstimator::estimate(const DualFrequencyFrame& frame, const Bea
   scales_[0].model.assign(frame, limits, noise, options.prior);
   CountBeliefs beliefs = scales_[0].propagation.run(scales_[0].model, options.iterations);
 
-  DualFrequencyFrame blocks = frame;
+  const DualFrequencyFrame* last = &frame;
+  DualFrequencyFrame blocks;
   PhaseNoise block_noise = noise;
   CountPrior prior = options.prior;
   int block_px = 1;
-  for (std::size_t s = 1; s < scales_.size() && is_loud(blocks, block_noise); ++s) {
-    blocks = halve(blocks);
+  for (std::size_t s = 1; s < scales_.size() && is_loud(*last, block_noise); ++s) {
+    blocks = halve(*last);
+    last = &blocks;
     block_noise = {block_noise.scale_a / 2, block_noise.scale_b / 2};
     prior.slope_m *= 2;
     block_px *= 2;

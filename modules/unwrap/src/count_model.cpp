@@ -36,24 +36,15 @@ struct EvidenceScale {
   float outlier_share;
 };
 
-/// A number for each pixel of a diagonal.
-struct EvidenceScratch {
-  std::vector<float> precision;
-  std::vector<float> height;
-  std::vector<float> best;
-
-  explicit EvidenceScratch(int rows)
-      : precision(static_cast<std::size_t>(rows)), height(precision), best(precision) {}
-};
-
-/// Equation 11: the probability of every count given the beat of the pixel.
+/// Equation 11: the probability of every count given the beat of the pixel. `scratch` has room for
+/// three numbers a pixel.
 TOFMAP_VECTOR_CLONES void fill_evidence(const Pixels& pixels, const EvidenceScale& scale,
                                         int counts, HalfFloat* evidence, std::size_t step,
-                                        EvidenceScratch& scratch) {
-  float* precision = scratch.precision.data();
-  float* height = scratch.height.data();
-  float* best = scratch.best.data();
+                                        float* scratch) {
   const int rows = pixels.rows;
+  float* precision = scratch;
+  float* height = precision + rows;
+  float* best = height + rows;
   const auto ratio = static_cast<float>(scale.wavelength_ratio);
   const float squared_b = scale.wavelength_b_m * scale.wavelength_b_m;
 #pragma GCC ivdep
@@ -144,7 +135,7 @@ TOFMAP_VECTOR_CLONES void fill_edges(const Pixels& from, const Pixels& to, const
 }  // namespace
 
 void CountModel::resize(int rows, int cols, int counts) {
-  if (!(layout_ == DiagonalLayout(rows, cols))) layout_ = DiagonalLayout(rows, cols);
+  if (layout_.rows() != rows || layout_.cols() != cols) layout_ = DiagonalLayout(rows, cols);
   counts_ = counts;
   evidence_.resize(layout_.size(static_cast<std::size_t>(counts)));
   for (std::vector<float>* plane :
@@ -152,6 +143,7 @@ void CountModel::resize(int rows, int cols, int counts) {
     plane->assign(layout_.size(1), 0.0F);
   }
   amplitude_.assign(layout_.size(1), 1.0F);
+  scratch_.resize(3 * static_cast<std::size_t>(rows));
   for (std::vector<float>* plane : {&variance_a_m2_, &variance_b_m2_}) {
     plane->assign(layout_.size(1), 4 * largest_ratio);
   }
@@ -196,13 +188,12 @@ void CountModel::assign(const DualFrequencyFrame& frame, const BeatLimits& limit
                              static_cast<float>(1 / (2 * prior.edge_reach_m)),
                              prior.amplitude_edges ? 1.0F : 0.0F};
   const auto counts = static_cast<std::size_t>(counts_);
-  EvidenceScratch scratch(rows);
   for (int d = 0; d < layout_.diagonals(); ++d) {
     const int first = layout_.begin(d);
     const int count = layout_.end(d) - first;
     const Pixels here = pixels(d, first, count);
     fill_evidence(here, evidence_scale, counts_, &evidence_[layout_.place(d, first, counts)],
-                  layout_.plane_step(d), scratch);
+                  layout_.plane_step(d), scratch_.data());
     if (d + 1 == layout_.diagonals()) break;
     const std::size_t edge = layout_.place(d, first, 1);
     fill_edges(here, pixels(d + 1, first, count), edge_scale, &right_.same[edge],

@@ -52,6 +52,70 @@ struct Block {
   float* scratch;   ///< room for 2 (counts + 2) rows; the first and the last of each half are 0
 };
 
+/// What a block's pixels have for one count: their evidence, and the messages of all neighbours.
+struct Factors {
+  const HalfFloat* evidence;
+  const HalfFloat* in_first;
+  const HalfFloat* in_second;
+  const HalfFloat* back_first;
+  const HalfFloat* back_second;
+
+  Factors(const Block& block, int count)
+      : evidence(block.evidence[count]),
+        in_first(block.in_first[count]),
+        in_second(block.in_second[count]),
+        back_first(block.first.back[count]),
+        back_second(block.second.back[count]) {}
+};
+
+/// What persists between blocks.
+struct Buffers {
+  std::array<std::vector<HalfFloat>, 4>& messages;
+  const HalfFloat* ones;
+  float* scratch;
+};
+
+enum class Sweep { forward, backward };
+
+/// The pixels of diagonal d from `row` on, in a sweep to later or to earlier diagonals. `has_back`
+/// is false before anything has been sent against the sweep.
+Block block_at(const CountModel& model, const Buffers& buffers, Sweep sweep, int d, int row,
+               bool has_back) {
+  const DiagonalLayout& layout = model.layout();
+  const auto counts = static_cast<std::size_t>(model.counts());
+  const bool forward = sweep == Sweep::forward;
+  const int next = forward ? d + 1 : d - 1;
+  const std::size_t step = layout.plane_step(d);
+  const std::size_t out_step = layout.plane_step(next);
+  const std::size_t here = layout.place(d, row, counts);
+  const std::size_t in_row = layout.place(next, row, counts);
+  const std::size_t in_col = forward ? in_row + 1 : in_row - 1;
+  // Edges are stored at their left or upper pixel.
+  const std::size_t edge_right = layout.place(forward ? d : next, row, 1);
+  const std::size_t edge_down = forward ? edge_right : edge_right - 1;
+  const From along_row = forward ? left : right;
+  const From along_col = forward ? above : below;
+  const auto back = [&](From from) {
+    return has_back ? Planes<const HalfFloat>{&buffers.messages[from][here], step}
+                    : Planes<const HalfFloat>{buffers.ones, 0};
+  };
+  return {std::min(block_rows, layout.end(d) - row),
+          model.counts(),
+          {&model.evidence()[here], step},
+          {&buffers.messages[along_row][here], step},
+          {&buffers.messages[along_col][here], step},
+          {back(forward ? right : left),
+           {&buffers.messages[along_row][in_row], out_step},
+           &model.right().same[edge_right],
+           &model.right().next[edge_right]},
+          {back(forward ? below : above),
+           {&buffers.messages[along_col][in_col], out_step},
+           &model.down().same[edge_down],
+           &model.down().next[edge_down]},
+          forward ? 1.0F : -1.0F,
+          buffers.scratch};
+}
+
 /// Equation 16, for the messages along one edge. `weighted` holds what remains of the beliefs
 /// without the message the other way.
 template <bool watches_change>
@@ -95,19 +159,15 @@ template <bool watches_change>
   Row sum_first{};
   Row sum_second{};
   for (int n = 0; n < block.counts; ++n) {
-    const HalfFloat* evidence = block.evidence[n];
-    const HalfFloat* in_first = block.in_first[n];
-    const HalfFloat* in_second = block.in_second[n];
-    const HalfFloat* back_first = block.first.back[n];
-    const HalfFloat* back_second = block.second.back[n];
+    const Factors of(block, n);
     float* weighted_first = first + n * block_rows;
     float* weighted_second = second + n * block_rows;
 #pragma GCC ivdep
     for (int i = 0; i < rows; ++i) {
-      const float to_first = widened(back_first[i]);
-      const float to_second = widened(back_second[i]);
-      const float shared = widened(evidence[i]) * widened(in_first[i]) * widened(in_second[i]) /
-                           (to_first * to_second);
+      const float to_first = widened(of.back_first[i]);
+      const float to_second = widened(of.back_second[i]);
+      const float shared = widened(of.evidence[i]) * widened(of.in_first[i]) *
+                           widened(of.in_second[i]) / (to_first * to_second);
       weighted_first[i] = shared * to_second * to_second;
       weighted_second[i] = shared * to_first * to_first;
       sum_first[i] += weighted_first[i];
@@ -142,16 +202,13 @@ TOFMAP_VECTOR_CLONES void read_block(const Block& block, BlockBeliefs& out) {
   out.rival.fill(0);
   out.rival_count.fill(0);
   for (int n = 0; n < block.counts; ++n) {
-    const HalfFloat* evidence = block.evidence[n];
-    const HalfFloat* in_first = block.in_first[n];
-    const HalfFloat* in_second = block.in_second[n];
-    const HalfFloat* back_first = block.first.back[n];
-    const HalfFloat* back_second = block.second.back[n];
+    const Factors of(block, n);
     const auto count = static_cast<float>(n);
 #pragma GCC ivdep
     for (int i = 0; i < rows; ++i) {
-      const float belief = widened(evidence[i]) * widened(in_first[i]) * widened(in_second[i]) *
-                           widened(back_first[i]) * widened(back_second[i]);
+      const float belief = widened(of.evidence[i]) * widened(of.in_first[i]) *
+                           widened(of.in_second[i]) * widened(of.back_first[i]) *
+                           widened(of.back_second[i]);
       sum[i] += belief;
       const bool is_best = belief > out.best[i];
       const bool is_rival = belief > out.rival[i];
@@ -196,65 +253,21 @@ void CountPropagation::reset(const CountModel& model) {
 
 void CountPropagation::sweep_forward(const CountModel& model, bool is_first) {
   const DiagonalLayout& layout = model.layout();
-  const auto counts = static_cast<std::size_t>(model.counts());
+  const Buffers buffers{messages_, ones_.data(), scratch_.data()};
   for (int d = 0; d < layout.diagonals(); ++d) {
-    const std::size_t step = layout.plane_step(d);
-    const std::size_t out_step = layout.plane_step(d + 1);
     for (int row = layout.begin(d); row < layout.end(d); row += block_rows) {
-      const std::size_t here = layout.place(d, row, counts);
-      const std::size_t there = layout.place(d + 1, row, counts);
-      const std::size_t edge = layout.place(d, row, 1);
-      // Before the first sweep back nothing has been sent that way.
-      const auto back = [&](From from) {
-        return is_first ? Planes<const HalfFloat>{ones_.data(), 0}
-                        : Planes<const HalfFloat>{&messages_[from][here], step};
-      };
-      const Block block{std::min(block_rows, layout.end(d) - row),
-                        model.counts(),
-                        {&model.evidence()[here], step},
-                        {&messages_[left][here], step},
-                        {&messages_[above][here], step},
-                        {back(right),
-                         {&messages_[left][there], out_step},
-                         &model.right().same[edge],
-                         &model.right().next[edge]},
-                        {back(below),
-                         {&messages_[above][there + 1], out_step},
-                         &model.down().same[edge],
-                         &model.down().next[edge]},
-                        1,
-                        scratch_.data()};
-      send_block(block);
+      send_block(block_at(model, buffers, Sweep::forward, d, row, !is_first));
     }
   }
 }
 
 void CountPropagation::sweep_backward(const CountModel& model, CountBeliefs* beliefs) {
   const DiagonalLayout& layout = model.layout();
-  const auto counts = static_cast<std::size_t>(model.counts());
+  const Buffers buffers{messages_, ones_.data(), scratch_.data()};
   BlockBeliefs read;
   for (int d = layout.diagonals() - 1; d >= 0; --d) {
-    const std::size_t step = layout.plane_step(d);
-    const std::size_t out_step = layout.plane_step(d - 1);
     for (int row = layout.begin(d); row < layout.end(d); row += block_rows) {
-      const std::size_t here = layout.place(d, row, counts);
-      const std::size_t there = layout.place(d - 1, row, counts);
-      const std::size_t edge = layout.place(d - 1, row, 1);
-      const Block block{std::min(block_rows, layout.end(d) - row),
-                        model.counts(),
-                        {&model.evidence()[here], step},
-                        {&messages_[right][here], step},
-                        {&messages_[below][here], step},
-                        {{&messages_[left][here], step},
-                         {&messages_[right][there], out_step},
-                         &model.right().same[edge],
-                         &model.right().next[edge]},
-                        {{&messages_[above][here], step},
-                         {&messages_[below][there - 1], out_step},
-                         &model.down().same[edge - 1],
-                         &model.down().next[edge - 1]},
-                        -1,
-                        scratch_.data()};
+      const Block block = block_at(model, buffers, Sweep::backward, d, row, true);
       if (beliefs == nullptr) {
         send_block(block);
         continue;

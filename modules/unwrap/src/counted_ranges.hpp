@@ -9,7 +9,11 @@
 
 namespace tofmap {
 
-/// The image of counts that are known: ranges, their noise, and confidences.
+/// The image of counts that are known, with ranges, their standard deviations, and confidences.
+RangeImage make_range_image(const ImageF& range_m, const ImageF& sigma_m, const ImageU8& counts,
+                            const ImageF& confidence);
+
+/// The same with A's ranges: (phase_a + n) λ_A.
 RangeImage make_range_image(const DualFrequencyFrame& frame, const ImageU8& counts,
                             const ImageF& confidence, const BeatLimits& limits,
                             const PhaseNoise& noise);

@@ -7,8 +7,6 @@
 #include "tofmap/unwrap/exposure_motion.hpp"
 #include "tofmap/unwrap/range_fusion.hpp"
 
-#include <utility>
-
 namespace tofmap {
 namespace {
 
@@ -56,11 +54,12 @@ UnwrapResult unwrap_jointly(CountEstimator& estimator, const DualFrequencyFrame&
                             const PixelRays& rays, const UnwrapOptions& options) {
   const CountBeliefs beliefs = estimator.estimate(frame, limits, noise, count_estimation(options));
   UnwrapResult result;
-  result.image = make_range_image(frame, beliefs.count, beliefs.probability, limits, noise);
   if (options.fuse_frequencies) {
-    FusedRanges fused = ranges_of_both(frame, beliefs.count, limits, noise, rays);
-    result.image.range_m = std::move(fused.range_m);
-    result.image.sigma_m = std::move(fused.sigma_m);
+    const FusedRanges fused = ranges_of_both(frame, beliefs.count, limits, noise, rays);
+    result.image =
+        make_range_image(fused.range_m, fused.sigma_m, beliefs.count, beliefs.probability);
+  } else {
+    result.image = make_range_image(frame, beliefs.count, beliefs.probability, limits, noise);
   }
   drop_ambiguous(beliefs, limits, result.image);
   result.iterations = beliefs.iterations;

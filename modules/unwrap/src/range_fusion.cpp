@@ -9,11 +9,15 @@
 #include <tofmap/core/range_image.hpp>
 
 namespace tofmap {
+namespace {
+
+constexpr float agreement = 4;  // standard deviations
+
+}  // namespace
 
 RangePair pair_ranges(const DualFrequencyFrame& frame, const ImageU8& counts,
                       const BeatLimits& limits, const PhaseNoise& noise) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-  constexpr float agreement = 4;  // standard deviations
   constexpr float largest_sigma_cycles = 0.5F / agreement;
   // B is seen from another place; a hand-held camera moves no farther between exposures.
   constexpr float motion_m = 0.1F;
@@ -45,7 +49,6 @@ RangePair pair_ranges(const DualFrequencyFrame& frame, const ImageU8& counts,
 }
 
 FusedRanges fuse_ranges(const RangePair& pair, const ImageF& shrinkage_m) {
-  constexpr float agreement = 4;  // standard deviations
   constexpr float calibration_m = 0.01F;
   FusedRanges out{pair.range_a_m, pair.variance_a_m2.sqrt()};
   out.sigma_m = pair.range_a_m.isNaN().select(pair.range_a_m, out.sigma_m);

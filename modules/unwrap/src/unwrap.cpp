@@ -181,10 +181,15 @@ std::string unwrap_method_names(const std::string& separator) {
   return names;
 }
 
-UnwrapMethod unwrap_method(const UnwrapOptions& options) {
+std::optional<UnwrapMethod> find_unwrap_method(std::string_view name) {
   for (const NamedMethod& named : methods) {
-    if (options.method == named.name) return named.method;
+    if (name == named.name) return named.method;
   }
+  return std::nullopt;
+}
+
+UnwrapMethod unwrap_method(const UnwrapOptions& options) {
+  if (const auto method = find_unwrap_method(options.method)) return *method;
   throw UsageError("option unwrap.method: '" + options.method +
                    "' is not allowed; allowed: " + unwrap_method_names(" | "));
 }

@@ -30,8 +30,14 @@ auto side_by_side(int count, const Step& step) {
   return results;
 }
 
-/// The same with workers that keep buffers between steps: step(worker, i), where no two threads
-/// share a worker. There is one at least for each thread that OpenMP has.
+/// A copy of the worker for each thread that OpenMP has.
+template <class Worker>
+std::vector<Worker> one_a_thread(const Worker& worker) {
+  return std::vector<Worker>(static_cast<std::size_t>(omp_get_max_threads()), worker);
+}
+
+/// side_by_side with workers that keep buffers between steps: step(worker, i), where no two threads
+/// share a worker. `workers` is of `one_a_thread`.
 template <class Worker, class Step>
 auto side_by_side(int count, std::vector<Worker>& workers, const Step& step) {
   return side_by_side(count, [&](int i) {

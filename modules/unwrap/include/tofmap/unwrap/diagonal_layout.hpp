@@ -54,10 +54,6 @@ class DiagonalLayout {
            static_cast<std::size_t>(row - begin(diagonal) + 1);
   }
 
-  friend bool operator==(const DiagonalLayout& a, const DiagonalLayout& b) {
-    return a.rows_ == b.rows_ && a.cols_ == b.cols_;
-  }
-
  private:
   int rows_ = 0;
   int cols_ = 0;

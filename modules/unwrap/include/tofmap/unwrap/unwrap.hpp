@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tofmap/core/frame.hpp>
@@ -46,6 +48,9 @@ struct UnwrapOptions {
 
   static std::vector<OptionField<UnwrapOptions>> fields();
 };
+
+/// The method of this name, if there is one.
+std::optional<UnwrapMethod> find_unwrap_method(std::string_view name);
 
 /// The method that the options name. Throws UsageError if there is none of that name.
 UnwrapMethod unwrap_method(const UnwrapOptions& options);
