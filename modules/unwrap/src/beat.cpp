@@ -3,7 +3,11 @@
 
 #include "tofmap/unwrap/beat.hpp"
 
+#include "fast_math.hpp"
+#include "vector_clones.hpp"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -16,6 +20,69 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr double noise_tolerance_cycles = 0.05;
+
+/// What a count adds to the beat.
+struct CountStep {
+  float shift;     ///< cycles of B in so many wavelengths of A, without the whole ones
+  float farthest;  ///< phase up to which the range is within the limits
+};
+
+CountStep count_step(const BeatLimits& limits, int n) {
+  const double cycles_b = n * limits.wavelength_a_m / limits.wavelength_b_m;
+  const double farthest =
+      limits.max_range_m / limits.wavelength_a_m + noise_tolerance_cycles - n;
+  const bool is_count = n >= 0 && n < limits.count_a;
+  return {static_cast<float>(cycles_b - std::round(cycles_b)),
+          n == 0 ? 1.0F : is_count ? static_cast<float>(farthest) : -1.0F};
+}
+
+/// Pixels treated at a time: what is known of them so far stays in the first-level cache.
+constexpr int block_pixels = 1024;
+
+/// The least residuals, in cycles of B, and whose they are.
+struct Nearest {
+  std::array<float, block_pixels> cycles;
+  std::array<float, block_pixels> count;
+};
+
+TOFMAP_VECTOR_CLONES void take_nearer(int pixels, const float* phase_a, const float* phase_b,
+                                      float wavelength_ratio, const CountStep& step, float count,
+                                      Nearest& nearest) {
+  float* least = nearest.cycles.data();
+  float* best = nearest.count.data();
+  const float shift = step.shift;
+  const float farthest = step.farthest;
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    const float beat = phase_a[i] * wavelength_ratio - phase_b[i] + shift;
+    const float residual = to_half_cycle(beat == beat ? beat : 0.0F);
+    const float size = residual < 0 ? -residual : residual;
+    const bool is_nearer = phase_a[i] <= farthest && size < least[i];
+    least[i] = is_nearer ? size : least[i];
+    best[i] = is_nearer ? count : best[i];
+  }
+}
+
+/// Costs of the pixels for `stride` counts, a pixel's together. `precision` is half the inverse
+/// variance of the residual, in 1 / cycles².
+TOFMAP_VECTOR_CLONES void fill_costs(int pixels, const float* phase_a, const float* phase_b,
+                                     const float* precision, float wavelength_ratio, int stride,
+                                     const float* shift, const float* farthest, float* costs) {
+  for (int i = 0; i < pixels; ++i) {
+    const float beat = phase_a[i] * wavelength_ratio - phase_b[i];
+    const bool has_return = beat == beat;
+    const float known_beat = has_return ? beat : 0.0F;
+    const float phase = has_return ? phase_a[i] : 2.0F;  // beyond any limit
+    float* out = costs + static_cast<std::ptrdiff_t>(i) * stride;
+#pragma GCC ivdep
+    for (int n = 0; n < stride; ++n) {
+      const float residual = to_half_cycle(known_beat + shift[n]);
+      const float cost = residual * residual * precision[i];
+      const bool counts = phase <= farthest[n] && cost < BeatCost::bound;
+      out[n] = counts ? cost : BeatCost::bound;
+    }
+  }
+}
 
 }  // namespace
 
@@ -56,21 +123,24 @@ bool can_tell_apart(const BeatLimits& limits, int n_a, int other_n_a) {
 }
 
 ImageU8 nearest_pair_counts(const DualFrequencyFrame& frame, const BeatLimits& limits) {
-  ImageU8 counts =
-      ImageU8::Constant(frame.phase_a.rows(), frame.phase_a.cols(), invalid_wrap_count);
-  for (Eigen::Index v = 0; v < counts.rows(); ++v) {
-    for (Eigen::Index u = 0; u < counts.cols(); ++u) {
-      const float a = frame.phase_a(v, u);
-      const float b = frame.phase_b(v, u);
-      if (std::isnan(a) || std::isnan(b)) continue;
-      float least_m = std::numeric_limits<float>::infinity();
-      for (int n = 0; n < limits.count_a && count_within_limits(limits, a, n); ++n) {
-        const float residual_m = std::abs(beat_residual_m(limits, a, b, n));
-        if (residual_m < least_m) {
-          least_m = residual_m;
-          counts(v, u) = static_cast<std::uint8_t>(n);
-        }
-      }
+  ImageU8 counts(frame.phase_a.rows(), frame.phase_a.cols());
+  const auto ratio = static_cast<float>(limits.wavelength_a_m / limits.wavelength_b_m);
+  Nearest nearest;
+  for (Eigen::Index done = 0; done < counts.size(); done += block_pixels) {
+    const auto pixels = static_cast<int>(std::min<Eigen::Index>(block_pixels, counts.size() - done));
+    nearest.cycles.fill(1);
+    nearest.count.fill(0);
+    const float* phase_a = frame.phase_a.data() + done;
+    const float* phase_b = frame.phase_b.data() + done;
+    for (int n = 0; n < limits.count_a; ++n) {
+      take_nearer(pixels, phase_a, phase_b, ratio, count_step(limits, n), static_cast<float>(n),
+                  nearest);
+    }
+    for (int i = 0; i < pixels; ++i) {
+      const bool has_return = !std::isnan(phase_a[i]) && !std::isnan(phase_b[i]);
+      counts.data()[done + i] =
+          has_return ? static_cast<std::uint8_t>(nearest.count[static_cast<std::size_t>(i)])
+                     : invalid_wrap_count;
     }
   }
   return counts;
@@ -82,19 +152,27 @@ ImageF reconstruct_cycles(const ImageF& phase_a, const ImageU8& counts) {
 
 BeatCost::BeatCost(const DualFrequencyFrame& frame, const BeatLimits& limits,
                    const PhaseNoise& noise)
-    : frame_(frame), limits_(limits) {
+    : count_a_(limits.count_a), cols_(frame.phase_a.cols()) {
+  constexpr int lanes = 16;  // whole vectors of AVX-512, two of AVX2
+  stride_ = (count_a_ + 2 + lanes - 1) / lanes * lanes;
   const ImageF sigma_a = phase_sigma_cycles(frame.phase_a, frame.amplitude_a, noise.scale_a) *
                          static_cast<float>(limits.wavelength_a_m);
   const ImageF sigma_b = phase_sigma_cycles(frame.phase_b, frame.amplitude_b, noise.scale_b) *
                          static_cast<float>(limits.wavelength_b_m);
-  half_inverse_variance_ = 0.5F / (sigma_a.square() + sigma_b.square());
-}
-
-float BeatCost::operator()(Eigen::Index row, Eigen::Index col, int n_a) const {
-  const float a = frame_.phase_a(row, col);
-  if (!count_within_limits(limits_, a, n_a)) return bound;
-  const float residual_m = beat_residual_m(limits_, a, frame_.phase_b(row, col), n_a);
-  return std::min(residual_m * residual_m * half_inverse_variance_(row, col), bound);
+  const auto half_square_m2 =
+      static_cast<float>(0.5 * limits.wavelength_b_m * limits.wavelength_b_m);
+  const ImageF precision = half_square_m2 / (sigma_a.square() + sigma_b.square());
+  std::vector<float> shift;
+  std::vector<float> farthest;
+  for (int n = -1; n < stride_ - 1; ++n) {
+    const CountStep step = count_step(limits, n);
+    shift.push_back(step.shift);
+    farthest.push_back(step.farthest);
+  }
+  costs_.resize(static_cast<std::size_t>(frame.phase_a.size() * stride_));
+  fill_costs(static_cast<int>(frame.phase_a.size()), frame.phase_a.data(), frame.phase_b.data(),
+             precision.data(), static_cast<float>(limits.wavelength_a_m / limits.wavelength_b_m),
+             stride_, shift.data(), farthest.data(), costs_.data());
 }
 
 }  // namespace tofmap

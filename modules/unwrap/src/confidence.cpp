@@ -3,42 +3,75 @@
 
 #include "confidence.hpp"
 
-#include <algorithm>
+#include "fast_math.hpp"
+#include "vector_clones.hpp"
+
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include <tofmap/core/range_image.hpp>
 
 namespace tofmap {
 namespace {
 
-/// The marginal of the configuration that makes this step; NaN where the node is absent.
-float step_probability(const std::array<ImageF, 3>& marginal, Eigen::Index v, Eigen::Index u,
-                       int step) {
-  if (std::isnan(marginal[1](v, u))) return marginal[1](v, u);
-  if (std::abs(step) > 1) return 0;
-  return marginal[static_cast<std::size_t>(1 - step)](v, u);
+/// Σ_n exp(−cost) of a pixel's counts. The vector units sum as many terms at a time.
+TOFMAP_VECTOR_CLONES void sum_likelihoods(int pixels, const float* costs, int stride, int counts,
+                                          float* sums) {
+  constexpr int lanes = 16;
+  const float beyond = static_cast<float>(stride - counts) * exp_of_negative(-BeatCost::bound);
+  for (int i = 0; i < pixels; ++i, costs += stride) {
+    std::array<float, lanes> terms{};
+    for (int n = 0; n < stride; n += lanes) {
+#pragma GCC ivdep
+      for (int k = 0; k < lanes; ++k) {
+        terms[static_cast<std::size_t>(k)] += exp_of_negative(-costs[n + k]);
+      }
+    }
+    float sum = 0;
+    for (const float term : terms) sum += term;
+    sums[i] = sum - beyond;
+  }
 }
 
-/// Adds the probability of one node to both its pixels.
-void add_node(float probability, float& sum_p, float& weight_p, float& sum_q, float& weight_q) {
-  if (std::isnan(probability)) return;
-  sum_p += probability;
-  sum_q += probability;
-  weight_p += 1;
-  weight_q += 1;
+/// Nodes of one row: the marginals of their configurations, and the counts of their pixels.
+struct NodeRow {
+  const float* minus;
+  const float* none;
+  const float* plus;
+  const std::uint8_t* count_p;
+  const std::uint8_t* count_q;
+};
+
+/// Adds the probability of the step that the counts make to both pixels of each node, and 1 to
+/// their weights. Nothing where the node is absent.
+TOFMAP_VECTOR_CLONES void add_steps(int nodes, const NodeRow& row_, float* steps, float* present) {
+  const NodeRow row = row_;
+#pragma GCC ivdep
+  for (int i = 0; i < nodes; ++i) {
+    const int step = static_cast<int>(row.count_q[i]) - static_cast<int>(row.count_p[i]);
+    const float side = step == 1 ? row.minus[i] : step == -1 ? row.plus[i] : 0.0F;
+    const float probability = step == 0 ? row.none[i] : side;
+    const bool is_present = row.none[i] == row.none[i];
+    steps[i] = is_present ? probability : 0.0F;
+    present[i] = is_present ? 1.0F : 0.0F;
+  }
+}
+
+void add_to(float* sums, const std::vector<float>& terms) {
+  for (std::size_t i = 0; i < terms.size(); ++i) sums[i] += terms[i];
 }
 
 }  // namespace
 
 ImageF beat_confidence(const ImageU8& counts, const BeatCost& beat) {
-  ImageF confidence = ImageF::Zero(counts.rows(), counts.cols());
-  for (Eigen::Index v = 0; v < counts.rows(); ++v) {
-    for (Eigen::Index u = 0; u < counts.cols(); ++u) {
-      if (counts(v, u) == invalid_wrap_count) continue;
-      float sum = 0;
-      for (int n = 0; n < beat.count_a(); ++n) sum += std::exp(-beat(v, u, n));
-      confidence(v, u) = std::exp(-beat(v, u, counts(v, u))) / sum;
-    }
+  ImageF confidence(counts.rows(), counts.cols());
+  sum_likelihoods(static_cast<int>(counts.size()), beat.of(0), beat.stride(), beat.count_a(),
+                  confidence.data());
+  for (Eigen::Index i = 0; i < counts.size(); ++i) {
+    const std::uint8_t count = counts.data()[i];
+    float& own = confidence.data()[i];
+    own = count == invalid_wrap_count ? 0 : std::exp(-beat.of(i)[count + 1]) / own;
   }
   return confidence;
 }
@@ -46,19 +79,26 @@ ImageF beat_confidence(const ImageU8& counts, const BeatCost& beat) {
 ImageF jump_confidence(const ImageU8& counts, const JumpProbabilities& marginals) {
   ImageF sum = ImageF::Zero(counts.rows(), counts.cols());
   ImageF weight = ImageF::Zero(counts.rows(), counts.cols());
-  for (Eigen::Index v = 0; v < counts.rows(); ++v) {
-    for (Eigen::Index u = 0; u < counts.cols(); ++u) {
-      const int n = counts(v, u);
-      if (u + 1 < counts.cols()) {
-        add_node(step_probability(marginals.x, v, u, counts(v, u + 1) - n), sum(v, u), weight(v, u),
-                 sum(v, u + 1), weight(v, u + 1));
-      }
-      if (v + 1 < counts.rows()) {
-        add_node(step_probability(marginals.y, v, u, counts(v + 1, u) - n), sum(v, u), weight(v, u),
-                 sum(v + 1, u), weight(v + 1, u));
+  std::vector<float> steps;
+  std::vector<float> present;
+  const auto add_nodes = [&](const std::array<ImageF, 3>& nodes, Eigen::Index q_from_p) {
+    steps.resize(static_cast<std::size_t>(nodes[0].cols()));
+    present.resize(steps.size());
+    for (Eigen::Index v = 0; v < nodes[0].rows(); ++v) {
+      const Eigen::Index node = v * nodes[0].cols();
+      const Eigen::Index p = v * counts.cols();
+      add_steps(static_cast<int>(steps.size()),
+                {nodes[0].data() + node, nodes[1].data() + node, nodes[2].data() + node,
+                 counts.data() + p, counts.data() + p + q_from_p},
+                steps.data(), present.data());
+      for (const Eigen::Index pixel : {p, p + q_from_p}) {
+        add_to(sum.data() + pixel, steps);
+        add_to(weight.data() + pixel, present);
       }
     }
-  }
+  };
+  add_nodes(marginals.x, 1);
+  add_nodes(marginals.y, counts.cols());
   const ImageF mean = (weight > 0).select(sum / weight, 0.5F);
   return (counts == invalid_wrap_count).select(0.0F, mean);
 }

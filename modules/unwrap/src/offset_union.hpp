@@ -12,7 +12,7 @@ namespace tofmap {
 /// spanning forest, where each edge tells a difference of counts.
 class OffsetUnion {
  public:
-  explicit OffsetUnion(int size) : parent_(size), to_parent_(size, 0) {
+  explicit OffsetUnion(int size) : parent_(size), to_parent_(size, 0), size_(size, 1) {
     std::iota(parent_.begin(), parent_.end(), 0);
   }
 
@@ -42,11 +42,16 @@ class OffsetUnion {
   void join(int root, int child_root, int offset) {
     parent_[child_root] = root;
     to_parent_[child_root] = offset;
+    size_[root] += size_[child_root];
   }
+
+  /// Members of the set with this root.
+  int size(int root) const { return size_[root]; }
 
  private:
   std::vector<int> parent_;
   std::vector<int> to_parent_;
+  std::vector<int> size_;  ///< of roots
 };
 
 }  // namespace tofmap

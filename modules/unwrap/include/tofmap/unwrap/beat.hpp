@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/image.hpp>
 #include <tofmap/unwrap/phase_noise.hpp>
@@ -49,17 +51,25 @@ class BeatCost {
  public:
   BeatCost(const DualFrequencyFrame& frame, const BeatLimits& limits, const PhaseNoise& noise);
 
-  /// The cost of n_A at the pixel, 0 … bound; the bound outside the limits.
-  float operator()(Eigen::Index row, Eigen::Index col, int n_a) const;
+  /// The cost of n_A at the pixel, 0 … bound; the bound outside the limits and without a return.
+  float operator()(Eigen::Index row, Eigen::Index col, int n_a) const {
+    return of(row * cols_ + col)[n_a + 1];
+  }
 
-  int count_a() const { return limits_.count_a; }
+  /// The costs of a pixel, numbered row by row, for the counts −1 … stride() − 2: all that are
+  /// within the limits and at least one more at both ends, where costs are the bound.
+  const float* of(Eigen::Index pixel) const { return costs_.data() + pixel * stride_; }
+  int stride() const { return stride_; }
+
+  int count_a() const { return count_a_; }
 
   static constexpr float bound = 4.5F;  ///< three standard deviations
 
  private:
-  const DualFrequencyFrame& frame_;
-  BeatLimits limits_;
-  ImageF half_inverse_variance_;  ///< of the residual, 1 / (2 m²)
+  int count_a_;
+  int stride_;
+  Eigen::Index cols_;
+  std::vector<float> costs_;
 };
 
 }  // namespace tofmap
