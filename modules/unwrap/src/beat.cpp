@@ -29,11 +29,12 @@ struct CountStep {
 
 CountStep count_step(const BeatLimits& limits, int n) {
   const double cycles_b = n * limits.wavelength_a_m / limits.wavelength_b_m;
-  const double farthest =
-      limits.max_range_m / limits.wavelength_a_m + noise_tolerance_cycles - n;
+  const double farthest = limits.max_range_m / limits.wavelength_a_m + noise_tolerance_cycles - n;
   const bool is_count = n >= 0 && n < limits.count_a;
-  return {static_cast<float>(cycles_b - std::round(cycles_b)),
-          n == 0 ? 1.0F : is_count ? static_cast<float>(farthest) : -1.0F};
+  return {static_cast<float>(cycles_b - std::round(cycles_b)), n == 0 ? 1.0F
+                                                               : is_count
+                                                                   ? static_cast<float>(farthest)
+                                                                   : -1.0F};
 }
 
 /// Pixels treated at a time: what is known of them so far stays in the first-level cache.
@@ -63,24 +64,48 @@ TOFMAP_VECTOR_CLONES void take_nearer(int pixels, const float* phase_a, const fl
   }
 }
 
-/// Costs of the pixels for `stride` counts, a pixel's together. `precision` is half the inverse
-/// variance of the residual, in 1 / cycles².
-TOFMAP_VECTOR_CLONES void fill_costs(int pixels, const float* phase_a, const float* phase_b,
-                                     const float* precision, float wavelength_ratio, int stride,
-                                     const float* shift, const float* farthest, float* costs) {
-  for (int i = 0; i < pixels; ++i) {
-    const float beat = phase_a[i] * wavelength_ratio - phase_b[i];
-    const bool has_return = beat == beat;
-    const float known_beat = has_return ? beat : 0.0F;
-    const float phase = has_return ? phase_a[i] : 2.0F;  // beyond any limit
-    float* out = costs + static_cast<std::ptrdiff_t>(i) * stride;
+/// Half the squared residual over its variance, bounded.
+[[gnu::always_inline]] inline float cost_of(float beat_cycles, float precision, bool is_within) {
+  const float residual = to_half_cycle(beat_cycles);
+  const float cost = residual * residual * precision;
+  return is_within && cost < BeatCost::bound ? cost : BeatCost::bound;
+}
+
+/// Counts in a row, one in each lane: as many as the longest vector of a processor has.
+constexpr int count_lanes = 16;
+
+/// Adds the costs of `size` counts of one pixel, and returns the least sum.
+TOFMAP_VECTOR_CLONES float add_costs(float phase_a, float beat_cycles, float precision,
+                                     const float* shift, const float* farthest, int size,
+                                     float* sums) {
+  std::array<float, count_lanes> least;
+  least.fill(std::numeric_limits<float>::infinity());
+  for (int n = 0; n < size; n += count_lanes) {
 #pragma GCC ivdep
-    for (int n = 0; n < stride; ++n) {
-      const float residual = to_half_cycle(known_beat + shift[n]);
-      const float cost = residual * residual * precision[i];
-      const bool counts = phase <= farthest[n] && cost < BeatCost::bound;
-      out[n] = counts ? cost : BeatCost::bound;
+    for (int k = 0; k < count_lanes; ++k) {
+      const float sum =
+          sums[n + k] + cost_of(beat_cycles + shift[n + k], precision, phase_a <= farthest[n + k]);
+      float& lane = least[static_cast<std::size_t>(k)];
+      lane = sum < lane ? sum : lane;
+      sums[n + k] = sum;
     }
+  }
+  return least_of(least);
+}
+
+/// Adds the likelihoods of one count, and keeps those of the counts that are asked for.
+TOFMAP_VECTOR_CLONES void add_likelihoods(int pixels, const float* phase_a,
+                                          const float* beat_cycles, const float* precision,
+                                          const CountStep& step, float count,
+                                          const std::uint8_t* asked, float* sums, float* own) {
+  const float shift = step.shift;
+  const float farthest = step.farthest;
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    const float likelihood =
+        exp_of_negative(-cost_of(beat_cycles[i] + shift, precision[i], phase_a[i] <= farthest));
+    sums[i] += likelihood;
+    own[i] = static_cast<float>(asked[i]) == count ? likelihood : own[i];
   }
 }
 
@@ -127,7 +152,8 @@ ImageU8 nearest_pair_counts(const DualFrequencyFrame& frame, const BeatLimits& l
   const auto ratio = static_cast<float>(limits.wavelength_a_m / limits.wavelength_b_m);
   Nearest nearest;
   for (Eigen::Index done = 0; done < counts.size(); done += block_pixels) {
-    const auto pixels = static_cast<int>(std::min<Eigen::Index>(block_pixels, counts.size() - done));
+    const auto pixels =
+        static_cast<int>(std::min<Eigen::Index>(block_pixels, counts.size() - done));
     nearest.cycles.fill(1);
     nearest.count.fill(0);
     const float* phase_a = frame.phase_a.data() + done;
@@ -152,27 +178,57 @@ ImageF reconstruct_cycles(const ImageF& phase_a, const ImageU8& counts) {
 
 BeatCost::BeatCost(const DualFrequencyFrame& frame, const BeatLimits& limits,
                    const PhaseNoise& noise)
-    : count_a_(limits.count_a), cols_(frame.phase_a.cols()) {
-  constexpr int lanes = 16;  // whole vectors of AVX-512, two of AVX2
-  stride_ = (count_a_ + 2 + lanes - 1) / lanes * lanes;
+    : count_a_(limits.count_a),
+      size_(static_cast<std::size_t>(count_a_ + 2 + count_lanes - 1) / count_lanes * count_lanes) {
   const ImageF sigma_a = phase_sigma_cycles(frame.phase_a, frame.amplitude_a, noise.scale_a) *
                          static_cast<float>(limits.wavelength_a_m);
   const ImageF sigma_b = phase_sigma_cycles(frame.phase_b, frame.amplitude_b, noise.scale_b) *
                          static_cast<float>(limits.wavelength_b_m);
   const auto half_square_m2 =
       static_cast<float>(0.5 * limits.wavelength_b_m * limits.wavelength_b_m);
-  const ImageF precision = half_square_m2 / (sigma_a.square() + sigma_b.square());
-  std::vector<float> shift;
-  std::vector<float> farthest;
-  for (int n = -1; n < stride_ - 1; ++n) {
+  precision_ = half_square_m2 / (sigma_a.square() + sigma_b.square());
+  const ImageF beat =
+      frame.phase_a * static_cast<float>(limits.wavelength_a_m / limits.wavelength_b_m) -
+      frame.phase_b;
+  constexpr float beyond_any_limit = 2;
+  phase_a_ = beat.isNaN().select(beyond_any_limit, frame.phase_a);
+  beat_cycles_ = beat.isNaN().select(0.0F, beat);
+  const int reach = static_cast<int>(size_);
+  for (int n = -1 - reach; n < 2 * reach - 1; ++n) {
     const CountStep step = count_step(limits, n);
-    shift.push_back(step.shift);
-    farthest.push_back(step.farthest);
+    shift_.push_back(step.shift);
+    farthest_.push_back(step.farthest);
   }
-  costs_.resize(static_cast<std::size_t>(frame.phase_a.size() * stride_));
-  fill_costs(static_cast<int>(frame.phase_a.size()), frame.phase_a.data(), frame.phase_b.data(),
-             precision.data(), static_cast<float>(limits.wavelength_a_m / limits.wavelength_b_m),
-             stride_, shift.data(), farthest.data(), costs_.data());
+}
+
+float BeatCost::operator()(Eigen::Index pixel, int n_a) const {
+  if (n_a < 0 || n_a >= count_a_) return bound;
+  const std::size_t at = size_ + 1 + static_cast<std::size_t>(n_a);
+  return cost_of(beat_cycles_.data()[pixel] + shift_[at], precision_.data()[pixel],
+                 phase_a_.data()[pixel] <= farthest_[at]);
+}
+
+float BeatCost::add(Eigen::Index pixel, int offset, std::span<float> costs) const {
+  const int reach = static_cast<int>(size_);
+  const auto first = static_cast<std::size_t>(reach + std::clamp(offset, -reach, reach));
+  return add_costs(phase_a_.data()[pixel], beat_cycles_.data()[pixel], precision_.data()[pixel],
+                   &shift_[first], &farthest_[first], reach, costs.data());
+}
+
+ImageF BeatCost::probability(const ImageU8& counts) const {
+  ImageF sums = ImageF::Zero(counts.rows(), counts.cols());
+  ImageF own = sums;
+  for (Eigen::Index done = 0; done < counts.size(); done += block_pixels) {
+    const auto pixels =
+        static_cast<int>(std::min<Eigen::Index>(block_pixels, counts.size() - done));
+    for (int n = 0; n < count_a_; ++n) {
+      const std::size_t at = size_ + 1 + static_cast<std::size_t>(n);
+      add_likelihoods(pixels, phase_a_.data() + done, beat_cycles_.data() + done,
+                      precision_.data() + done, {shift_[at], farthest_[at]}, static_cast<float>(n),
+                      counts.data() + done, sums.data() + done, own.data() + done);
+    }
+  }
+  return own / sums;
 }
 
 }  // namespace tofmap

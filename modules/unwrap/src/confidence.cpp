@@ -3,36 +3,14 @@
 
 #include "confidence.hpp"
 
-#include "fast_math.hpp"
 #include "vector_clones.hpp"
 
-#include <array>
-#include <cmath>
 #include <vector>
 
 #include <tofmap/core/range_image.hpp>
 
 namespace tofmap {
 namespace {
-
-/// Σ_n exp(−cost) of a pixel's counts. The vector units sum as many terms at a time.
-TOFMAP_VECTOR_CLONES void sum_likelihoods(int pixels, const float* costs, int stride, int counts,
-                                          float* sums) {
-  constexpr int lanes = 16;
-  const float beyond = static_cast<float>(stride - counts) * exp_of_negative(-BeatCost::bound);
-  for (int i = 0; i < pixels; ++i, costs += stride) {
-    std::array<float, lanes> terms{};
-    for (int n = 0; n < stride; n += lanes) {
-#pragma GCC ivdep
-      for (int k = 0; k < lanes; ++k) {
-        terms[static_cast<std::size_t>(k)] += exp_of_negative(-costs[n + k]);
-      }
-    }
-    float sum = 0;
-    for (const float term : terms) sum += term;
-    sums[i] = sum - beyond;
-  }
-}
 
 /// Nodes of one row: the marginals of their configurations, and the counts of their pixels.
 struct NodeRow {
@@ -64,18 +42,6 @@ void add_to(float* sums, const std::vector<float>& terms) {
 
 }  // namespace
 
-ImageF beat_confidence(const ImageU8& counts, const BeatCost& beat) {
-  ImageF confidence(counts.rows(), counts.cols());
-  sum_likelihoods(static_cast<int>(counts.size()), beat.of(0), beat.stride(), beat.count_a(),
-                  confidence.data());
-  for (Eigen::Index i = 0; i < counts.size(); ++i) {
-    const std::uint8_t count = counts.data()[i];
-    float& own = confidence.data()[i];
-    own = count == invalid_wrap_count ? 0 : std::exp(-beat.of(i)[count + 1]) / own;
-  }
-  return confidence;
-}
-
 ImageF jump_confidence(const ImageU8& counts, const JumpProbabilities& marginals) {
   ImageF sum = ImageF::Zero(counts.rows(), counts.cols());
   ImageF weight = ImageF::Zero(counts.rows(), counts.cols());
@@ -105,7 +71,7 @@ ImageF jump_confidence(const ImageU8& counts, const JumpProbabilities& marginals
 
 ImageF jump_and_beat_confidence(const ImageU8& counts, const JumpProbabilities& marginals,
                                 const BeatCost& beat) {
-  const ImageF b = beat_confidence(counts, beat);
+  const ImageF b = beat.probability(counts);
   const ImageF j = jump_confidence(counts, marginals);
   const ImageF both = b * j;
   const ImageF neither = (1 - b) * (1 - j);

@@ -10,14 +10,11 @@ namespace tofmap {
 
 /// How sure the chosen counts are, 0 … 1, before calibration. 0 where a count is invalid.
 
-/// What each pixel's own beat says: the likelihood of its count over the sum of all counts'.
-ImageF beat_confidence(const ImageU8& counts, const BeatCost& beat);
-
 /// What neighbours say: the mean marginal probability of the steps to the (up to four)
 /// neighbours; 0 for a step of more than one. One half for a pixel that has no neighbour.
 ImageF jump_confidence(const ImageU8& counts, const JumpProbabilities& marginals);
 
-/// Both together, their odds multiplied as of independent witnesses.
+/// Neighbours and the pixel's own beat together, their odds multiplied as of independent witnesses.
 ImageF jump_and_beat_confidence(const ImageU8& counts, const JumpProbabilities& marginals,
                                 const BeatCost& beat);
 

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 
 namespace tofmap {
@@ -28,6 +30,17 @@ namespace tofmap {
 [[gnu::always_inline]] inline float to_half_cycle(float x) {
   const float half = x < 0 ? -0.5F : 0.5F;
   return x - static_cast<float>(static_cast<std::int32_t>(x + half));
+}
+
+/// The least of 2^k lanes.
+template <std::size_t lanes>
+[[gnu::always_inline]] inline float least_of(std::array<float, lanes>& values) {
+  for (std::size_t half = lanes / 2; half > 0; half /= 2) {
+    for (std::size_t k = 0; k < half; ++k) {
+      values[k] = values[k + half] < values[k] ? values[k + half] : values[k];
+    }
+  }
+  return values[0];
 }
 
 /// The upper half of a float, for numbers of which 8 binary digits are enough: half the memory to

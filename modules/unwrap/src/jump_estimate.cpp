@@ -4,20 +4,9 @@
 #include "tofmap/unwrap/jump_estimate.hpp"
 
 namespace tofmap {
-namespace {
-
-/// f_f, from the reconstruction R̂ of equation 2.
-JumpProbabilities frequency_evidence(const DualFrequencyFrame& frame, const BeatLimits& limits,
-                                     const UnwrapOptions& options) {
-  const ImageF reconstruction =
-      reconstruct_cycles(frame.phase_a, nearest_pair_counts(frame, limits));
-  return frequency_term(frame.phase_a, reconstruction, options.window_px, options.sigma_cycles);
-}
-
-}  // namespace
-
-JumpEstimate estimate_jumps(const DualFrequencyFrame& frame, const BeatLimits& limits,
-                            const PhaseNoise& noise, const UnwrapOptions& options) {
+JumpEstimate estimate_jumps(JumpPropagation& propagation, const DualFrequencyFrame& frame,
+                            const BeatLimits& limits, const PhaseNoise& noise,
+                            const UnwrapOptions& options) {
   JumpEstimate out;
   const ImageF sigma = phase_sigma_cycles(frame.phase_a, frame.amplitude_a, noise.scale_a);
   out.discontinuity = discontinuity_term(frame.phase_a, sigma, options.sigma_cycles);
@@ -26,12 +15,20 @@ JumpEstimate estimate_jumps(const DualFrequencyFrame& frame, const BeatLimits& l
     out.evidence =
         fuse(out.discontinuity, out.discontinuity, options.trust_discontinuity, no_trust);
   } else {
-    out.frequency = frequency_evidence(frame, limits, options);
+    out.nearest = nearest_pair_counts(frame, limits);
+    out.frequency = frequency_term(frame.phase_a, reconstruct_cycles(frame.phase_a, out.nearest),
+                                   options.window_px, options.sigma_cycles);
     out.evidence = fuse(out.discontinuity, out.frequency, options.trust_discontinuity,
                         options.trust_frequency);
   }
-  out.beliefs = propagate_jump_beliefs(out.evidence, options.iterations);
+  out.beliefs = propagation.run(out.evidence, options.iterations);
   return out;
+}
+
+JumpEstimate estimate_jumps(const DualFrequencyFrame& frame, const BeatLimits& limits,
+                            const PhaseNoise& noise, const UnwrapOptions& options) {
+  JumpPropagation propagation;
+  return estimate_jumps(propagation, frame, limits, noise, options);
 }
 
 }  // namespace tofmap

@@ -3,6 +3,7 @@
 
 #include "tofmap/unwrap/jump_integration.hpp"
 
+#include "fast_math.hpp"
 #include "offset_union.hpp"
 #include "vector_clones.hpp"
 
@@ -10,8 +11,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <span>
 #include <utility>
+
+#include <tofmap/core/range_image.hpp>
 
 namespace tofmap {
 namespace {
@@ -108,8 +113,10 @@ std::vector<Bridge> sorted_bridges(const JumpProbabilities& marginals,
   return sorted;
 }
 
-/// Reads the forest back into images: regions are numbered in image order.
-RelativeCounts read_forest(OffsetUnion& forest, const ImageU8& valid) {
+/// Reads the forest back into images: regions are numbered in image order, and anchored by
+/// `anchor(root)`, the count of the root.
+template <class Anchor>
+RelativeCounts read_forest(OffsetUnion& forest, const ImageU8& valid, const Anchor& anchor) {
   RelativeCounts out;
   out.count = Image<int>::Zero(valid.rows(), valid.cols());
   out.region = Image<int>::Constant(valid.rows(), valid.cols(), RelativeCounts::no_region);
@@ -118,111 +125,156 @@ RelativeCounts read_forest(OffsetUnion& forest, const ImageU8& valid) {
     if (!valid.data()[pixel]) continue;
     const OffsetUnion::Place place = forest.find(pixel);
     int& region = number[static_cast<std::size_t>(place.root)];
-    if (region == RelativeCounts::no_region) region = out.region_count++;
+    if (region == RelativeCounts::no_region) {
+      region = out.region_count++;
+      out.anchor.push_back(anchor(place.root));
+    }
     out.count.data()[pixel] = place.offset;
     out.region.data()[pixel] = region;
   }
   return out;
 }
 
-/// Costs for counts in a row, and what any count costs that is beyond them.
-struct Costs {
-  const float* of;
-  float beyond;
-};
-
-/// Adds two regions' costs, where the count of the other root is that of the one plus `offset`.
-/// Returns the least sum.
-TOFMAP_VECTOR_CLONES float add_shifted(const Costs& one, const Costs& other, int offset, int size,
-                                       float* sums) {
-  constexpr int lanes = 16;
-  const float* other_of = other.of + offset;
-  const int begin = std::clamp(-offset, 0, size);
-  const int end = std::clamp(size - offset, begin, size);
-  for (int n = 0; n < begin; ++n) sums[n] = one.of[n] + other.beyond;
-#pragma GCC ivdep
-  for (int n = begin; n < end; ++n) sums[n] = one.of[n] + other_of[n];
-  for (int n = end; n < size; ++n) sums[n] = one.of[n] + other.beyond;
+/// Adds the costs `other` of counts in a row to `costs`, where the count of the other region is the
+/// one plus `offset`; any count beyond costs `beyond`. `other` has room for as many numbers before
+/// and after it, which are read and dropped: whole vectors are loaded wherever they begin. Returns
+/// the least sum.
+TOFMAP_VECTOR_CLONES float add_shifted(const float* other, float beyond, int offset, int size,
+                                       float* costs) {
+  constexpr int lanes = 16;  // of the longest vector of a processor
+  const int shift = std::clamp(offset, -size, size);
+  const float* shifted = other + shift;
   std::array<float, lanes> least;
   least.fill(std::numeric_limits<float>::infinity());
   for (int n = 0; n < size; n += lanes) {
+#pragma GCC ivdep
     for (int k = 0; k < lanes; ++k) {
+      const float added = shifted[n + k];
+      const auto place = static_cast<unsigned>(n + k + shift);
+      const float sum = costs[n + k] + (place < static_cast<unsigned>(size) ? added : beyond);
       float& lane = least[static_cast<std::size_t>(k)];
-      lane = sums[n + k] < lane ? sums[n + k] : lane;
+      lane = sum < lane ? sum : lane;
+      costs[n + k] = sum;
     }
   }
-  return *std::min_element(least.begin(), least.end());
+  return least_of(least);
 }
 
-/// The costs of the beat of regions, for every count of their roots as BeatCost::of has them for a
-/// pixel. A region is named by its root.
-class RegionCosts {
+/// How well regions fit the beat. A region is named by its root, and its count is the root's.
+///
+/// Most joins are between regions whose best counts agree; then both fit together as well as apart,
+/// and their pixels need only be remembered. Costs of all counts are summed where they do not.
+class RegionFits {
  public:
-  explicit RegionCosts(const BeatCost& beat, Eigen::Index pixels)
-      : beat_(beat), regions_(static_cast<std::size_t>(pixels)), sum_(stride()) {}
-
-  /// What it costs both regions to be one, beyond what they cost apart: never negative but for
-  /// rounding.
-  float objection(int one, int other, int offset) {
-    sum_least_ = add_shifted(costs(one), costs(other), offset, beat_.stride(), sum_.data());
-    return sum_least_ - least(one) - least(other);
+  RegionFits(const BeatCost& beat, const ImageU8& nearest, OffsetUnion& forest)
+      : beat_(beat),
+        forest_(forest),
+        size_(static_cast<int>(beat.size())),
+        regions_(static_cast<std::size_t>(nearest.size())),
+        next_(regions_.size(), none),
+        sums_(2 * beat.size()),
+        both_(beat.size()) {
+    for (std::size_t i = 0; i < regions_.size(); ++i) {
+      const auto pixel = static_cast<int>(i);
+      const int best = nearest.data()[i];
+      if (best == invalid_wrap_count) continue;
+      regions_[i] = {best, pixel, pixel};
+    }
   }
 
-  /// Makes the region `other` part of `one`, after objection() was asked for the same two.
-  void join(int one, int other) {
-    Region& into = regions_[static_cast<std::size_t>(one)];
-    Region& from = regions_[static_cast<std::size_t>(other)];
-    if (into.slot == no_slot) std::swap(into.slot, from.slot);
-    if (into.slot == no_slot) into.slot = new_slot();
-    if (from.slot != no_slot) free_slots_.push_back(std::exchange(from.slot, no_slot));
-    into.pixels += from.pixels;
-    into.least = sum_least_;
-    std::copy(sum_.begin(), sum_.end(), slot(into.slot));
+  int best_count(int root) const { return region(root).best; }
+
+  /// Makes `other`, whose count is that of `root` plus `offset`, part of the region of `root`,
+  /// unless that costs more than `tolerated(…)` beyond what they cost apart. The forest joins them
+  /// afterwards.
+  template <class Tolerated>
+  bool join(int root, int other, int offset, const Tolerated& tolerated) {
+    Region& into = region(root);
+    Region& from = region(other);
+    if (into.best + offset == from.best) {
+      if (from.slot != none) {
+        sum_up(root);
+        sum_up(other);
+        add_shifted(slot(from.slot), bound(other), offset, size_, slot(region(root).slot));
+      }
+    } else {
+      sum_up(root);
+      sum_up(other);
+      std::copy_n(slot(into.slot), size_, both_.data());
+      const float least = add_shifted(slot(from.slot), bound(other), offset, size_, both_.data());
+      const float apart = slot(into.slot)[into.best + 1] + slot(from.slot)[from.best + 1];
+      if (least - apart > tolerated()) return false;
+      std::copy(both_.begin(), both_.end(), slot(into.slot));
+      into.best =
+          static_cast<int>(std::find(both_.begin(), both_.end(), least) - both_.begin()) - 1;
+    }
+    if (from.slot != none) free_slots_.push_back(std::exchange(from.slot, none));
+    append(from, into);
+    return true;
   }
 
  private:
-  static constexpr int no_slot = -1;
+  static constexpr int none = -1;
 
   struct Region {
-    int slot = no_slot;  ///< of its costs; a single pixel needs none
-    int pixels = 1;
-    float least = -1;  ///< cost of the best count; negative: not asked yet
+    int best = 0;      ///< count of the root that costs least
+    int first = none;  ///< pixels that are not summed yet, as a list
+    int last = none;
+    int slot = none;  ///< of the costs of all others
   };
 
-  std::size_t stride() const { return static_cast<std::size_t>(beat_.stride()); }
+  Region& region(int root) { return regions_[static_cast<std::size_t>(root)]; }
+  const Region& region(int root) const { return regions_[static_cast<std::size_t>(root)]; }
 
-  float* slot(int number) { return &slots_[static_cast<std::size_t>(number) * stride()]; }
+  float* slot(int number) { return &sums_[static_cast<std::size_t>((number + 1) * size_)]; }
+
+  float bound(int root) const { return BeatCost::bound * static_cast<float>(forest_.size(root)); }
 
   int new_slot() {
-    if (!free_slots_.empty()) {
-      const int last = free_slots_.back();
+    int number = 0;
+    if (free_slots_.empty()) {
+      // A slot's room stays before the first and after the last.
+      number = static_cast<int>(sums_.size()) / size_ - 2;
+      sums_.resize(sums_.size() + static_cast<std::size_t>(size_));
+    } else {
+      number = free_slots_.back();
       free_slots_.pop_back();
-      return last;
     }
-    slots_.resize(slots_.size() + stride());
-    return static_cast<int>(slots_.size() / stride()) - 1;
+    std::fill_n(slot(number), size_, 0.0F);
+    return number;
   }
 
-  Costs costs(int region) {
-    const Region& of = regions_[static_cast<std::size_t>(region)];
-    return {of.slot == no_slot ? beat_.of(region) : slot(of.slot),
-            BeatCost::bound * static_cast<float>(of.pixels)};
+  /// Sums the costs of all pixels of a region.
+  void sum_up(int root) {
+    Region& of = region(root);
+    if (of.slot == none) of.slot = new_slot();
+    const std::span<float> sums(slot(of.slot), beat_.size());
+    for (int pixel = of.first; pixel != none; pixel = next_[static_cast<std::size_t>(pixel)]) {
+      beat_.add(pixel, forest_.find(pixel).offset, sums);
+    }
+    of.first = of.last = none;
   }
 
-  float least(int region) {
-    Region& of = regions_[static_cast<std::size_t>(region)];
-    if (of.least < 0) {
-      of.least = *std::min_element(beat_.of(region), beat_.of(region) + beat_.stride());
+  /// Hands the pixels that are not summed over.
+  void append(Region& from, Region& into) {
+    if (from.first == none) return;
+    if (into.first == none) {
+      into.first = from.first;
+    } else {
+      next_[static_cast<std::size_t>(into.last)] = from.first;
     }
-    return of.least;
+    into.last = from.last;
+    from.first = from.last = none;
   }
 
   const BeatCost& beat_;
-  std::vector<Region> regions_;  ///< by pixel
-  std::vector<float> slots_;
+  OffsetUnion& forest_;
+  int size_;
+  std::vector<Region> regions_;  ///< by root
+  std::vector<int> next_;        ///< of every pixel in its list
+  std::vector<float> sums_;
   std::vector<int> free_slots_;
-  std::vector<float> sum_;  ///< costs of the two regions that were asked for last
-  float sum_least_ = 0;
+  std::vector<float> both_;
 };
 
 /// ln(P / (1 − P)), never negative; certainties round to 1 in float, so it is bounded at 1 − 1e-6.
@@ -234,10 +286,9 @@ float log_odds(float certainty) {
 /// bridge)` is asked before the tree with the root q becomes part of the larger one with the root
 /// p, and may note it.
 template <class MayJoin>
-RelativeCounts grow_forest(const JumpProbabilities& marginals, const JumpProbabilities& evidence,
-                           const ImageU8& valid, const MayJoin& may_join) {
-  OffsetUnion forest(static_cast<int>(valid.size()));
-  for (const Bridge& bridge : sorted_bridges(marginals, evidence, static_cast<int>(valid.cols()))) {
+void grow_forest(const JumpProbabilities& marginals, const JumpProbabilities& evidence,
+                 Eigen::Index image_cols, OffsetUnion& forest, const MayJoin& may_join) {
+  for (const Bridge& bridge : sorted_bridges(marginals, evidence, static_cast<int>(image_cols))) {
     const OffsetUnion::Place p = forest.find(bridge.p);
     const OffsetUnion::Place q = forest.find(bridge.q);
     if (p.root == q.root) continue;
@@ -248,65 +299,44 @@ RelativeCounts grow_forest(const JumpProbabilities& marginals, const JumpProbabi
     const int child_offset = p_is_larger ? offset : -offset;
     if (may_join(root, child, child_offset, bridge)) forest.join(root, child, child_offset);
   }
-  return read_forest(forest, valid);
 }
 
-}  // namespace
-
-RelativeCounts integrate_jumps(const JumpProbabilities& marginals,
-                               const JumpProbabilities& evidence, const ImageU8& valid) {
-  return grow_forest(marginals, evidence, valid, [](int, int, int, const Bridge&) { return true; });
-}
-
-RelativeCounts integrate_jumps_with_beat(const JumpProbabilities& marginals,
-                                         const JumpProbabilities& evidence, const ImageU8& valid,
-                                         const BeatCost& beat, double objection_share) {
-  RegionCosts costs(beat, valid.size());
-  const auto may_join = [&](int into, int other, int offset, const Bridge& bridge) {
-    const auto tolerated = static_cast<float>(objection_share) * log_odds(bridge.certainty);
-    if (costs.objection(into, other, offset) > tolerated) return false;
-    costs.join(into, other);
-    return true;
-  };
-  return grow_forest(marginals, evidence, valid, may_join);
-}
-
-Anchors anchor_by_beat(const RelativeCounts& counts, const BeatCost& beat) {
-  const int stride = beat.stride();
-  std::vector<float> sums(static_cast<std::size_t>(counts.region_count * stride), 0.0F);
-  for (Eigen::Index i = 0; i < counts.region.size(); ++i) {
-    const int region = counts.region.data()[i];
-    if (region == RelativeCounts::no_region) continue;
-    float* sum = &sums[static_cast<std::size_t>(region * stride)];
-    add_shifted({sum, 0}, {beat.of(i), BeatCost::bound}, counts.count.data()[i], stride, sum);
-  }
-  Anchors anchors;
-  for (int region = 0; region < counts.region_count; ++region) {
-    const float* sum = &sums[static_cast<std::size_t>(region * stride)];
-    const float* best = std::min_element(sum, sum + stride);
-    float likelihood = 0;
-    for (int n = 0; n < stride; ++n) likelihood += std::exp(*best - sum[n]);
-    anchors.offset.push_back(static_cast<int>(best - sum) - 1);
-    anchors.certainty.push_back(1 / likelihood);
-  }
-  return anchors;
-}
-
-Anchors anchor_at_zero(const RelativeCounts& counts) {
-  const auto regions = static_cast<std::size_t>(counts.region_count);
-  std::vector<int> least(regions, std::numeric_limits<int>::max());
+/// The least count of every region at 0.
+void anchor_at_zero(RelativeCounts& counts) {
+  std::vector<int> least(counts.anchor.size(), std::numeric_limits<int>::max());
   for (Eigen::Index i = 0; i < counts.region.size(); ++i) {
     const int region = counts.region.data()[i];
     if (region == RelativeCounts::no_region) continue;
     int& lowest = least[static_cast<std::size_t>(region)];
     lowest = std::min(lowest, counts.count.data()[i]);
   }
-  Anchors anchors;
-  for (const int lowest : least) {
-    anchors.offset.push_back(-lowest);
-    anchors.certainty.push_back(1);
-  }
-  return anchors;
+  std::ranges::transform(least, counts.anchor.begin(), std::negate());
+}
+
+}  // namespace
+
+RelativeCounts integrate_jumps(const JumpProbabilities& marginals,
+                               const JumpProbabilities& evidence, const ImageU8& valid) {
+  OffsetUnion forest(static_cast<int>(valid.size()));
+  grow_forest(marginals, evidence, valid.cols(), forest,
+              [](int, int, int, const Bridge&) { return true; });
+  RelativeCounts counts = read_forest(forest, valid, [](int) { return 0; });
+  anchor_at_zero(counts);
+  return counts;
+}
+
+RelativeCounts integrate_jumps_with_beat(const JumpProbabilities& marginals,
+                                         const JumpProbabilities& evidence, const ImageU8& valid,
+                                         const BeatCost& beat, const ImageU8& nearest,
+                                         double objection_share) {
+  OffsetUnion forest(static_cast<int>(valid.size()));
+  RegionFits fits(beat, nearest, forest);
+  const auto share = static_cast<float>(objection_share);
+  const auto may_join = [&](int root, int child, int offset, const Bridge& bridge) {
+    return fits.join(root, child, offset, [&] { return share * log_odds(bridge.certainty); });
+  };
+  grow_forest(marginals, evidence, valid.cols(), forest, may_join);
+  return read_forest(forest, valid, [&](int root) { return fits.best_count(root); });
 }
 
 }  // namespace tofmap

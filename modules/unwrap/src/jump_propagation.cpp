@@ -69,18 +69,17 @@ struct Odds {
 }
 
 /// What a diagonal has for each of its pixels: evidence of the nodes to the right (x) and down (y),
-/// the newest message of every curl node to each of its four jump nodes, kept at the jump node, and
-/// whether there is a curl node between the pixel, its right and its lower neighbours (1 or 0).
-/// Odds take two planes. Nodes at the border keep even odds on the side that has no curl node.
+/// NaN where there is none, and the newest message of every curl node to each of its four jump
+/// nodes, kept at the jump node. Odds take two planes. Nodes at the border keep even odds on the
+/// side that has no curl node.
 enum Plane {
   evidence_x = 0,
-  from_above = 2,  ///< to s_x, by the curl node above it
-  from_below = 4,
-  evidence_y = 6,
+  evidence_y = 2,
+  from_above = 4,  ///< to s_x, by the curl node above it
+  from_below = 6,
   from_left = 8,  ///< to s_y
   from_right = 10,
-  has_curl = 12,
-  plane_count = 13,
+  plane_count = 12,
 };
 
 /// The planes of one diagonal, from some row on.
@@ -88,43 +87,76 @@ struct Diagonal {
   float* data;
   std::size_t step;
 
-  [[gnu::always_inline]] Odds odds(Plane plane, int row) const {
-    const float* minus = data + static_cast<std::size_t>(plane) * step;
-    return {minus[row], minus[row + static_cast<std::ptrdiff_t>(step)]};
+  [[gnu::always_inline]] float* plane(int number) const {
+    return data + static_cast<std::size_t>(number) * step;
   }
-  [[gnu::always_inline]] void set(Plane plane, int row, const Odds& odds) const {
-    float* minus = data + static_cast<std::size_t>(plane) * step;
-    minus[row] = odds.minus;
-    minus[row + static_cast<std::ptrdiff_t>(step)] = odds.plus;
+  [[gnu::always_inline]] Odds odds(Plane of, int row) const {
+    return {plane(of)[row], plane(of + 1)[row]};
   }
-  [[gnu::always_inline]] bool curl(int row) const {
-    return data[static_cast<std::size_t>(has_curl) * step + static_cast<std::size_t>(row)] > 0;
-  }
-  /// Messages of a jump node to a curl node: its evidence times the message of its other curl node.
-  [[gnu::always_inline]] Odds passed_on(Plane evidence, Plane message, int row) const {
-    return odds(evidence, row) * odds(message, row);
+  [[gnu::always_inline]] void set(Plane of, int row, const Odds& odds) const {
+    plane(of)[row] = odds.minus;
+    plane(of + 1)[row] = odds.plus;
   }
 };
 
-[[gnu::always_inline]] inline Odds if_curl(bool curl, const Odds& message) {
-  return {curl ? message.minus : 1.0F, curl ? message.plus : 1.0F};
+Diagonal diagonal_at(std::vector<float>& planes, const DiagonalLayout& layout, int diagonal,
+                     int row) {
+  return {planes.data() + layout.place(diagonal, row, plane_count), layout.plane_step(diagonal)};
+}
+
+/// The messages of four jump nodes to the curl node between them: their evidence times the message
+/// of their other curl node.
+struct CurlInputs {
+  Odds top;
+  Odds left;
+  Odds bottom;
+  Odds right;
+
+  /// Of row i of `here`; `next` is the diagonal after it. In the first iteration nothing has been
+  /// sent back or up.
+  [[gnu::always_inline]] CurlInputs(const Diagonal& here, const Diagonal& next, int i,
+                                    bool is_first)
+      : top(here.odds(evidence_x, i) * here.odds(from_above, i)),
+        left(here.odds(evidence_y, i) * here.odds(from_left, i)),
+        bottom(next.odds(evidence_x, i + 1)),
+        right(next.odds(evidence_y, i)) {
+    if (is_first) return;
+    bottom = bottom * next.odds(from_below, i + 1);
+    right = right * next.odds(from_right, i);
+  }
+
+  /// There is a curl node where no jump node is absent. A sum, unlike four choices, has no branch.
+  [[gnu::always_inline]] bool has_curl() const {
+    const float sum = top.minus + left.minus + bottom.minus + right.minus;
+    return sum == sum;
+  }
+};
+
+[[gnu::always_inline]] inline Odds if_curl(bool has_curl, const Odds& message) {
+  return {has_curl ? message.minus : 1.0F, has_curl ? message.plus : 1.0F};
 }
 
 /// Each message solves the curl constraint for the jump node it goes to: right = bottom + left −
-/// top, and so on. `next` is the diagonal after `here`.
-TOFMAP_VECTOR_CLONES void send_forward_and_down(int rows, const Diagonal& here_,
-                                                const Diagonal& next_) {
-  const Diagonal here = here_;
-  const Diagonal next = next_;
+/// top, and so on.
+template <bool is_first>
+[[gnu::always_inline]] inline void send_on(int rows, const Diagonal& here, const Diagonal& next) {
 #pragma GCC ivdep
   for (int i = 0; i < rows; ++i) {
-    const Odds top = here.passed_on(evidence_x, from_above, i);
-    const Odds left = here.passed_on(evidence_y, from_left, i);
-    const Odds bottom = next.passed_on(evidence_x, from_below, i + 1);
-    const Odds right = next.passed_on(evidence_y, from_right, i);
-    next.set(from_left, i, if_curl(here.curl(i), curl_message(bottom, left, top)));
-    next.set(from_above, i + 1, if_curl(here.curl(i), curl_message(top, right, left)));
+    const CurlInputs in(here, next, i, is_first);
+    const bool has_curl = in.has_curl();
+    next.set(from_left, i, if_curl(has_curl, curl_message(in.bottom, in.left, in.top)));
+    next.set(from_above, i + 1, if_curl(has_curl, curl_message(in.top, in.right, in.left)));
   }
+}
+
+TOFMAP_VECTOR_CLONES void send_forward_and_down(int rows, const Diagonal& here,
+                                                const Diagonal& next) {
+  send_on<false>(rows, Diagonal(here), Diagonal(next));
+}
+
+TOFMAP_VECTOR_CLONES void send_first_forward_and_down(int rows, const Diagonal& here,
+                                                      const Diagonal& next) {
+  send_on<true>(rows, Diagonal(here), Diagonal(next));
 }
 
 /// What the sweeps back find out about beliefs. Entries of a pixel's row.
@@ -137,72 +169,81 @@ struct Findings {
 };
 
 /// Returns how many curl nodes are not zero.
-TOFMAP_VECTOR_CLONES int send_backward_and_up(int rows, const Diagonal& here_,
-                                              const Diagonal& next_, const Findings& findings_) {
-  const Diagonal here = here_;
-  const Diagonal next = next_;
-  const Findings findings = findings_;
+template <bool is_first>
+[[gnu::always_inline]] inline int send_back(int rows, const Diagonal& here, const Diagonal& next,
+                                            const Findings& findings) {
   int violations = 0;
 #pragma GCC ivdep
   for (int i = 0; i < rows; ++i) {
-    const bool curl = here.curl(i);
-    const Odds top = here.passed_on(evidence_x, from_above, i);
-    const Odds left = here.passed_on(evidence_y, from_left, i);
-    const Odds bottom = next.passed_on(evidence_x, from_below, i + 1);
-    const Odds right = next.passed_on(evidence_y, from_right, i);
-    const Odds to_left = if_curl(curl, curl_message(top, right, bottom));
-    const Odds to_top = if_curl(curl, curl_message(bottom, left, right));
-    const float change_left = change_of(here.odds(from_right, i), to_left);
-    const float change_top = change_of(here.odds(from_below, i), to_top);
+    // What was sent back and up on the next diagonal is of this iteration.
+    const CurlInputs in(here, next, i, false);
+    const bool has_curl = in.has_curl();
+    const Odds to_left = if_curl(has_curl, curl_message(in.top, in.right, in.bottom));
+    const Odds to_top = if_curl(has_curl, curl_message(in.bottom, in.left, in.right));
+    const Odds even{1, 1};
+    const float change_left = change_of(is_first ? even : here.odds(from_right, i), to_left);
+    const float change_top = change_of(is_first ? even : here.odds(from_below, i), to_top);
     const float change = change_left > change_top ? change_left : change_top;
     findings.change[i] = change > findings.change[i] ? change : findings.change[i];
     here.set(from_right, i, to_left);
     here.set(from_below, i, to_top);
-    const float jump_x = decided(top * to_top);
-    const float jump_y = decided(left * to_left);
+    const float jump_x = decided(in.top * to_top);
+    const float jump_y = decided(in.left * to_left);
     const float sum = jump_x + findings.next_jump_y[i] - findings.next_jump_x[i + 1] - jump_y;
-    violations += curl && sum != 0 ? 1 : 0;
+    violations += has_curl && sum != 0 ? 1 : 0;
     findings.jump_x[i] = jump_x;
     findings.jump_y[i] = jump_y;
   }
   return violations;
 }
 
-/// Three numbers a node, from one place on.
-struct Triple {
-  float* minus;
-  float* none;
-  float* plus;
+TOFMAP_VECTOR_CLONES int send_backward_and_up(int rows, const Diagonal& here, const Diagonal& next,
+                                              const Findings& findings) {
+  return send_back<false>(rows, Diagonal(here), Diagonal(next), Findings(findings));
+}
+
+TOFMAP_VECTOR_CLONES int send_first_backward_and_up(int rows, const Diagonal& here,
+                                                    const Diagonal& next,
+                                                    const Findings& findings) {
+  return send_back<true>(rows, Diagonal(here), Diagonal(next), Findings(findings));
+}
+
+/// Rows whose nodes are brought from images to diagonals, or back, before those of the next rows:
+/// few enough for their lines to stay in the first-level cache.
+constexpr int band_rows = 64;
+
+/// Probabilities of the configurations of nodes in a band.
+struct Triples {
+  std::array<float, band_rows> minus;
+  std::array<float, band_rows> none;
+  std::array<float, band_rows> plus;
 };
 
 /// Odds of probabilities, NaN where these are. No curl node is there, so nothing of it spreads.
-TOFMAP_VECTOR_CLONES void load_odds(int rows, const Triple& probability, const Diagonal& here_,
-                                    Plane evidence, float* present) {
-  const Diagonal here = here_;
-  const float* minus = probability.minus;
-  const float* none = probability.none;
-  const float* plus = probability.plus;
+TOFMAP_VECTOR_CLONES void load_odds(int rows, const Triples& probability, float* minus_odds,
+                                    float* plus_odds) {
+  const float* minus = probability.minus.data();
+  const float* none = probability.none.data();
+  const float* plus = probability.plus.data();
 #pragma GCC ivdep
   for (int i = 0; i < rows; ++i) {
-    const bool is_present = none[i] == none[i];
     const float scale = 1 / (none[i] > 0 ? none[i] : std::numeric_limits<float>::min());
-    here.set(evidence, i,
-             {is_present ? bounded(minus[i] * scale) : nan,
-              is_present ? bounded(plus[i] * scale) : nan});
-    present[i] = is_present ? 1.0F : 0.0F;
+    const float absent = 0 * none[i];
+    minus_odds[i] = bounded(minus[i] * scale) + absent;
+    plus_odds[i] = bounded(plus[i] * scale) + absent;
   }
 }
 
 /// Normalised products of the evidence and both curls' messages.
 TOFMAP_VECTOR_CLONES void read_probabilities(int rows, const Diagonal& here_, Plane evidence,
-                                             Plane one, Plane other, const Triple& probability) {
+                                             Plane one, Plane other, Triples& probability) {
   const Diagonal here = here_;
-  float* minus = probability.minus;
-  float* none = probability.none;
-  float* plus = probability.plus;
+  float* minus = probability.minus.data();
+  float* none = probability.none.data();
+  float* plus = probability.plus.data();
 #pragma GCC ivdep
   for (int i = 0; i < rows; ++i) {
-    const Odds belief = here.passed_on(evidence, one, i) * here.odds(other, i);
+    const Odds belief = here.odds(evidence, i) * here.odds(one, i) * here.odds(other, i);
     const float scale = 1 / (1 + belief.minus + belief.plus);
     minus[i] = belief.minus * scale;
     none[i] = scale;
@@ -210,46 +251,38 @@ TOFMAP_VECTOR_CLONES void read_probabilities(int rows, const Diagonal& here_, Pl
   }
 }
 
-/// The nodes of an image that are on a diagonal: rows first … last − 1, a step apart in memory.
-struct NodesOnDiagonal {
-  int first;
-  int last;
+/// Nodes of one diagonal in successive rows, a step apart in their images.
+struct Slant {
+  int diagonal;
+  int row;
+  int rows;
   Eigen::Index place;
   Eigen::Index step;
-
-  NodesOnDiagonal(const DiagonalLayout& layout, int diagonal, const ImageF& nodes)
-      : first(std::max(layout.begin(diagonal), diagonal - static_cast<int>(nodes.cols()) + 1)),
-        last(std::min(layout.end(diagonal), static_cast<int>(nodes.rows()))),
-        place(first * nodes.cols() + diagonal - first),
-        step(nodes.cols() - 1) {}
 };
 
-/// Copies the nodes of a diagonal to their rows, and NaN to rows of the diagonal that have none.
-void gather(const NodesOnDiagonal& nodes, int begin, int end, const ImageF& image, float* out) {
-  std::fill(out + begin, out + end, nan);
-  Eigen::Index from = nodes.place;
-  for (int row = nodes.first; row < nodes.last; ++row, from += nodes.step) {
-    out[row] = image.data()[from];
+/// Calls `visit` with all nodes of an image of `rows` x `cols` of them, band by band.
+template <class Visit>
+void for_each_slant(Eigen::Index rows, Eigen::Index cols, const Visit& visit) {
+  const auto last_row = static_cast<int>(rows) - 1;
+  const auto last_col = static_cast<int>(cols) - 1;
+  for (int band = 0; band <= last_row; band += band_rows) {
+    const int band_end = std::min(band + band_rows - 1, last_row);
+    for (int d = band; d <= band_end + last_col; ++d) {
+      const int first = std::max(band, d - last_col);
+      const int last = std::min(band_end, d);
+      visit(Slant{d, first, last - first + 1, first * cols + d - first, cols - 1});
+    }
   }
 }
 
-void scatter(const NodesOnDiagonal& nodes, const float* values, ImageF& image) {
-  Eigen::Index to = nodes.place;
-  for (int row = nodes.first; row < nodes.last; ++row, to += nodes.step) {
-    image.data()[to] = values[row];
-  }
+void gather(const Slant& slant, const ImageF& image, std::array<float, band_rows>& values) {
+  const float* from = image.data() + slant.place;
+  for (int i = 0; i < slant.rows; ++i) values[static_cast<std::size_t>(i)] = from[i * slant.step];
 }
 
-/// Marks the curl nodes of a diagonal: where all four jump nodes are present.
-TOFMAP_VECTOR_CLONES void load_curls(int rows, const float* top, const float* left,
-                                     const float* bottom, const float* right, float* curls) {
-#pragma GCC ivdep
-  for (int i = 0; i < rows; ++i) curls[i] = top[i] * left[i] * bottom[i + 1] * right[i];
-}
-
-Diagonal diagonal_at(std::vector<float>& planes, const DiagonalLayout& layout, int diagonal,
-                     int row) {
-  return {planes.data() + layout.place(diagonal, row, plane_count), layout.plane_step(diagonal)};
+void scatter(const Slant& slant, const std::array<float, band_rows>& values, ImageF& image) {
+  float* to = image.data() + slant.place;
+  for (int i = 0; i < slant.rows; ++i) to[i * slant.step] = values[static_cast<std::size_t>(i)];
 }
 
 Image<std::int8_t> most_likely(const std::array<ImageF, 3>& marginal) {
@@ -270,89 +303,89 @@ Image<std::int8_t> most_likely(const std::array<ImageF, 3>& marginal) {
 
 }  // namespace
 
-JumpPropagation::Rows::Rows(int rows) {
-  for (auto* row : {&minus, &none, &plus, &change, &x, &y, &next_x, &next_y}) {
+void JumpPropagation::load(const JumpProbabilities& evidence) {
+  const auto rows = static_cast<int>(evidence.x[0].rows());
+  const auto cols = static_cast<int>(evidence.y[0].cols());
+  if (layout_.rows() != rows || layout_.cols() != cols) reset(rows, cols);
+  Triples probability;
+  const auto load_nodes = [&](const std::array<ImageF, 3>& nodes, Plane plane) {
+    for_each_slant(nodes[0].rows(), nodes[0].cols(), [&](const Slant& slant) {
+      gather(slant, nodes[0], probability.minus);
+      gather(slant, nodes[1], probability.none);
+      gather(slant, nodes[2], probability.plus);
+      const Diagonal here = diagonal_at(planes_, layout_, slant.diagonal, slant.row);
+      load_odds(slant.rows, probability, here.plane(plane), here.plane(plane + 1));
+    });
+  };
+  load_nodes(evidence.x, evidence_x);
+  load_nodes(evidence.y, evidence_y);
+}
+
+/// Without evidence, and with even messages: those that no curl node sends stay so.
+void JumpPropagation::reset(int rows, int cols) {
+  layout_ = DiagonalLayout(rows, cols);
+  planes_.assign(layout_.size(plane_count), 1.0F);
+  for (int d = -1; d <= layout_.diagonals(); ++d) {
+    const Diagonal here = diagonal_at(planes_, layout_, d, layout_.begin(d) - 1);
+    for (const Plane plane : {evidence_x, evidence_y}) {
+      std::fill(here.plane(plane), here.plane(plane + 2), nan);
+    }
+  }
+  for (std::vector<float>* row : {&change_, &jump_x_, &jump_y_, &next_jump_x_, &next_jump_y_}) {
     row->assign(static_cast<std::size_t>(rows) + 1, 0.0F);
   }
 }
 
-void JumpPropagation::Rows::step_back() {
-  std::swap(x, next_x);
-  std::swap(y, next_y);
-}
-
-void JumpPropagation::load(const JumpProbabilities& evidence) {
-  const auto rows = static_cast<int>(evidence.x[0].rows());
-  const auto cols = static_cast<int>(evidence.y[0].cols());
-  if (layout_.rows() != rows || layout_.cols() != cols) {
-    layout_ = DiagonalLayout(rows, cols);
-    planes_.assign(layout_.size(plane_count), 1.0F);
-  }
-  rows_ = Rows(rows);
-  for (int d = layout_.diagonals() - 1; d >= 0; --d, rows_.step_back()) {
+void JumpPropagation::sweep_forward_and_down(bool is_first) {
+  for (int d = 0; d < layout_.diagonals(); ++d) {
     const int begin = layout_.begin(d);
-    const int end = layout_.end(d);
+    const int rows = layout_.end(d) - begin;
     const Diagonal here = diagonal_at(planes_, layout_, d, begin);
-    const auto load_nodes = [&](const std::array<ImageF, 3>& nodes, Plane plane,
-                                std::vector<float>& present) {
-      const NodesOnDiagonal on(layout_, d, nodes[0]);
-      gather(on, begin, end, nodes[0], rows_.minus.data());
-      gather(on, begin, end, nodes[1], rows_.none.data());
-      gather(on, begin, end, nodes[2], rows_.plus.data());
-      load_odds(end - begin, {&rows_.minus[begin], &rows_.none[begin], &rows_.plus[begin]}, here,
-                plane, &present[begin]);
-    };
-    load_nodes(evidence.x, evidence_x, rows_.x);
-    load_nodes(evidence.y, evidence_y, rows_.y);
-    load_curls(end - begin, &rows_.x[begin], &rows_.y[begin], &rows_.next_x[begin],
-               &rows_.next_y[begin], here.data + has_curl * here.step);
-    for (const Plane message : {from_above, from_below, from_left, from_right}) {
-      for (int i = 0; i < end - begin; ++i) here.set(message, i, {1, 1});
+    const Diagonal next = diagonal_at(planes_, layout_, d + 1, begin);
+    if (is_first) {
+      send_first_forward_and_down(rows, here, next);
+    } else {
+      send_forward_and_down(rows, here, next);
     }
   }
 }
 
-void JumpPropagation::sweep_forward_and_down() {
-  for (int d = 0; d < layout_.diagonals(); ++d) {
-    const int begin = layout_.begin(d);
-    send_forward_and_down(layout_.end(d) - begin, diagonal_at(planes_, layout_, d, begin),
-                          diagonal_at(planes_, layout_, d + 1, begin));
-  }
-}
-
-void JumpPropagation::sweep_backward_and_up(JumpBeliefs& beliefs) {
+void JumpPropagation::sweep_backward_and_up(bool is_first, JumpBeliefs& beliefs) {
   beliefs.curl_violations = 0;
-  std::fill(rows_.change.begin(), rows_.change.end(), 0.0F);
-  for (int d = layout_.diagonals() - 1; d >= 0; --d, rows_.step_back()) {
-    const int begin = layout_.begin(d);
-    beliefs.curl_violations += send_backward_and_up(
-        layout_.end(d) - begin, diagonal_at(planes_, layout_, d, begin),
-        diagonal_at(planes_, layout_, d + 1, begin),
-        {&rows_.x[begin], &rows_.y[begin], &rows_.next_x[begin], &rows_.next_y[begin],
-         &rows_.change[begin]});
+  std::fill(change_.begin(), change_.end(), 0.0F);
+  for (int d = layout_.diagonals() - 1; d >= 0; --d) {
+    const auto begin = static_cast<std::size_t>(layout_.begin(d));
+    const int row = layout_.begin(d);
+    const int rows = layout_.end(d) - row;
+    const Diagonal here = diagonal_at(planes_, layout_, d, row);
+    const Diagonal next = diagonal_at(planes_, layout_, d + 1, row);
+    const Findings findings{&jump_x_[begin], &jump_y_[begin], &next_jump_x_[begin],
+                            &next_jump_y_[begin], &change_[begin]};
+    beliefs.curl_violations += is_first ? send_first_backward_and_up(rows, here, next, findings)
+                                        : send_backward_and_up(rows, here, next, findings);
+    std::swap(jump_x_, next_jump_x_);
+    std::swap(jump_y_, next_jump_y_);
   }
-  beliefs.largest_message_change = *std::max_element(rows_.change.begin(), rows_.change.end());
+  beliefs.largest_message_change = *std::max_element(change_.begin(), change_.end());
 }
 
 JumpProbabilities JumpPropagation::marginals() {
   JumpProbabilities out;
   for (ImageF& plane : out.x) plane.resize(layout_.rows(), layout_.cols() - 1);
   for (ImageF& plane : out.y) plane.resize(layout_.rows() - 1, layout_.cols());
-  for (int d = 0; d < layout_.diagonals(); ++d) {
-    const int begin = layout_.begin(d);
-    const Diagonal here = diagonal_at(planes_, layout_, d, begin);
-    const auto read_nodes = [&](Plane evidence, Plane one, Plane other,
-                                std::array<ImageF, 3>& nodes) {
-      read_probabilities(layout_.end(d) - begin, here, evidence, one, other,
-                         {&rows_.minus[begin], &rows_.none[begin], &rows_.plus[begin]});
-      const NodesOnDiagonal on(layout_, d, nodes[0]);
-      scatter(on, rows_.minus.data(), nodes[0]);
-      scatter(on, rows_.none.data(), nodes[1]);
-      scatter(on, rows_.plus.data(), nodes[2]);
-    };
-    read_nodes(evidence_x, from_above, from_below, out.x);
-    read_nodes(evidence_y, from_left, from_right, out.y);
-  }
+  Triples probability;
+  const auto read_nodes = [&](Plane evidence, Plane one, Plane other,
+                              std::array<ImageF, 3>& nodes) {
+    for_each_slant(nodes[0].rows(), nodes[0].cols(), [&](const Slant& slant) {
+      read_probabilities(slant.rows, diagonal_at(planes_, layout_, slant.diagonal, slant.row),
+                         evidence, one, other, probability);
+      scatter(slant, probability.minus, nodes[0]);
+      scatter(slant, probability.none, nodes[1]);
+      scatter(slant, probability.plus, nodes[2]);
+    });
+  };
+  read_nodes(evidence_x, from_above, from_below, out.x);
+  read_nodes(evidence_y, from_left, from_right, out.y);
   return out;
 }
 
@@ -362,8 +395,9 @@ JumpBeliefs JumpPropagation::run(const JumpProbabilities& evidence, int max_iter
   JumpBeliefs beliefs;
   while (beliefs.iterations < max_iterations &&
          (beliefs.iterations < min_iterations || !beliefs.converged)) {
-    sweep_forward_and_down();
-    sweep_backward_and_up(beliefs);
+    const bool is_first = beliefs.iterations == 0;
+    sweep_forward_and_down(is_first);
+    sweep_backward_and_up(is_first, beliefs);
     ++beliefs.iterations;
     beliefs.converged = beliefs.curl_violations == 0;
   }

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <numeric>
-#include <utility>
+#include <cstddef>
 #include <vector>
 
 namespace tofmap {
@@ -12,8 +11,8 @@ namespace tofmap {
 /// spanning forest, where each edge tells a difference of counts.
 class OffsetUnion {
  public:
-  explicit OffsetUnion(int size) : parent_(size), to_parent_(size, 0), size_(size, 1) {
-    std::iota(parent_.begin(), parent_.end(), 0);
+  explicit OffsetUnion(int size) : members_(static_cast<std::size_t>(size)) {
+    for (int i = 0; i < size; ++i) member(i).parent = i;
   }
 
   struct Place {
@@ -21,37 +20,41 @@ class OffsetUnion {
     int offset;  ///< count(member) − count(root)
   };
 
-  Place find(int member) {
-    int root = member;
+  Place find(int number) {
+    Member* at = &member(number);
+    // Paths are halved on the way: who points at a member points at the one beyond it afterwards.
     int offset = 0;
-    while (parent_[root] != root) {
-      offset += to_parent_[root];
-      root = parent_[root];
+    while (member(at->parent).parent != at->parent) {
+      const Member& next = member(at->parent);
+      at->to_parent += next.to_parent;
+      at->parent = next.parent;
+      offset += at->to_parent;
+      number = at->parent;
+      at = &member(number);
     }
-    // Point the whole path at the root, so that later calls are short.
-    for (int remaining = offset; parent_[member] != member;) {
-      const int next = std::exchange(parent_[member], root);
-      const int step = std::exchange(to_parent_[member], remaining);
-      remaining -= step;
-      member = next;
-    }
-    return {root, offset};
+    return {at->parent, offset + at->to_parent};
   }
 
   /// Hangs the set of `child_root` under `root`: count(child_root) = count(root) + offset.
   void join(int root, int child_root, int offset) {
-    parent_[child_root] = root;
-    to_parent_[child_root] = offset;
-    size_[root] += size_[child_root];
+    member(child_root).parent = root;
+    member(child_root).to_parent = offset;
+    member(root).size += member(child_root).size;
   }
 
   /// Members of the set with this root.
-  int size(int root) const { return size_[root]; }
+  int size(int root) const { return members_[static_cast<std::size_t>(root)].size; }
 
  private:
-  std::vector<int> parent_;
-  std::vector<int> to_parent_;
-  std::vector<int> size_;  ///< of roots
+  struct Member {
+    int parent = 0;
+    int to_parent = 0;  ///< count(member) − count(parent)
+    int size = 1;       ///< of the set, if this is a root
+  };
+
+  Member& member(int number) { return members_[static_cast<std::size_t>(number)]; }
+
+  std::vector<Member> members_;
 };
 
 }  // namespace tofmap

@@ -6,6 +6,7 @@
 #include "confidence.hpp"
 #include "counted_ranges.hpp"
 #include "joint.hpp"
+#include "median.hpp"
 #include "tofmap/unwrap/beat.hpp"
 #include "tofmap/unwrap/jump_estimate.hpp"
 #include "tofmap/unwrap/jump_integration.hpp"
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string_view>
 
@@ -62,34 +64,32 @@ DualFrequencyFrame with_returns_only(const DualFrequencyFrame& frame, const Imag
   return out;
 }
 
-/// relative + offset, kept within what the scene can hold; invalid where there is no region.
-ImageU8 absolute_counts(const RelativeCounts& relative, const Anchors& anchors, int count_a) {
+/// Counts as anchored, kept within what the scene can hold; invalid where there is no region.
+ImageU8 absolute_counts(const RelativeCounts& relative, int count_a) {
   ImageU8 counts =
       ImageU8::Constant(relative.count.rows(), relative.count.cols(), invalid_wrap_count);
   for (Eigen::Index i = 0; i < counts.size(); ++i) {
     const int region = relative.region.data()[i];
     if (region == RelativeCounts::no_region) continue;
-    const int n = relative.count.data()[i] + anchors.offset[static_cast<std::size_t>(region)];
+    const int n = relative.count.data()[i] + relative.anchor[static_cast<std::size_t>(region)];
     counts.data()[i] = static_cast<std::uint8_t>(std::clamp(n, 0, count_a - 1));
   }
   return counts;
 }
 
 /// The paper: evidence, propagation, integration, anchors.
-UnwrapResult unwrap_by_jumps(const DualFrequencyFrame& frame, const ImageU8& valid,
-                             const BeatLimits& limits, const PhaseNoise& noise,
-                             const UnwrapOptions& options) {
+UnwrapResult unwrap_by_jumps(JumpPropagation& propagation, const DualFrequencyFrame& frame,
+                             const ImageU8& valid, const BeatLimits& limits,
+                             const PhaseNoise& noise, const UnwrapOptions& options) {
   const bool two_frequencies = unwrap_method(options) == UnwrapMethod::jump;
-  const JumpEstimate jumps = estimate_jumps(frame, limits, noise, options);
+  const JumpEstimate jumps = estimate_jumps(propagation, frame, limits, noise, options);
   const JumpBeliefs& beliefs = jumps.beliefs;
-  const BeatCost beat(frame, limits, noise);
+  const BeatCost beat = two_frequencies ? BeatCost(frame, limits, noise) : BeatCost();
   const RelativeCounts relative =
       two_frequencies ? integrate_jumps_with_beat(beliefs.marginals, jumps.evidence, valid, beat,
-                                                  options.objection_share)
+                                                  jumps.nearest, options.objection_share)
                       : integrate_jumps(beliefs.marginals, jumps.evidence, valid);
-  const Anchors anchors =
-      two_frequencies ? anchor_by_beat(relative, beat) : anchor_at_zero(relative);
-  const ImageU8 counts = absolute_counts(relative, anchors, limits.count_a);
+  const ImageU8 counts = absolute_counts(relative, limits.count_a);
   const ImageF confidence = two_frequencies
                                 ? jump_and_beat_confidence(counts, beliefs.marginals, beat)
                                 : jump_confidence(counts, beliefs.marginals);
@@ -107,7 +107,7 @@ UnwrapResult unwrap_by_jumps(const DualFrequencyFrame& frame, const ImageU8& val
 UnwrapResult unwrap_by_pixel(const DualFrequencyFrame& frame, const BeatLimits& limits,
                              const PhaseNoise& noise) {
   const ImageU8 counts = nearest_pair_counts(frame, limits);
-  const ImageF confidence = beat_confidence(counts, BeatCost(frame, limits, noise));
+  const ImageF confidence = BeatCost(frame, limits, noise).probability(counts);
   return {.image = make_range_image(frame, counts, confidence, limits, noise)};
 }
 
@@ -116,20 +116,17 @@ UnwrapResult leave_wrapped(const DualFrequencyFrame& frame, const ImageU8& valid
                            const BeatLimits& limits, const PhaseNoise& noise) {
   const ImageU8 counts =
       (valid != 0).select(ImageU8::Zero(valid.rows(), valid.cols()), invalid_wrap_count);
-  const ImageF confidence = beat_confidence(counts, BeatCost(frame, limits, noise));
+  const ImageF confidence = BeatCost(frame, limits, noise).probability(counts);
   return {.image = make_range_image(frame, counts, confidence, limits, noise)};
 }
 
 double median_phase_noise_cycles(const DualFrequencyFrame& frame, const PhaseNoise& noise) {
-  std::vector<float> sigmas;
   const ImageF sigma = phase_sigma_cycles(frame.phase_a, frame.amplitude_a, noise.scale_a);
-  for (const float s : sigma.reshaped()) {
-    if (std::isfinite(s)) sigmas.push_back(s);
-  }
-  if (sigmas.empty()) return 0;
-  const auto middle = sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2);
-  std::nth_element(sigmas.begin(), middle, sigmas.end());
-  return *middle;
+  std::vector<float> sigmas;
+  sigmas.reserve(static_cast<std::size_t>(sigma.size()));
+  std::copy_if(sigma.data(), sigma.data() + sigma.size(), std::back_inserter(sigmas),
+               [](float s) { return std::isfinite(s); });
+  return sigmas.empty() ? 0 : median_of_positive(sigmas);
 }
 
 }  // namespace
@@ -215,7 +212,7 @@ UnwrapResult Unwrapper::unwrap(const DualFrequencyFrame& frame) {
         return unwrap_jointly(estimator_, returns, limits_, noise, rays_, options_);
       case UnwrapMethod::jump:
       case UnwrapMethod::single:
-        return unwrap_by_jumps(returns, valid, limits_, noise, options_);
+        return unwrap_by_jumps(propagation_, returns, valid, limits_, noise, options_);
       case UnwrapMethod::pixel:
         return unwrap_by_pixel(returns, limits_, noise);
       case UnwrapMethod::none:

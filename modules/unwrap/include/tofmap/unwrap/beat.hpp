@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <tofmap/core/frame.hpp>
@@ -46,30 +47,34 @@ ImageU8 nearest_pair_counts(const DualFrequencyFrame& frame, const BeatLimits& l
 ImageF reconstruct_cycles(const ImageF& phase_a, const ImageU8& counts);
 
 /// How badly a count fits the beat of each pixel, in nats: half the squared residual over its
-/// variance, bounded so that flying pixels and multipath cannot outvote a surface.
+/// variance, bounded so that flying pixels and multipath cannot outvote a surface. Outside the
+/// limits, and without a return, every count costs the bound.
 class BeatCost {
  public:
+  BeatCost() = default;
   BeatCost(const DualFrequencyFrame& frame, const BeatLimits& limits, const PhaseNoise& noise);
 
-  /// The cost of n_A at the pixel, 0 … bound; the bound outside the limits and without a return.
-  float operator()(Eigen::Index row, Eigen::Index col, int n_a) const {
-    return of(row * cols_ + col)[n_a + 1];
-  }
+  /// The cost of n_A at a pixel, numbered row by row: 0 … bound. n_A is any count.
+  float operator()(Eigen::Index pixel, int n_a) const;
 
-  /// The costs of a pixel, numbered row by row, for the counts −1 … stride() − 2: all that are
-  /// within the limits and at least one more at both ends, where costs are the bound.
-  const float* of(Eigen::Index pixel) const { return costs_.data() + pixel * stride_; }
-  int stride() const { return stride_; }
+  /// Costs of counts −1 … size() − 2: all that are within the limits, and at least one more at both
+  /// ends. Adds those of a pixel whose count is n_A + offset, and returns the least of the sums.
+  float add(Eigen::Index pixel, int offset, std::span<float> costs) const;
+  std::size_t size() const { return size_; }
 
-  int count_a() const { return count_a_; }
+  /// The likelihood of each pixel's count over the sum of all counts'; 0 where it is invalid.
+  ImageF probability(const ImageU8& counts) const;
 
   static constexpr float bound = 4.5F;  ///< three standard deviations
 
  private:
-  int count_a_;
-  int stride_;
-  Eigen::Index cols_;
-  std::vector<float> costs_;
+  int count_a_ = 0;
+  std::size_t size_ = 0;
+  ImageF phase_a_;
+  ImageF beat_cycles_;           ///< of count 0, in cycles of B
+  ImageF precision_;             ///< half the inverse variance of the beat, 1 / cycles²
+  std::vector<float> shift_;     ///< what counts from −1 − size() on add to the beat, cycles
+  std::vector<float> farthest_;  ///< phase up to which their range is within the limits
 };
 
 }  // namespace tofmap

@@ -15,10 +15,16 @@ struct JumpEstimate {
   JumpProbabilities frequency;      ///< f_f, not normalised; empty for the method `single`
   JumpProbabilities evidence;       ///< both fused
   JumpBeliefs beliefs;              ///< after propagation
+  ImageU8 nearest;                  ///< nearest_pair_counts; empty for the method `single`
 };
 
 /// Estimates the phase jumps of a frame whose phases are NaN where there is no return, for the
 /// methods `jump` and `single`.
+JumpEstimate estimate_jumps(JumpPropagation& propagation, const DualFrequencyFrame& frame,
+                            const BeatLimits& limits, const PhaseNoise& noise,
+                            const UnwrapOptions& options);
+
+/// The same, once.
 JumpEstimate estimate_jumps(const DualFrequencyFrame& frame, const BeatLimits& limits,
                             const PhaseNoise& noise, const UnwrapOptions& options);
 

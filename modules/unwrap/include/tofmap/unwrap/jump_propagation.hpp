@@ -35,26 +35,20 @@ class JumpPropagation {
   JumpBeliefs run(const JumpProbabilities& evidence, int max_iterations, int min_iterations = 1);
 
  private:
-  /// Numbers of a diagonal and of the one after it, an entry for every row of the image and one
-  /// beyond.
-  struct Rows {
-    std::vector<float> minus, none, plus;  ///< probabilities of nodes
-    std::vector<float> change;             ///< of messages, the largest so far
-    std::vector<float> x, y, next_x, next_y;  ///< of nodes to the right and down: 1 where there is
-                                              ///< one, or the most likely configuration
-
-    explicit Rows(int rows = 0);
-    void step_back();  ///< what was of this diagonal is of the next one
-  };
-
   void load(const JumpProbabilities& evidence);
-  void sweep_forward_and_down();
-  void sweep_backward_and_up(JumpBeliefs& beliefs);
+  void reset(int rows, int cols);
+  void sweep_forward_and_down(bool is_first);
+  void sweep_backward_and_up(bool is_first, JumpBeliefs& beliefs);
   JumpProbabilities marginals();
 
   DiagonalLayout layout_;      ///< of pixels; nodes and curls lie where their upper left pixel does
   std::vector<float> planes_;  ///< evidence and messages
-  Rows rows_;
+  // For every row of the image, and one beyond:
+  std::vector<float> change_;  ///< of messages, the largest so far
+  std::vector<float> jump_x_;  ///< most likely configurations of nodes to the right on a diagonal,
+  std::vector<float> jump_y_;  ///< of those down,
+  std::vector<float> next_jump_x_;  ///< and of the diagonal after it
+  std::vector<float> next_jump_y_;
 };
 
 /// The same, once.

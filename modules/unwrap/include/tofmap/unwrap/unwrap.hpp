@@ -12,6 +12,7 @@
 #include <tofmap/core/range_image.hpp>
 #include <tofmap/unwrap/beat.hpp>
 #include <tofmap/unwrap/count_estimate.hpp>
+#include <tofmap/unwrap/jump_propagation.hpp>
 
 namespace tofmap {
 
@@ -39,7 +40,7 @@ struct UnwrapOptions {
   bool fuse_frequencies = true;
   bool correct_exposure = true;
   // Of jump and single.
-  int iterations = 10;
+  int iterations = 5;
   double trust_discontinuity = 0.9;  ///< c_d of the paper
   double trust_frequency = 0.5;      ///< c_f
   int window_px = 5;                 ///< k
@@ -92,6 +93,7 @@ class Unwrapper {
   BeatLimits limits_;
   PixelRays rays_;  ///< empty if they are not needed
   CountEstimator estimator_;
+  JumpPropagation propagation_;
 };
 
 /// One frame by itself.
