@@ -143,7 +143,7 @@ void CountModel::resize(int rows, int cols, int counts) {
     plane->assign(layout_.size(1), 0.0F);
   }
   amplitude_.assign(layout_.size(1), 1.0F);
-  scratch_.resize(3 * static_cast<std::size_t>(rows));
+  scratch_.resize(3 * static_cast<std::size_t>(DiagonalLayout::whole_vectors(rows)));
   for (std::vector<float>* plane : {&variance_a_m2_, &variance_b_m2_}) {
     plane->assign(layout_.size(1), 4 * largest_ratio);
   }
@@ -190,7 +190,7 @@ void CountModel::assign(const DualFrequencyFrame& frame, const BeatLimits& limit
   const auto counts = static_cast<std::size_t>(counts_);
   for (int d = 0; d < layout_.diagonals(); ++d) {
     const int first = layout_.begin(d);
-    const int count = layout_.end(d) - first;
+    const int count = DiagonalLayout::whole_vectors(layout_.end(d) - first);
     const Pixels here = pixels(d, first, count);
     fill_evidence(here, evidence_scale, counts_, &evidence_[layout_.place(d, first, counts)],
                   layout_.plane_step(d), scratch_.data());

@@ -17,7 +17,7 @@ namespace {
 enum From { left, right, above, below };
 
 /// Rows treated at a time: their intermediate values stay in the first-level cache.
-constexpr int block_rows = 160;
+constexpr int block_rows = 10 * DiagonalLayout::lanes;
 
 /// One number for each pixel of a block.
 using Row = std::array<float, block_rows>;
@@ -42,6 +42,7 @@ struct Edge {
 /// A block of pixels of one diagonal, and what it sends to both neighbours on the next.
 struct Block {
   int rows;
+  int lanes;  ///< rows of whole vectors, of which the last ones have no pixel
   int counts;
   Planes<const HalfFloat> evidence;
   Planes<const HalfFloat> in_first;  ///< messages from both neighbours on the diagonal before
@@ -99,7 +100,9 @@ Block block_at(const CountModel& model, const Buffers& buffers, Sweep sweep, int
     return has_back ? Planes<const HalfFloat>{&buffers.messages[from][here], step}
                     : Planes<const HalfFloat>{buffers.ones, 0};
   };
-  return {std::min(block_rows, layout.end(d) - row),
+  const int rows = std::min(block_rows, layout.end(d) - row);
+  return {rows,
+          DiagonalLayout::whole_vectors(rows),
           model.counts(),
           {&model.evidence()[here], step},
           {&buffers.messages[along_row][here], step},
@@ -121,12 +124,12 @@ Block block_at(const CountModel& model, const Buffers& buffers, Sweep sweep, int
 template <bool watches_change>
 [[gnu::always_inline]] inline void send(const Block& block, const Edge& edge, const float* weighted,
                                         const Row& sum, Row& change) {
-  const int rows = block.rows;
+  const int lanes = block.lanes;
   Row scale;
   Row up;
   Row down;
 #pragma GCC ivdep
-  for (int i = 0; i < rows; ++i) {
+  for (int i = 0; i < lanes; ++i) {
     const float step = block.direction * edge.next[i];
     up[i] = step > 0 ? step : 0;
     down[i] = step < 0 ? -step : 0;
@@ -137,7 +140,7 @@ template <bool watches_change>
     const float* at = weighted + n * block_rows;
     HalfFloat* out = edge.out[n];
 #pragma GCC ivdep
-    for (int i = 0; i < rows; ++i) {
+    for (int i = 0; i < lanes; ++i) {
       const float total =
           sum[i] + same[i] * at[i] + up[i] * at[i - block_rows] + down[i] * at[i + block_rows];
       const float message = std::sqrt(total * scale[i]);
@@ -153,7 +156,7 @@ template <bool watches_change>
 /// Builds and sends the messages of a block. Returns the largest change of any, if that is watched.
 template <bool watches_change>
 [[gnu::always_inline]] inline float build_and_send(const Block& block) {
-  const int rows = block.rows;
+  const int lanes = block.lanes;
   float* first = block.scratch + block_rows;
   float* second = first + (block.counts + 2) * block_rows;
   Row sum_first{};
@@ -163,7 +166,7 @@ template <bool watches_change>
     float* weighted_first = first + n * block_rows;
     float* weighted_second = second + n * block_rows;
 #pragma GCC ivdep
-    for (int i = 0; i < rows; ++i) {
+    for (int i = 0; i < lanes; ++i) {
       const float to_first = widened(of.back_first[i]);
       const float to_second = widened(of.back_second[i]);
       const float shared = widened(of.evidence[i]) * widened(of.in_first[i]) *
@@ -177,7 +180,7 @@ template <bool watches_change>
   Row change{};
   send<watches_change>(block, block.first, first, sum_first, change);
   send<watches_change>(block, block.second, second, sum_second, change);
-  return *std::max_element(change.begin(), change.end());
+  return *std::max_element(change.begin(), change.begin() + block.rows);
 }
 
 TOFMAP_VECTOR_CLONES void send_block(const Block& block) { build_and_send<false>(block); }
@@ -196,7 +199,7 @@ struct BlockBeliefs {
 
 /// Equation 15, where all messages have come in.
 TOFMAP_VECTOR_CLONES void read_block(const Block& block, BlockBeliefs& out) {
-  const int rows = block.rows;
+  const int lanes = block.lanes;
   Row sum{};
   out.best.fill(-1);
   out.rival.fill(0);
@@ -205,7 +208,7 @@ TOFMAP_VECTOR_CLONES void read_block(const Block& block, BlockBeliefs& out) {
     const Factors of(block, n);
     const auto count = static_cast<float>(n);
 #pragma GCC ivdep
-    for (int i = 0; i < rows; ++i) {
+    for (int i = 0; i < lanes; ++i) {
       const float belief = widened(of.evidence[i]) * widened(of.in_first[i]) *
                            widened(of.in_second[i]) * widened(of.back_first[i]) *
                            widened(of.back_second[i]);
@@ -221,7 +224,7 @@ TOFMAP_VECTOR_CLONES void read_block(const Block& block, BlockBeliefs& out) {
     }
   }
 #pragma GCC ivdep
-  for (int i = 0; i < rows; ++i) {
+  for (int i = 0; i < lanes; ++i) {
     out.best[i] /= sum[i];
     out.rival[i] = (out.rival[i] > 0 ? out.rival[i] : 0) / sum[i];
   }
@@ -235,20 +238,23 @@ void CountPropagation::reset(const CountModel& model) {
   for (auto& message : messages_) message.resize(layout.size(counts));
   scratch_.assign(2 * (counts + 2) * block_rows, 0.0F);
   ones_.assign(block_rows, half_one);
-  // Nothing is ever sent from beyond the borders.
-  const auto clear = [&](From from, int row, int col) {
-    const std::size_t step = layout.plane_step(row + col);
-    std::size_t at = layout.place(row + col, row, counts);
-    for (std::size_t n = 0; n < counts; ++n, at += step) messages_[from][at] = half_one;
-  };
   for (int row = 0; row < layout.rows(); ++row) {
-    clear(left, row, 0);
-    clear(right, row, layout.cols() - 1);
+    clear(model, left, row, 0);
+    clear(model, right, row, layout.cols() - 1);
   }
   for (int col = 0; col < layout.cols(); ++col) {
-    clear(above, 0, col);
-    clear(below, layout.rows() - 1, col);
+    clear(model, above, 0, col);
+    clear(model, below, layout.rows() - 1, col);
   }
+}
+
+/// Nothing is ever sent from beyond the borders.
+void CountPropagation::clear(const CountModel& model, int from, int row, int col) {
+  const auto counts = static_cast<std::size_t>(model.counts());
+  const std::size_t step = model.layout().plane_step(row + col);
+  std::size_t at = model.layout().place(row + col, row, counts);
+  auto& message = messages_[static_cast<std::size_t>(from)];
+  for (std::size_t n = 0; n < counts; ++n, at += step) message[at] = half_one;
 }
 
 void CountPropagation::sweep_forward(const CountModel& model, bool is_first) {
@@ -258,6 +264,8 @@ void CountPropagation::sweep_forward(const CountModel& model, bool is_first) {
     for (int row = layout.begin(d); row < layout.end(d); row += block_rows) {
       send_block(block_at(model, buffers, Sweep::forward, d, row, !is_first));
     }
+    // The rows without a pixel at the end of the last vector have sent there.
+    if (d + 1 < layout.rows()) clear(model, left, d + 1, 0);
   }
 }
 
@@ -285,6 +293,7 @@ void CountPropagation::sweep_backward(const CountModel& model, CountBeliefs* bel
         beliefs->rival_probability(v, u) = read.rival[at];
       }
     }
+    if (d >= layout.rows()) clear(model, below, layout.rows() - 1, d - layout.rows());
   }
 }
 

@@ -332,14 +332,14 @@ void JumpPropagation::reset(int rows, int cols) {
     }
   }
   for (std::vector<float>* row : {&change_, &jump_x_, &jump_y_, &next_jump_x_, &next_jump_y_}) {
-    row->assign(static_cast<std::size_t>(rows) + 1, 0.0F);
+    row->assign(static_cast<std::size_t>(rows + DiagonalLayout::lanes), 0.0F);
   }
 }
 
 void JumpPropagation::sweep_forward_and_down(bool is_first) {
   for (int d = 0; d < layout_.diagonals(); ++d) {
     const int begin = layout_.begin(d);
-    const int rows = layout_.end(d) - begin;
+    const int rows = DiagonalLayout::whole_vectors(layout_.end(d) - begin);
     const Diagonal here = diagonal_at(planes_, layout_, d, begin);
     const Diagonal next = diagonal_at(planes_, layout_, d + 1, begin);
     if (is_first) {
@@ -356,7 +356,7 @@ void JumpPropagation::sweep_backward_and_up(bool is_first, JumpBeliefs& beliefs)
   for (int d = layout_.diagonals() - 1; d >= 0; --d) {
     const auto begin = static_cast<std::size_t>(layout_.begin(d));
     const int row = layout_.begin(d);
-    const int rows = layout_.end(d) - row;
+    const int rows = DiagonalLayout::whole_vectors(layout_.end(d) - row);
     const Diagonal here = diagonal_at(planes_, layout_, d, row);
     const Diagonal next = diagonal_at(planes_, layout_, d + 1, row);
     const Findings findings{&jump_x_[begin], &jump_y_[begin], &next_jump_x_[begin],

@@ -37,6 +37,7 @@ class CountPropagation {
 
  private:
   void reset(const CountModel& model);
+  void clear(const CountModel& model, int from, int row, int col);
   void sweep_forward(const CountModel& model, bool is_first);
   void sweep_backward(const CountModel& model, CountBeliefs* beliefs);
 

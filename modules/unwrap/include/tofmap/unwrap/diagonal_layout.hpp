@@ -15,18 +15,24 @@ namespace tofmap {
 /// whole diagonal at once, and all its operands are contiguous in memory: the right neighbour of
 /// row v is row v of the next diagonal, the lower one its row v + 1. Every diagonal has `planes`
 /// values a pixel, plane by plane, and room for one row more at both ends; so have the diagonals
-/// −1 and diagonals(), so that what is sent out of the image lands nowhere.
+/// −1 and diagonals(), so that what is sent out of the image lands nowhere. After that there is
+/// room to the end of a vector: loops over rows may go on to whole_vectors() of them, as long as
+/// nobody needs what they leave there.
 class DiagonalLayout {
  public:
+  /// Floats in the longest vector of a processor.
+  static constexpr int lanes = 16;
+
+  static int whole_vectors(int rows) { return (rows + lanes - 1) / lanes * lanes; }
+
   DiagonalLayout() = default;
 
   DiagonalLayout(int rows, int cols) : rows_(rows), cols_(cols) {
-    constexpr std::size_t cache_line_floats = 16;
     std::size_t place = 0;
     for (int d = -1; d <= diagonals(); ++d) {
       start_.push_back(place);
-      const auto length = static_cast<std::size_t>(end(d) - begin(d) + 2);
-      place += (length + cache_line_floats - 1) / cache_line_floats * cache_line_floats;
+      const int room = whole_vectors(std::max(end(d) - begin(d), 1)) + 2;
+      place += static_cast<std::size_t>(whole_vectors(room));
     }
     start_.push_back(place);
   }
@@ -48,7 +54,7 @@ class DiagonalLayout {
            start_[static_cast<std::size_t>(diagonal) + 1];
   }
 
-  /// The place of a row, begin(d) − 1 … end(d), in the first plane of a diagonal.
+  /// The place of a row, from begin(d) − 1 on, in the first plane of a diagonal.
   std::size_t place(int diagonal, int row, std::size_t planes) const {
     return start_[static_cast<std::size_t>(diagonal) + 1] * planes +
            static_cast<std::size_t>(row - begin(diagonal) + 1);

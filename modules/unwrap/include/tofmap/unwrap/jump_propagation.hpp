@@ -43,7 +43,7 @@ class JumpPropagation {
 
   DiagonalLayout layout_;      ///< of pixels; nodes and curls lie where their upper left pixel does
   std::vector<float> planes_;  ///< evidence and messages
-  // For every row of the image, and one beyond:
+  // For every row of the image, and a vector beyond:
   std::vector<float> change_;  ///< of messages, the largest so far
   std::vector<float> jump_x_;  ///< most likely configurations of nodes to the right on a diagonal,
   std::vector<float> jump_y_;  ///< of those down,
