@@ -6,6 +6,8 @@
 #include "fast_math.hpp"
 #include "vector_clones.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -36,23 +38,51 @@ struct EvidenceScale {
   float outlier_share;
 };
 
-/// Equation 11: the probability of every count given the beat of the pixel. `scratch` has room for
-/// three numbers a pixel.
-TOFMAP_VECTOR_CLONES void fill_evidence(const Pixels& pixels, const EvidenceScale& scale,
-                                        int counts, HalfFloat* evidence, std::size_t step,
-                                        float* scratch) {
-  const int rows = pixels.rows;
-  float* precision = scratch;
-  float* height = precision + rows;
-  float* best = height + rows;
-  const auto ratio = static_cast<float>(scale.wavelength_ratio);
+/// Pixels whose evidence is found at a time.
+constexpr int evidence_rows = 4 * DiagonalLayout::lanes;
+
+/// What the beat tells of each pixel, besides its offset.
+struct Sharpness {
+  std::array<float, evidence_rows> precision;  ///< 1 / variance of the beat, 1 / cycles²
+  std::array<float, evidence_rows> height;     ///< density of the beat at the true count
+};
+
+/// Returns the least precision of pixels with a return.
+TOFMAP_VECTOR_CLONES float fill_sharpness(const Pixels& pixels_, const EvidenceScale& scale,
+                                          Sharpness& out) {
+  const Pixels pixels = pixels_;
   const float squared_b = scale.wavelength_b_m * scale.wavelength_b_m;
+  float* precision = out.precision.data();
+  float* height = out.height.data();
+  std::array<float, DiagonalLayout::lanes> least;
+  least.fill(largest_ratio);
+  for (int i = 0; i < pixels.rows; i += DiagonalLayout::lanes) {
 #pragma GCC ivdep
-  for (int i = 0; i < rows; ++i) {
-    precision[i] = squared_b / (pixels.variance_a_m2[i] + pixels.variance_b_m2[i]);
-    height[i] = std::sqrt(precision[i] * (0.5F / std::numbers::pi_v<float>));
-    best[i] = 0;
+    for (int k = 0; k < DiagonalLayout::lanes; ++k) {
+      const float variance = pixels.variance_a_m2[i + k] + pixels.variance_b_m2[i + k];
+      const float sharp = squared_b / variance;
+      precision[i + k] = sharp;
+      height[i + k] = std::sqrt(sharp * (0.5F / std::numbers::pi_v<float>));
+      const float counted = variance < largest_ratio ? sharp : largest_ratio;
+      float& lane = least[static_cast<std::size_t>(k)];
+      lane = counted < lane ? counted : lane;
+    }
   }
+  return least_of(least);
+}
+
+/// Equation 11: the probability of every count given the beat of the pixel. `passes` tells that
+/// B's noise may pass half a cycle.
+template <bool passes>
+[[gnu::always_inline]] inline void fill_evidence_of(const Pixels& pixels,
+                                                    const EvidenceScale& scale, int counts,
+                                                    const Sharpness& sharpness, HalfFloat* evidence,
+                                                    std::size_t step) {
+  const int rows = pixels.rows;
+  const float* precision = sharpness.precision.data();
+  const float* height = sharpness.height.data();
+  std::array<float, evidence_rows> best{};
+  const auto ratio = static_cast<float>(scale.wavelength_ratio);
   for (int k = 0; k < counts; ++k) {
     HalfFloat* at = evidence + static_cast<std::size_t>(k) * step;
     // Cycles of B in k wavelengths of A, without the whole ones: counts that the pair cannot tell
@@ -64,27 +94,46 @@ TOFMAP_VECTOR_CLONES void fill_evidence(const Pixels& pixels, const EvidenceScal
     for (int i = 0; i < rows; ++i) {
       const float offset = to_half_cycle(pixels.phase_a[i] * ratio + shift - pixels.phase_b[i]);
       const float size = offset < 0 ? -offset : offset;
-      const float other = 1 - size;
-      // The density of the offset against that of any: B's noise may pass half a cycle, too.
-      const float density = height[i] * (exp_of_negative(-0.5F * precision[i] * size * size) +
-                                         exp_of_negative(-0.5F * precision[i] * other * other));
-      const float likelihood = scale.outlier_share + (1 - scale.outlier_share) * density;
+      // The density of the offset against that of any.
+      float density = exp_of_negative(-0.5F * precision[i] * size * size);
+      if constexpr (passes) {
+        const float other = 1 - size;
+        density += exp_of_negative(-0.5F * precision[i] * other * other);
+      }
+      const float likelihood =
+          scale.outlier_share + (1 - scale.outlier_share) * height[i] * density;
       const float within = pixels.phase_a[i] <= farthest ? 1.0F : 0.0F;
       const float value = within * likelihood;
       at[i] = halved(value);
-      best[i] = value > best[i] ? value : best[i];
+      best[static_cast<std::size_t>(i)] =
+          value > best[static_cast<std::size_t>(i)] ? value : best[static_cast<std::size_t>(i)];
     }
+  }
+  for (int i = 0; i < rows; ++i) {
+    best[static_cast<std::size_t>(i)] = 1 / best[static_cast<std::size_t>(i)];
   }
   for (int k = 0; k < counts; ++k) {
     HalfFloat* at = evidence + static_cast<std::size_t>(k) * step;
 #pragma GCC ivdep
     for (int i = 0; i < rows; ++i) {
-      const float share = widened(at[i]) / best[i];
+      const float share = widened(at[i]) * best[static_cast<std::size_t>(i)];
       const float squared = share * share;
       const float bold = squared * squared;
       at[i] = halved(bold > impossible ? bold : impossible);
     }
   }
+}
+
+TOFMAP_VECTOR_CLONES void fill_evidence(const Pixels& pixels, const EvidenceScale& scale,
+                                        int counts, const Sharpness& sharpness, HalfFloat* evidence,
+                                        std::size_t step) {
+  fill_evidence_of<true>(Pixels(pixels), EvidenceScale(scale), counts, sharpness, evidence, step);
+}
+
+TOFMAP_VECTOR_CLONES void fill_sharp_evidence(const Pixels& pixels, const EvidenceScale& scale,
+                                              int counts, const Sharpness& sharpness,
+                                              HalfFloat* evidence, std::size_t step) {
+  fill_evidence_of<false>(Pixels(pixels), EvidenceScale(scale), counts, sharpness, evidence, step);
 }
 
 struct EdgeScale {
@@ -143,7 +192,6 @@ void CountModel::resize(int rows, int cols, int counts) {
     plane->assign(layout_.size(1), 0.0F);
   }
   amplitude_.assign(layout_.size(1), 1.0F);
-  scratch_.resize(3 * static_cast<std::size_t>(DiagonalLayout::whole_vectors(rows)));
   for (std::vector<float>* plane : {&variance_a_m2_, &variance_b_m2_}) {
     plane->assign(layout_.size(1), 4 * largest_ratio);
   }
@@ -188,12 +236,20 @@ void CountModel::assign(const DualFrequencyFrame& frame, const BeatLimits& limit
                              static_cast<float>(1 / (2 * prior.edge_reach_m)),
                              prior.amplitude_edges ? 1.0F : 0.0F};
   const auto counts = static_cast<std::size_t>(counts_);
+  Sharpness sharpness;
   for (int d = 0; d < layout_.diagonals(); ++d) {
     const int first = layout_.begin(d);
     const int count = DiagonalLayout::whole_vectors(layout_.end(d) - first);
+    for (int done = 0; done < count; done += evidence_rows) {
+      const Pixels block = pixels(d, first + done, std::min(evidence_rows, count - done));
+      HalfFloat* evidence = &evidence_[layout_.place(d, first + done, counts)];
+      // From here on half a cycle is seven standard deviations: what passes it is lost in rounding.
+      constexpr float sharp = 200;
+      const bool is_sharp = fill_sharpness(block, evidence_scale, sharpness) > sharp;
+      (is_sharp ? fill_sharp_evidence : fill_evidence)(block, evidence_scale, counts_, sharpness,
+                                                       evidence, layout_.plane_step(d));
+    }
     const Pixels here = pixels(d, first, count);
-    fill_evidence(here, evidence_scale, counts_, &evidence_[layout_.place(d, first, counts)],
-                  layout_.plane_step(d), scratch_.data());
     if (d + 1 == layout_.diagonals()) break;
     const std::size_t edge = layout_.place(d, first, 1);
     fill_edges(here, pixels(d + 1, first, count), edge_scale, &right_.same[edge],

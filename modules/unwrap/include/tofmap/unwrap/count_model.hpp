@@ -64,7 +64,6 @@ class CountModel {
   std::vector<float> amplitude_;
   std::vector<float> variance_a_m2_;
   std::vector<float> variance_b_m2_;
-  std::vector<float> scratch_;
 };
 
 }  // namespace tofmap
