@@ -14,10 +14,16 @@
 namespace tofmap {
 namespace {
 
-enum From { left, right, above, below };
+/// Edges of a pixel to the neighbours before it.
+enum Neighbour { left, above };
 
-/// Rows treated at a time: their intermediate values stay in the first-level cache.
-constexpr int block_rows = 10 * DiagonalLayout::lanes;
+/// Rows treated at a time: few enough for the second-level cache, and enough to pass through memory
+/// in long lines.
+constexpr int block_rows = 32 * DiagonalLayout::lanes;
+
+/// The change of messages is watched on every so many diagonals: that costs little, and their
+/// largest change is that of all, or close to it.
+constexpr int watched_diagonals = 8;
 
 /// One number for each pixel of a block.
 using Row = std::array<float, block_rows>;
@@ -31,10 +37,10 @@ struct Planes {
   T* operator[](int count) const { return data + static_cast<std::size_t>(count) * step; }
 };
 
-/// Messages along one edge, from all pixels of a block.
+/// One edge of each pixel of a block, to a neighbour on the next diagonal of the sweep.
 struct Edge {
   Planes<const HalfFloat> back;  ///< the last message the other way
-  Planes<HalfFloat> out;
+  Planes<HalfFloat> out;         ///< in the same place, but before anything was sent
   const float* same;
   const float* next;
 };
@@ -69,9 +75,10 @@ struct Factors {
         back_second(block.second.back[count]) {}
 };
 
-/// What persists between blocks.
+/// What persists between blocks. A message along an edge has its place at the right or lower pixel
+/// of the edge, whichever way it goes: the next one the other way takes it, after it was heard.
 struct Buffers {
-  std::array<std::vector<HalfFloat>, 4>& messages;
+  std::array<std::vector<HalfFloat>, 2>& messages;
   const HalfFloat* ones;
   float* scratch;
 };
@@ -85,45 +92,41 @@ Block block_at(const CountModel& model, const Buffers& buffers, Sweep sweep, int
   const DiagonalLayout& layout = model.layout();
   const auto counts = static_cast<std::size_t>(model.counts());
   const bool forward = sweep == Sweep::forward;
-  const int next = forward ? d + 1 : d - 1;
-  const std::size_t step = layout.plane_step(d);
-  const std::size_t out_step = layout.plane_step(next);
+  // Messages to and from earlier pixels are kept here, those to and from later ones there.
   const std::size_t here = layout.place(d, row, counts);
-  const std::size_t in_row = layout.place(next, row, counts);
-  const std::size_t in_col = forward ? in_row + 1 : in_row - 1;
+  const std::size_t there = layout.place(d + 1, row, counts);
+  const Planes<HalfFloat> to_left{&buffers.messages[left][here], layout.plane_step(d)};
+  const Planes<HalfFloat> to_above{&buffers.messages[above][here], layout.plane_step(d)};
+  const Planes<HalfFloat> to_right{&buffers.messages[left][there], layout.plane_step(d + 1)};
+  const Planes<HalfFloat> to_below{&buffers.messages[above][there + 1], layout.plane_step(d + 1)};
+  const auto read_only = [](const Planes<HalfFloat>& planes) {
+    return Planes<const HalfFloat>{planes.data, planes.step};
+  };
   // Edges are stored at their left or upper pixel.
-  const std::size_t edge_right = layout.place(forward ? d : next, row, 1);
+  const std::size_t edge_right = layout.place(forward ? d : d - 1, row, 1);
   const std::size_t edge_down = forward ? edge_right : edge_right - 1;
-  const From along_row = forward ? left : right;
-  const From along_col = forward ? above : below;
-  const auto back = [&](From from) {
-    return has_back ? Planes<const HalfFloat>{&buffers.messages[from][here], step}
-                    : Planes<const HalfFloat>{buffers.ones, 0};
+  const auto edge = [&](const Planes<HalfFloat>& slot, const CountModel::Edges& edges,
+                        std::size_t place) {
+    return Edge{has_back ? read_only(slot) : Planes<const HalfFloat>{buffers.ones, 0}, slot,
+                &edges.same[place], &edges.next[place]};
   };
   const int rows = std::min(block_rows, layout.end(d) - row);
   return {rows,
           DiagonalLayout::whole_vectors(rows),
           model.counts(),
-          {&model.evidence()[here], step},
-          {&buffers.messages[along_row][here], step},
-          {&buffers.messages[along_col][here], step},
-          {back(forward ? right : left),
-           {&buffers.messages[along_row][in_row], out_step},
-           &model.right().same[edge_right],
-           &model.right().next[edge_right]},
-          {back(forward ? below : above),
-           {&buffers.messages[along_col][in_col], out_step},
-           &model.down().same[edge_down],
-           &model.down().next[edge_down]},
+          {&model.evidence()[here], layout.plane_step(d)},
+          read_only(forward ? to_left : to_right),
+          read_only(forward ? to_above : to_below),
+          edge(forward ? to_right : to_left, model.right(), edge_right),
+          edge(forward ? to_below : to_above, model.down(), edge_down),
           forward ? 1.0F : -1.0F,
           buffers.scratch};
 }
 
 /// Equation 16, for the messages along one edge. `weighted` holds what remains of the beliefs
 /// without the message the other way.
-template <bool watches_change>
 [[gnu::always_inline]] inline void send(const Block& block, const Edge& edge, const float* weighted,
-                                        const Row& sum, Row& change) {
+                                        const Row& sum) {
   const int lanes = block.lanes;
   Row scale;
   Row up;
@@ -144,18 +147,13 @@ template <bool watches_change>
       const float total =
           sum[i] + same[i] * at[i] + up[i] * at[i - block_rows] + down[i] * at[i + block_rows];
       const float message = std::sqrt(total * scale[i]);
-      if constexpr (watches_change) {
-        const float difference = std::abs(message - widened(out[i]));
-        change[i] = difference > change[i] ? difference : change[i];
-      }
       out[i] = halved(message);
     }
   }
 }
 
-/// Builds and sends the messages of a block. Returns the largest change of any, if that is watched.
-template <bool watches_change>
-[[gnu::always_inline]] inline float build_and_send(const Block& block) {
+/// Builds and sends the messages of a block.
+TOFMAP_VECTOR_CLONES void send_block(const Block& block) {
   const int lanes = block.lanes;
   float* first = block.scratch + block_rows;
   float* second = first + (block.counts + 2) * block_rows;
@@ -177,16 +175,24 @@ template <bool watches_change>
       sum_second[i] += weighted_second[i];
     }
   }
-  Row change{};
-  send<watches_change>(block, block.first, first, sum_first, change);
-  send<watches_change>(block, block.second, second, sum_second, change);
-  return *std::max_element(change.begin(), change.begin() + block.rows);
+  send(block, block.first, first, sum_first);
+  send(block, block.second, second, sum_second);
 }
 
-TOFMAP_VECTOR_CLONES void send_block(const Block& block) { build_and_send<false>(block); }
-
-TOFMAP_VECTOR_CLONES float send_block_and_watch(const Block& block) {
-  return build_and_send<true>(block);
+/// The largest difference between messages along one edge of each pixel and what they were.
+TOFMAP_VECTOR_CLONES float largest_change(const Block& block, const Planes<const HalfFloat>& now,
+                                          const Planes<const HalfFloat>& before) {
+  Row largest{};
+  for (int n = 0; n < block.counts; ++n) {
+    const HalfFloat* one = now[n];
+    const HalfFloat* other = before[n];
+#pragma GCC ivdep
+    for (int i = 0; i < block.lanes; ++i) {
+      const float change = std::abs(widened(one[i]) - widened(other[i]));
+      largest[i] = change > largest[i] ? change : largest[i];
+    }
+  }
+  return *std::max_element(largest.begin(), largest.begin() + block.rows);
 }
 
 /// The two most likely counts of a block and their probabilities.
@@ -233,28 +239,20 @@ TOFMAP_VECTOR_CLONES void read_block(const Block& block, BlockBeliefs& out) {
 }  // namespace
 
 void CountPropagation::reset(const CountModel& model) {
-  const DiagonalLayout& layout = model.layout();
-  const auto counts = static_cast<std::size_t>(model.counts());
-  for (auto& message : messages_) message.resize(layout.size(counts));
-  scratch_.assign(2 * (counts + 2) * block_rows, 0.0F);
+  const std::size_t size = model.layout().size(static_cast<std::size_t>(model.counts()));
+  scratch_.assign(2 * static_cast<std::size_t>(model.counts() + 2) * block_rows, 0.0F);
   ones_.assign(block_rows, half_one);
-  for (int row = 0; row < layout.rows(); ++row) {
-    clear(model, left, row, 0);
-    clear(model, right, row, layout.cols() - 1);
+  if (rows_ == model.layout().rows() && cols_ == model.layout().cols() &&
+      counts_ == model.counts()) {
+    return;
   }
-  for (int col = 0; col < layout.cols(); ++col) {
-    clear(model, above, 0, col);
-    clear(model, below, layout.rows() - 1, col);
-  }
-}
-
-/// Nothing is ever sent from beyond the borders.
-void CountPropagation::clear(const CountModel& model, int from, int row, int col) {
-  const auto counts = static_cast<std::size_t>(model.counts());
-  const std::size_t step = model.layout().plane_step(row + col);
-  std::size_t at = model.layout().place(row + col, row, counts);
-  auto& message = messages_[static_cast<std::size_t>(from)];
-  for (std::size_t n = 0; n < counts; ++n, at += step) message[at] = half_one;
+  rows_ = model.layout().rows();
+  cols_ = model.layout().cols();
+  counts_ = model.counts();
+  // Where there is no pixel nothing is known, and where there is no edge nothing is learned: these
+  // messages stay 1, and are sent as 1 again.
+  for (auto& message : messages_) message.assign(size, half_one);
+  for (auto& message : before_) message.assign(size, half_one);
 }
 
 void CountPropagation::sweep_forward(const CountModel& model, bool is_first) {
@@ -264,36 +262,68 @@ void CountPropagation::sweep_forward(const CountModel& model, bool is_first) {
     for (int row = layout.begin(d); row < layout.end(d); row += block_rows) {
       send_block(block_at(model, buffers, Sweep::forward, d, row, !is_first));
     }
-    // The rows without a pixel at the end of the last vector have sent there.
-    if (d + 1 < layout.rows()) clear(model, left, d + 1, 0);
   }
 }
 
-void CountPropagation::sweep_backward(const CountModel& model, CountBeliefs* beliefs) {
+void CountPropagation::sweep_backward(const CountModel& model) {
   const DiagonalLayout& layout = model.layout();
   const Buffers buffers{messages_, ones_.data(), scratch_.data()};
+  for (int d = layout.diagonals() - 1; d >= 0; --d) {
+    for (int row = layout.begin(d); row < layout.end(d); row += block_rows) {
+      send_block(block_at(model, buffers, Sweep::backward, d, row, true));
+    }
+  }
+}
+
+/// The last sweep back, in which all messages of a pixel have come in before it sends its own.
+void CountPropagation::read_backward(const CountModel& model, CountBeliefs& beliefs) {
+  const DiagonalLayout& layout = model.layout();
+  const auto counts = static_cast<std::size_t>(model.counts());
+  const Buffers buffers{messages_, ones_.data(), scratch_.data()};
   BlockBeliefs read;
+  float change = 0;
   for (int d = layout.diagonals() - 1; d >= 0; --d) {
     for (int row = layout.begin(d); row < layout.end(d); row += block_rows) {
       const Block block = block_at(model, buffers, Sweep::backward, d, row, true);
-      if (beliefs == nullptr) {
-        send_block(block);
-        continue;
-      }
-      const double change = send_block_and_watch(block);
-      beliefs->largest_message_change = std::max(beliefs->largest_message_change, change);
       read_block(block, read);
       for (int i = 0; i < block.rows; ++i) {
         const int v = row + i;
         const int u = d - v;
         const auto at = static_cast<std::size_t>(i);
-        beliefs->count(v, u) = static_cast<std::uint8_t>(read.best_count[at]);
-        beliefs->probability(v, u) = read.best[at];
-        beliefs->rival(v, u) = static_cast<std::uint8_t>(read.rival_count[at]);
-        beliefs->rival_probability(v, u) = read.rival[at];
+        beliefs.count(v, u) = static_cast<std::uint8_t>(read.best_count[at]);
+        beliefs.probability(v, u) = read.best[at];
+        beliefs.rival(v, u) = static_cast<std::uint8_t>(read.rival_count[at]);
+        beliefs.rival_probability(v, u) = read.rival[at];
+      }
+      send_block(block);
+      if (d % watched_diagonals != 0) continue;
+      const std::size_t here = layout.place(d, row, counts);
+      for (const Neighbour to : {left, above}) {
+        const Edge& edge = to == left ? block.first : block.second;
+        const Planes<const HalfFloat> before{&before_[to][here], layout.plane_step(d)};
+        change = std::max(change, largest_change(block, edge.back, before));
       }
     }
-    if (d >= layout.rows()) clear(model, below, layout.rows() - 1, d - layout.rows());
+  }
+  beliefs.largest_message_change = change;
+}
+
+/// Keeps the messages whose change the last sweep back will watch: those that were sent back, or 1
+/// before there were any.
+void CountPropagation::remember_watched(const CountModel& model, bool was_sent) {
+  const DiagonalLayout& layout = model.layout();
+  const auto counts = static_cast<std::size_t>(model.counts());
+  for (int d = 0; d < layout.diagonals(); d += watched_diagonals) {
+    const std::size_t first = layout.place(d, layout.begin(d) - 1, counts);
+    const std::size_t size = layout.plane_step(d) * counts;
+    for (const Neighbour to : {left, above}) {
+      HalfFloat* before = before_[to].data() + first;
+      if (was_sent) {
+        std::copy_n(messages_[to].data() + first, size, before);
+      } else {
+        std::fill_n(before, size, half_one);
+      }
+    }
   }
 }
 
@@ -303,10 +333,13 @@ CountBeliefs CountPropagation::run(const CountModel& model, int iterations) {
   const int cols = model.layout().cols();
   CountBeliefs beliefs{ImageU8(rows, cols), ImageF(rows, cols), ImageU8(rows, cols),
                        ImageF(rows, cols), iterations};
-  for (int i = 0; i < iterations; ++i) {
+  for (int i = 0; i + 1 < iterations; ++i) {
     sweep_forward(model, i == 0);
-    sweep_backward(model, i + 1 == iterations ? &beliefs : nullptr);
+    sweep_backward(model);
   }
+  remember_watched(model, iterations > 1);
+  sweep_forward(model, iterations == 1);
+  read_backward(model, beliefs);
   return beliefs;
 }
 

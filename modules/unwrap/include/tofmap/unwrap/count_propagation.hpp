@@ -18,7 +18,7 @@ struct CountBeliefs {
   ImageU8 rival;             ///< the second most likely count
   ImageF rival_probability;  ///< its probability; 0 where there is one count only
   int iterations = 0;
-  double largest_message_change = 0;  ///< of any element of a message, last sweep back
+  double largest_message_change = 0;  ///< of any element of a message, last sweep back; of a sample
 };
 
 /// Tree-reweighted sum-product belief propagation over wrap counts (Wainwright, Jaakkola, Willsky,
@@ -37,11 +37,16 @@ class CountPropagation {
 
  private:
   void reset(const CountModel& model);
-  void clear(const CountModel& model, int from, int row, int col);
   void sweep_forward(const CountModel& model, bool is_first);
-  void sweep_backward(const CountModel& model, CountBeliefs* beliefs);
+  void sweep_backward(const CountModel& model);
+  void remember_watched(const CountModel& model, bool was_sent);
+  void read_backward(const CountModel& model, CountBeliefs& beliefs);
 
-  std::array<std::vector<std::uint16_t>, 4> messages_;  ///< μ from left, right, above, below
+  int rows_ = 0;
+  int cols_ = 0;
+  int counts_ = 0;
+  std::array<std::vector<std::uint16_t>, 2> messages_;  ///< μ to or from the left, and above
+  std::array<std::vector<std::uint16_t>, 2> before_;  ///< what was there before the last iteration
   std::vector<std::uint16_t> ones_;
   std::vector<float> scratch_;
 };
