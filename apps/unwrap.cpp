@@ -96,6 +96,7 @@ UnwrappedFrame unwrap_frame(const SequenceReader& source, int index, Unwrapper& 
                  {"phase_noise_cycles", result.phase_noise_cycles},
                  {"regions", result.regions},
                  {"ambiguous_pixels", count_reason(result.image, InvalidReason::ambiguous)},
+                 {"saturated_pixels", count_reason(result.image, InvalidReason::saturated)},
                  {"valid_pixels", image.count_valid()}};
   if (arguments.with_filters) {
     FilterResult filtered = apply_filters(image, *sourced.frame, rays, options.filters);

@@ -50,9 +50,9 @@ TEST(RangeImage, IsInvalidInAllPlanesAtOnce) {
 
 TEST(InvalidReason, HasTheNumbersThatFilesHold) {
   // reason/NNNNNN.png is read by others: numbers and names stay.
-  const char* names[] = {"none",           "no_return", "low_amplitude",
-                         "low_confidence", "jump_edge", "out_of_range"};
-  for (int i = 0; i < 6; ++i) {
+  const char* names[] = {"none",      "no_return",    "low_amplitude", "low_confidence",
+                         "jump_edge", "out_of_range", "ambiguous",     "saturated"};
+  for (int i = 0; i < 8; ++i) {
     EXPECT_EQ(std::string(reason_name(static_cast<InvalidReason>(i))), names[i]);
   }
 }

@@ -166,6 +166,25 @@ TEST(Unwrapping, GivesPixelsWithoutAReturnNoRange) {
   EXPECT_EQ(result.image.count_valid(), 16 * 24 - 1);
 }
 
+TEST(Unwrapping, SaysWhichPixelsAreSaturated) {
+  TwoWalls walls = two_walls(3, 9);
+  walls.sensor.saturation_amplitude = 1000;
+  walls.frame.amplitude_a = ImageF::Constant(16, 24, 100);
+  walls.frame.amplitude_b = walls.frame.amplitude_a;
+  walls.frame.amplitude_b(4, 4) = 1000;
+  walls.frame.amplitude_a(5, 5) = 2000;
+  walls.frame.phase_a(6, 6) = NAN;
+  walls.frame.amplitude_b(6, 6) = 2000;
+  const RangeImage image = unwrap(walls.frame, walls.sensor, {}).image;
+  EXPECT_EQ(image.reason(4, 4), static_cast<int>(InvalidReason::saturated));
+  EXPECT_EQ(image.reason(5, 5), static_cast<int>(InvalidReason::saturated));
+  EXPECT_EQ(image.reason(6, 6), static_cast<int>(InvalidReason::no_return));
+  EXPECT_TRUE(std::isnan(image.range_m(4, 4)));
+  EXPECT_EQ(image.count_valid(), 16 * 24 - 3);
+  walls.sensor.saturation_amplitude = 0;
+  EXPECT_EQ(unwrap(walls.frame, walls.sensor, {}).image.count_valid(), 16 * 24 - 1);
+}
+
 TEST(Unwrapping, OfAnImageWithoutAnyReturnIsEmpty) {
   TwoWalls walls = two_walls(3, 9);
   walls.frame.phase_a.setConstant(NAN);

@@ -116,6 +116,8 @@ SequenceReader::SequenceReader(std::filesystem::path folder) : folder_(std::move
                      ": no such folder; a sequence is a folder with sequence.yaml in it");
   }
   sensor_ = read_sequence_header(folder_ / "sequence.yaml");
+  constexpr double end_of_scale = 65535;  // more than that may have been meant
+  sensor_.saturation_amplitude = end_of_scale;
   files_ = read_frame_list(folder_ / "frames.txt");
 }
 

@@ -28,6 +28,8 @@ const char* reason_name(InvalidReason reason) {
       return "out_of_range";
     case InvalidReason::ambiguous:
       return "ambiguous";
+    case InvalidReason::saturated:
+      return "saturated";
   }
   return "unknown";
 }

@@ -23,7 +23,7 @@ namespace {
 
 /// Bridges are sorted by rank in so many steps, which is linear in time and finer than ranks are
 /// meant.
-constexpr int rank_steps = 4096;
+constexpr int rank_steps = 256;
 
 /// Nodes of an image, decided: configurations, marginals and ranks of the most likely ones.
 struct Decisions {
@@ -97,19 +97,20 @@ std::vector<Bridge> sorted_bridges(const JumpProbabilities& marginals,
   }
   for (std::size_t s = 1; s < first.size(); ++s) first[s] += first[s - 1];
   std::vector<Bridge> sorted(static_cast<std::size_t>(first[rank_steps]));
-  const auto append = [&](const Decisions& nodes, int nodes_a_row, int q_from_p) {
-    std::size_t i = 0;
-    for (int row = 0; i < nodes.rank.size(); row += image_cols) {
-      for (int p = row; p < row + nodes_a_row; ++p, ++i) {
-        const auto rank = static_cast<std::size_t>(nodes.rank[i]);
-        if (rank == rank_steps) continue;
-        sorted[static_cast<std::size_t>(first[rank]++)] = {p, p + q_from_p, nodes.step[i],
-                                                           nodes.certainty[i]};
-      }
+  const auto append_row = [&](const Decisions& nodes, int row, int nodes_a_row, int q_from_p) {
+    auto i = static_cast<std::size_t>(row * nodes_a_row);
+    for (int p = row * image_cols; p < row * image_cols + nodes_a_row; ++p, ++i) {
+      if (i >= nodes.rank.size()) break;
+      const auto rank = static_cast<std::size_t>(nodes.rank[i]);
+      if (rank == rank_steps) continue;
+      sorted[static_cast<std::size_t>(first[rank]++)] = {p, p + q_from_p, nodes.step[i],
+                                                         nodes.certainty[i]};
     }
   };
-  append(x, image_cols - 1, 1);
-  append(y, image_cols, image_cols);
+  for (int row = 0; row < marginals.x[0].rows(); ++row) {
+    append_row(x, row, image_cols - 1, 1);
+    append_row(y, row, image_cols, image_cols);
+  }
   return sorted;
 }
 

@@ -46,6 +46,15 @@ void check(const DualFrequencyFrame& frame) {
   }
 }
 
+/// Not 0 where the signal is too strong at one of the frequencies.
+ImageU8 saturated_pixels(const DualFrequencyFrame& frame, double saturation_amplitude) {
+  if (!(saturation_amplitude > 0) || !frame.has_amplitude()) {
+    return ImageU8::Zero(frame.phase_a.rows(), frame.phase_a.cols());
+  }
+  const auto limit = static_cast<float>(saturation_amplitude);
+  return (frame.amplitude_a >= limit || frame.amplitude_b >= limit).cast<std::uint8_t>();
+}
+
 /// Not 0 where both frequencies have a return (and a positive amplitude, if there is one).
 ImageU8 pixels_with_return(const DualFrequencyFrame& frame) {
   ImageU8 valid = (frame.phase_a.isFinite() && frame.phase_b.isFinite()).cast<std::uint8_t>();
@@ -194,7 +203,8 @@ UnwrapMethod unwrap_method(const UnwrapOptions& options) {
 Unwrapper::Unwrapper(const SensorModel& sensor, const UnwrapOptions& options)
     : options_(options),
       method_(unwrap_method(options)),
-      limits_(beat_limits(sensor, options.max_range_m)) {
+      limits_(beat_limits(sensor, options.max_range_m)),
+      saturation_amplitude_(sensor.saturation_amplitude) {
   const bool knows_camera = sensor.camera.width_px > 0 && sensor.camera.fx_px > 0;
   const bool needs_rays =
       method_ == UnwrapMethod::joint && options.fuse_frequencies && options.correct_exposure;
@@ -203,7 +213,9 @@ Unwrapper::Unwrapper(const SensorModel& sensor, const UnwrapOptions& options)
 
 UnwrapResult Unwrapper::unwrap(const DualFrequencyFrame& frame) {
   check(frame);
-  const ImageU8 valid = pixels_with_return(frame);
+  const ImageU8 returned = pixels_with_return(frame);
+  const ImageU8 saturated = saturated_pixels(frame, saturation_amplitude_);
+  const ImageU8 valid = (saturated == 0).select(returned, std::uint8_t{0});
   const DualFrequencyFrame returns = with_returns_only(frame, valid);
   const PhaseNoise noise = estimate_phase_noise(returns);
   const auto unwrap_returns = [&] {
@@ -221,6 +233,9 @@ UnwrapResult Unwrapper::unwrap(const DualFrequencyFrame& frame) {
     return leave_wrapped(returns, valid, limits_, noise);
   };
   UnwrapResult result = unwrap_returns();
+  const auto because_saturated = static_cast<std::uint8_t>(InvalidReason::saturated);
+  result.image.reason =
+      (returned != 0 && saturated != 0).select(because_saturated, result.image.reason);
   result.phase_noise_cycles = median_phase_noise_cycles(returns, noise);
   return result;
 }

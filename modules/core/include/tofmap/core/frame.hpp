@@ -8,12 +8,14 @@
 
 namespace tofmap {
 
-/// What is fixed over a recording: the camera, its two frequencies, and how far the scene
-/// can reach (0: not known; then the pair's combined range limits the wraps).
+/// What is fixed over a recording: the camera, its two frequencies, how far the scene can reach
+/// (0: not known; then the pair's combined range limits the wraps), and the amplitude from which on
+/// a pixel counts as saturated, its phase as spoiled (0: none does).
 struct SensorModel {
   CameraModel camera;
   Modulation modulation;
   double max_range_m = 0;
+  double saturation_amplitude = 0;
 };
 
 /// What a dual-frequency time-of-flight camera measures at one instant.

@@ -17,6 +17,7 @@ enum class InvalidReason : std::uint8_t {
   jump_edge = 4,       ///< a flying pixel between two surfaces
   out_of_range = 5,    ///< the range lies outside what is allowed
   ambiguous = 6,       ///< the frequencies cannot tell two equally likely wrap counts apart
+  saturated = 7,       ///< the signal is too strong to be measured at one of the frequencies
 };
 
 /// The name of a reason, as the documentation spells it.

@@ -73,8 +73,9 @@ struct UnwrapResult {
 /// range_m is radial: (phase_a + n) λ_A, or for `joint` what both frequencies say together. Pixels
 /// without a return at either frequency are invalid (no_return) and take no part, for every
 /// method, so that methods compare. `joint` makes those invalid (ambiguous) that have two equally
-/// likely counts which the pair of frequencies cannot tell apart.
-/// sigma_m is what the phase noise, estimated from each frame, makes of the range.
+/// likely counts which the pair of frequencies cannot tell apart. Pixels whose amplitude reaches
+/// the sensor's saturation_amplitude are as without a return, but with a reason of their own
+/// (saturated). sigma_m is what the phase noise, estimated from each frame, makes of the range.
 /// confidence is the probability that the count is right. That of `joint` is calibrated
 /// (docs/unwrapping.md has the measurement); those of the other methods order pixels.
 /// Frames do not depend on one another; the same frame and options give the same bits. The object
@@ -91,6 +92,7 @@ class Unwrapper {
   UnwrapOptions options_;
   UnwrapMethod method_;
   BeatLimits limits_;
+  double saturation_amplitude_;
   PixelRays rays_;  ///< empty if they are not needed
   CountEstimator estimator_;
   JumpPropagation propagation_;
