@@ -86,9 +86,10 @@ int run_evaluate(const EvaluateArguments& arguments) {
   out.commit();
   if (!results.empty()) print_table(report);
   if (!quiet) std::printf("report: %s\n", (out.final_path() / "report.json").c_str());
-  if (down_to_map && !results.empty()) {
+  if (!results.empty()) {
     add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
-      write_comparison(folder, results, options.pictures);
+      write_method_pictures(folder, source, methods, options.pipeline.unwrap, options.pictures);
+      if (down_to_map) write_comparison(folder, results, options.pictures);
     });
   }
   return interrupted ? exit_status::interrupted : exit_status::done;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include <tofmap/evaluation/range_score.hpp>
 #include <tofmap/unwrap/jump_estimate.hpp>
 #include <tofmap/visualization/cloud_pictures.hpp>
 #include <tofmap/visualization/drawing.hpp>
@@ -68,6 +69,16 @@ void write_pictures_of(const DualFrequencyFrame& frame, const SensorModel& senso
   write("cloud", cloud_picture(unwrapped, wrapped_m, rays));
 }
 
+/// The method, and how much of the frame it gets wrong, if that is known.
+std::string method_title(const std::string& method, const RangeImage& image,
+                         const std::optional<ImageF>& truth_m, double wavelength_m) {
+  if (!truth_m) return method;
+  char title[80];
+  std::snprintf(title, sizeof title, "%s: %.1f %% wrong", method.c_str(),
+                score_ranges(image, *truth_m, wavelength_m).wrong_wrap_percent);
+  return title;
+}
+
 }  // namespace
 
 std::vector<OptionField<PictureOptions>> PictureOptions::fields() {
@@ -87,6 +98,26 @@ void write_frame_pictures(const std::filesystem::path& folder, const SequenceRea
     if (!frame.frame) continue;
     const auto& file = source.files()[static_cast<std::size_t>(index)];
     write_pictures_of(*frame.frame, source.sensor(), rays, unwrap, folder / file.phase_a.stem());
+  }
+}
+
+void write_method_pictures(const std::filesystem::path& folder, const SequenceReader& source,
+                           const std::vector<std::string>& methods, UnwrapOptions unwrap,
+                           const PictureOptions& options) {
+  const double wavelength_m = source.sensor().modulation.wavelength_a_m();
+  for (const int index : spread_indices(*source.frame_count(), options.frames)) {
+    const SourcedFrame frame = source.read(index);
+    if (!frame.frame) continue;
+    const std::optional<ImageF> truth_m = source.range_truth(index);
+    std::vector<MethodRanges> ranges;
+    for (const std::string& method : methods) {
+      unwrap.method = method;
+      const RangeImage image = tofmap::unwrap(*frame.frame, source.sensor(), unwrap).image;
+      ranges.push_back({method_title(method, image, truth_m, wavelength_m), image.range_m});
+    }
+    const auto& file = source.files()[static_cast<std::size_t>(index)];
+    write_picture(folder / (file.phase_a.stem().string() + "_methods.png"),
+                  method_picture(ranges, truth_m.value_or(ImageF()), wavelength_m));
   }
 }
 

@@ -28,6 +28,11 @@ struct PictureOptions {
 void write_frame_pictures(const std::filesystem::path& folder, const SequenceReader& source,
                           const UnwrapOptions& unwrap, const PictureOptions& options);
 
+/// Writes what every method makes of a few frames, as `<frame>_methods.png`.
+void write_method_pictures(const std::filesystem::path& folder, const SequenceReader& source,
+                           const std::vector<std::string>& methods, UnwrapOptions unwrap,
+                           const PictureOptions& options);
+
 /// Writes the map from above and from inside, as map_above.png and map_inside.png.
 void write_map_pictures(const std::filesystem::path& folder, const MapCloud& map,
                         const Trajectory& trajectory, const PictureOptions& options);

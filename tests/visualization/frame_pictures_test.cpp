@@ -47,6 +47,23 @@ TEST(WrapCountPicture, HasAColorForEveryCount) {
   EXPECT_EQ(count(picture, wrap_count_color(1)), 0) << "the legend names what occurs alone";
 }
 
+TEST(MethodPicture, ShowsWhichPixelsAreWrapsOff) {
+  const ImageF truth = ImageF::Constant(20, 20, 6);
+  MethodRanges near{"near", truth - 5};
+  MethodRanges right{"right", truth + 0.1F};
+  const Picture one = method_picture({near}, truth, 5);
+  const Picture two = method_picture({near, right}, truth, 5);
+  const Rgb too_near{0, 90, 181};
+  const auto count = [&](const Picture& picture) {
+    return std::count(picture.pixels.begin(), picture.pixels.end(), too_near);
+  };
+  EXPECT_GT(count(one), 340 * 340);
+  EXPECT_EQ(count(one), count(two)) << "what is right is not blue";
+  EXPECT_GT(two.width_px, one.width_px + 340);
+  // Without truth there are no errors to draw.
+  EXPECT_EQ(count(method_picture({near}, ImageF(), 5)), 0);
+}
+
 TEST(JumpPicture, MixesColorsByProbability) {
   std::array<ImageF, 3> x;
   for (ImageF& plane : x) plane = ImageF::Zero(10, 19);

@@ -17,8 +17,8 @@ constexpr int gap_px = 16;
 /// Every pixel of an image by its colour, magnified to a picture of about the same size for all
 /// cameras.
 template <class Color>
-Picture image_picture(Eigen::Index rows, Eigen::Index cols, const Color& color) {
-  constexpr Eigen::Index wanted_width_px = 530;
+Picture image_picture(Eigen::Index rows, Eigen::Index cols, const Color& color,
+                      Eigen::Index wanted_width_px = 530) {
   Picture small(static_cast<int>(cols), static_cast<int>(rows));
   for (int v = 0; v < small.height_px; ++v) {
     for (int u = 0; u < small.width_px; ++u) small.at(u, v) = color(v, u);
@@ -31,6 +31,19 @@ Picture image_picture(Eigen::Index rows, Eigen::Index cols, const Color& color) 
 double round_limit_m(const ImageF& range_m) {
   constexpr double share = 0.998;
   return std::max(1.0F, std::ceil(finite_quantile(range_m, share).value_or(1)));
+}
+
+/// How many wraps a pixel is off, and whether it is farther or nearer than the truth.
+namespace wrap_errors {
+constexpr Rgb none{232, 232, 232};
+constexpr Rgb too_near{0, 90, 181};
+constexpr Rgb too_far{220, 120, 0};
+}  // namespace wrap_errors
+
+Rgb wrap_error_color(float range_m, float truth_m, double wavelength_m) {
+  if (std::isnan(range_m) || std::isnan(truth_m)) return colors::white;
+  const double wraps = std::round((range_m - truth_m) / wavelength_m);
+  return wraps < 0 ? wrap_errors::too_near : wraps > 0 ? wrap_errors::too_far : wrap_errors::none;
 }
 
 Picture jump_panel(const std::array<ImageF, 3>& planes) {
@@ -85,6 +98,45 @@ Picture confidence_picture(const RangeImage& unwrapped) {
       {color_bar(scale, panel.height_px - 3 * gap_px), color_key({{colors::invalid, "no range"}})},
       gap_px);
   return with_margin(beside({panel, legend}, gap_px), gap_px);
+}
+
+Picture method_picture(const std::vector<MethodRanges>& methods, const ImageF& truth_m,
+                       double wavelength_m) {
+  constexpr Eigen::Index panel_width_px = 352;  // several fit on a screen
+  const bool has_truth = truth_m.size() > 0;
+  double limit_m = has_truth ? round_limit_m(truth_m) : 1;
+  if (!has_truth) {
+    for (const MethodRanges& method : methods) {
+      limit_m = std::max(limit_m, round_limit_m(method.range_m));
+    }
+  }
+  const ColorScale scale(0, limit_m, "range, m");
+  const auto range_panel = [&](const ImageF& range_m) {
+    return image_picture(
+        range_m.rows(), range_m.cols(), [&](int v, int u) { return scale(range_m(v, u)); },
+        panel_width_px);
+  };
+  const auto error_panel = [&](const ImageF& range_m) {
+    return image_picture(
+        range_m.rows(), range_m.cols(),
+        [&](int v, int u) { return wrap_error_color(range_m(v, u), truth_m(v, u), wavelength_m); },
+        panel_width_px);
+  };
+  std::vector<Picture> columns;
+  if (has_truth) {
+    const Picture key = color_key({{wrap_errors::none, "wrap is right"},
+                                   {wrap_errors::too_near, "too near, by one wrap or more"},
+                                   {wrap_errors::too_far, "too far"},
+                                   {colors::invalid, "above: no range"}});
+    columns.push_back(stacked({titled(range_panel(truth_m), "truth"), key}, gap_px));
+  }
+  for (const MethodRanges& method : methods) {
+    std::vector<Picture> panels{titled(range_panel(method.range_m), method.title)};
+    if (has_truth) panels.push_back(error_panel(method.range_m));
+    columns.push_back(stacked(panels, gap_px));
+  }
+  columns.push_back(color_bar(scale, columns.back().height_px / 2));
+  return with_margin(beside(columns, gap_px), gap_px);
 }
 
 Picture jump_picture(const std::vector<JumpStage>& stages) {

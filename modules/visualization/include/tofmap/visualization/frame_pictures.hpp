@@ -22,6 +22,18 @@ Picture wrap_count_picture(const ImageU8& wrap_count);
 /// How sure the wrap counts are, on a scale from 0 to 1, with a legend.
 Picture confidence_picture(const RangeImage& unwrapped);
 
+/// What one method makes of a frame.
+struct MethodRanges {
+  std::string title;
+  ImageF range_m;  ///< radial, NaN invalid
+};
+
+/// One frame by several methods: their ranges in a row on one colour scale, and below them how many
+/// wraps each pixel is off, if the true ranges (NaN unknown) are there; these come first then. 0 x
+/// 0: they are not.
+Picture method_picture(const std::vector<MethodRanges>& methods, const ImageF& truth_m,
+                       double wavelength_m);
+
 /// The probabilities of jump nodes, as in figure 7 of the paper: a row a stage, the nodes in x
 /// direction left and those in y direction right. Planes are of configurations −1, 0, +1.
 struct JumpStage {
