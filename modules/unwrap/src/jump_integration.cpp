@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -21,9 +22,12 @@
 namespace tofmap {
 namespace {
 
-/// Bridges are sorted by rank in so many steps, which is linear in time and finer than ranks are
-/// meant.
-constexpr int rank_steps = 256;
+/// Bridges are sorted by rank in steps, which is linear in time: by what their support lacks to
+/// certainty, eight steps an octave, down to what rounding leaves of it.
+constexpr int rank_shift = 20;
+constexpr float least_lack = 1.0F / (1 << 24);
+constexpr int least_lack_step = std::bit_cast<std::int32_t>(least_lack) >> rank_shift;
+constexpr int rank_steps = (std::bit_cast<std::int32_t>(1.0F) >> rank_shift) - least_lack_step + 1;
 
 /// Nodes of an image, decided: configurations, marginals and ranks of the most likely ones.
 struct Decisions {
@@ -65,8 +69,10 @@ TOFMAP_VECTOR_CLONES void decide(int nodes, const Configurations& marginal_,
     certainty[i] = is_none ? none : side;
     const float support = is_none ? none * evidence.none[i] : side * side_evidence;
     const bool is_present = none == none;
-    const auto below = static_cast<std::int32_t>((1 - (is_present ? support : 0)) *
-                                                 static_cast<float>(rank_steps - 1));
+    const float lack = 1 - support;
+    const float counted = lack > least_lack ? lack : least_lack;
+    const std::int32_t below =
+        (std::bit_cast<std::int32_t>(counted) >> rank_shift) - least_lack_step;
     rank[i] = is_present ? below : rank_steps;
   }
 }
