@@ -4,7 +4,9 @@
 #include "exact_enumeration.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -171,6 +173,45 @@ TEST(SideMedians, AreCutShortAtBordersAndPassOverMissingPixels) {
   EXPECT_FLOAT_EQ(medians.pos(0, 0), 2);  // {5, NaN, 2}: the lower middle
   EXPECT_FLOAT_EQ(medians.neg(0, 3), 2);  // {NaN, 2} and 5
   EXPECT_FLOAT_EQ(medians.pos(0, 3), 3);  // {3}
+}
+
+TEST(SideMedians, AreThoseOfEachWindowByItself) {
+  ImageF image(21, 70);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> value(-1, 3);
+  for (float& v : image.reshaped()) v = value(random) > 2.5F ? NAN : value(random);
+  const auto median = [&](Eigen::Index row, Eigen::Index col, Eigen::Index rows,
+                          Eigen::Index cols) {
+    std::vector<float> window;
+    for (Eigen::Index v = std::max<Eigen::Index>(row, 0); v < std::min(row + rows, image.rows());
+         ++v) {
+      for (Eigen::Index u = std::max<Eigen::Index>(col, 0); u < std::min(col + cols, image.cols());
+           ++u) {
+        if (!std::isnan(image(v, u))) window.push_back(image(v, u));
+      }
+    }
+    std::sort(window.begin(), window.end());
+    return window.empty() ? NAN : window[(window.size() - 1) / 2];
+  };
+  const auto expect_same = [](float found, float expected) {
+    if (std::isnan(expected)) {
+      ASSERT_TRUE(std::isnan(found));
+    } else {
+      ASSERT_EQ(found, expected);
+    }
+  };
+  for (const int k : {1, 2, 5, 8, 25}) {
+    const SideMedians x = side_medians_x(image, k);
+    const SideMedians y = side_medians_y(image, k);
+    for (Eigen::Index v = 0; v + 1 < image.rows(); ++v) {
+      for (Eigen::Index u = 0; u + 1 < image.cols(); ++u) {
+        expect_same(x.neg(v, u), median(v, u - k + 1, 1, k));
+        expect_same(x.pos(v, u), median(v, u + 1, 1, k));
+        expect_same(y.neg(v, u), median(v - k + 1, u, k, 1));
+        expect_same(y.pos(v, u), median(v + 1, u, k, 1));
+      }
+    }
+  }
 }
 
 }  // namespace

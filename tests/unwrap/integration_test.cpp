@@ -166,6 +166,27 @@ TEST(Unwrapping, GivesPixelsWithoutAReturnNoRange) {
   EXPECT_EQ(result.image.count_valid(), 16 * 24 - 1);
 }
 
+TEST(Unwrapping, OfAFrameDoesNotDependOnTheFramesBefore) {
+  TwoWalls near = two_walls(3, 9);
+  TwoWalls far = two_walls(18, 7);
+  far.frame.phase_a.block(0, 20, 9, 4).setConstant(NAN);
+  TwoWalls small = two_walls(4, 12);
+  for (ImageF* phase : {&small.frame.phase_a, &small.frame.phase_b}) {
+    *phase = ImageF(phase->topLeftCorner(11, 7));
+  }
+  for (const char* method : {"joint", "jump", "single"}) {
+    UnwrapOptions options;
+    options.method = method;
+    Unwrapper unwrapper(near.sensor, options);
+    for (const TwoWalls* walls : {&near, &far, &small, &near, &near}) {
+      const RangeImage kept = unwrapper.unwrap(walls->frame).image;
+      const RangeImage fresh = unwrap(walls->frame, near.sensor, options).image;
+      EXPECT_TRUE((kept.wrap_count == fresh.wrap_count).all()) << method;
+      EXPECT_TRUE((kept.confidence == fresh.confidence).all()) << method;
+    }
+  }
+}
+
 TEST(Unwrapping, SaysWhichPixelsAreSaturated) {
   TwoWalls walls = two_walls(3, 9);
   walls.sensor.saturation_amplitude = 1000;
