@@ -3,21 +3,16 @@
 
 #include "tofmap/unwrap/jump_integration.hpp"
 
-#include "fast_math.hpp"
 #include "offset_union.hpp"
+#include "region_fits.hpp"
 #include "vector_clones.hpp"
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <span>
-#include <utility>
-
-#include <tofmap/core/range_image.hpp>
 
 namespace tofmap {
 namespace {
@@ -142,153 +137,6 @@ RelativeCounts read_forest(OffsetUnion& forest, const ImageU8& valid, const Anch
   return out;
 }
 
-/// Adds the costs `other` of counts in a row to `costs`, where the count of the other region is the
-/// one plus `offset`; any count beyond costs `beyond`. `other` has room for as many numbers before
-/// and after it, which are read and dropped: whole vectors are loaded wherever they begin. Returns
-/// the least sum.
-TOFMAP_VECTOR_CLONES float add_shifted(const float* other, float beyond, int offset, int size,
-                                       float* costs) {
-  constexpr int lanes = 16;  // of the longest vector of a processor
-  const int shift = std::clamp(offset, -size, size);
-  const float* shifted = other + shift;
-  std::array<float, lanes> least;
-  least.fill(std::numeric_limits<float>::infinity());
-  for (int n = 0; n < size; n += lanes) {
-#pragma GCC ivdep
-    for (int k = 0; k < lanes; ++k) {
-      const float added = shifted[n + k];
-      const auto place = static_cast<unsigned>(n + k + shift);
-      const float sum = costs[n + k] + (place < static_cast<unsigned>(size) ? added : beyond);
-      float& lane = least[static_cast<std::size_t>(k)];
-      lane = sum < lane ? sum : lane;
-      costs[n + k] = sum;
-    }
-  }
-  return least_of(least);
-}
-
-/// How well regions fit the beat. A region is named by its root, and its count is the root's.
-///
-/// Most joins are between regions whose best counts agree; then both fit together as well as apart,
-/// and their pixels need only be remembered. Costs of all counts are summed where they do not.
-class RegionFits {
- public:
-  RegionFits(const BeatCost& beat, const ImageU8& nearest, OffsetUnion& forest)
-      : beat_(beat),
-        forest_(forest),
-        size_(static_cast<int>(beat.size())),
-        regions_(static_cast<std::size_t>(nearest.size())),
-        next_(regions_.size(), none),
-        sums_(2 * beat.size()),
-        both_(beat.size()) {
-    for (std::size_t i = 0; i < regions_.size(); ++i) {
-      const auto pixel = static_cast<int>(i);
-      const int best = nearest.data()[i];
-      if (best == invalid_wrap_count) continue;
-      regions_[i] = {best, pixel, pixel};
-    }
-  }
-
-  int best_count(int root) const { return region(root).best; }
-
-  /// Makes `other`, whose count is that of `root` plus `offset`, part of the region of `root`,
-  /// unless that costs more than `tolerated(…)` beyond what they cost apart. The forest joins them
-  /// afterwards.
-  template <class Tolerated>
-  bool join(int root, int other, int offset, const Tolerated& tolerated) {
-    Region& into = region(root);
-    Region& from = region(other);
-    if (into.best + offset == from.best) {
-      if (from.slot != none) {
-        sum_up(root);
-        sum_up(other);
-        add_shifted(slot(from.slot), bound(other), offset, size_, slot(region(root).slot));
-      }
-    } else {
-      sum_up(root);
-      sum_up(other);
-      std::copy_n(slot(into.slot), size_, both_.data());
-      const float least = add_shifted(slot(from.slot), bound(other), offset, size_, both_.data());
-      const float apart = slot(into.slot)[into.best + 1] + slot(from.slot)[from.best + 1];
-      if (least - apart > tolerated()) return false;
-      std::copy(both_.begin(), both_.end(), slot(into.slot));
-      into.best =
-          static_cast<int>(std::find(both_.begin(), both_.end(), least) - both_.begin()) - 1;
-    }
-    if (from.slot != none) free_slots_.push_back(std::exchange(from.slot, none));
-    append(from, into);
-    return true;
-  }
-
- private:
-  static constexpr int none = -1;
-
-  struct Region {
-    int best = 0;      ///< count of the root that costs least
-    int first = none;  ///< pixels that are not summed yet, as a list
-    int last = none;
-    int slot = none;  ///< of the costs of all others
-  };
-
-  Region& region(int root) { return regions_[static_cast<std::size_t>(root)]; }
-  const Region& region(int root) const { return regions_[static_cast<std::size_t>(root)]; }
-
-  float* slot(int number) { return &sums_[static_cast<std::size_t>((number + 1) * size_)]; }
-
-  float bound(int root) const { return BeatCost::bound * static_cast<float>(forest_.size(root)); }
-
-  int new_slot() {
-    int number = 0;
-    if (free_slots_.empty()) {
-      // A slot's room stays before the first and after the last.
-      number = static_cast<int>(sums_.size()) / size_ - 2;
-      sums_.resize(sums_.size() + static_cast<std::size_t>(size_));
-    } else {
-      number = free_slots_.back();
-      free_slots_.pop_back();
-    }
-    std::fill_n(slot(number), size_, 0.0F);
-    return number;
-  }
-
-  /// Sums the costs of all pixels of a region.
-  void sum_up(int root) {
-    Region& of = region(root);
-    if (of.slot == none) of.slot = new_slot();
-    const std::span<float> sums(slot(of.slot), beat_.size());
-    for (int pixel = of.first; pixel != none; pixel = next_[static_cast<std::size_t>(pixel)]) {
-      beat_.add(pixel, forest_.find(pixel).offset, sums);
-    }
-    of.first = of.last = none;
-  }
-
-  /// Hands the pixels that are not summed over.
-  void append(Region& from, Region& into) {
-    if (from.first == none) return;
-    if (into.first == none) {
-      into.first = from.first;
-    } else {
-      next_[static_cast<std::size_t>(into.last)] = from.first;
-    }
-    into.last = from.last;
-    from.first = from.last = none;
-  }
-
-  const BeatCost& beat_;
-  OffsetUnion& forest_;
-  int size_;
-  std::vector<Region> regions_;  ///< by root
-  std::vector<int> next_;        ///< of every pixel in its list
-  std::vector<float> sums_;
-  std::vector<int> free_slots_;
-  std::vector<float> both_;
-};
-
-/// ln(P / (1 − P)), never negative; certainties round to 1 in float, so it is bounded at 1 − 1e-6.
-float log_odds(float certainty) {
-  return std::max(std::log(certainty / std::max(1 - certainty, 1e-6F)), 0.0F);
-}
-
 /// Grows the forest over all bridges, from the highest rank to the lowest. `may_join(p, q, offset,
 /// bridge)` is asked before the tree with the root q becomes part of the larger one with the root
 /// p, and may note it.
@@ -338,9 +186,8 @@ RelativeCounts integrate_jumps_with_beat(const JumpProbabilities& marginals,
                                          double objection_share) {
   OffsetUnion forest(static_cast<int>(valid.size()));
   RegionFits fits(beat, nearest, forest);
-  const auto share = static_cast<float>(objection_share);
   const auto may_join = [&](int root, int child, int offset, const Bridge& bridge) {
-    return fits.join(root, child, offset, [&] { return share * log_odds(bridge.certainty); });
+    return fits.join(root, child, offset, bridge.certainty, objection_share);
   };
   grow_forest(marginals, evidence, valid.cols(), forest, may_join);
   return read_forest(forest, valid, [&](int root) { return fits.best_count(root); });

@@ -29,8 +29,7 @@ class OffsetUnion {
       at->to_parent += next.to_parent;
       at->parent = next.parent;
       offset += at->to_parent;
-      number = at->parent;
-      at = &member(number);
+      at = &member(at->parent);
     }
     return {at->parent, offset + at->to_parent};
   }
