@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -204,6 +205,28 @@ TEST(Unwrapping, SaysWhichPixelsAreSaturated) {
   EXPECT_EQ(image.count_valid(), 16 * 24 - 3);
   walls.sensor.saturation_amplitude = 0;
   EXPECT_EQ(unwrap(walls.frame, walls.sensor, {}).image.count_valid(), 16 * 24 - 1);
+}
+
+TEST(Unwrapping, TakesImagesOfAnyShape) {
+  struct Shape {
+    Eigen::Index rows;
+    Eigen::Index cols;
+  };
+  for (const auto& [rows, cols] : {Shape{1, 1}, {1, 9}, {9, 1}, {2, 2}, {16, 3}, {3, 20}}) {
+    TwoWalls walls = two_walls(7, 7);
+    for (ImageF* phase : {&walls.frame.phase_a, &walls.frame.phase_b}) {
+      *phase = ImageF(phase->topLeftCorner(rows, cols));
+    }
+    for (const char* method : {"none", "pixel", "single", "jump", "joint"}) {
+      UnwrapOptions options;
+      options.method = method;
+      const RangeImage image = unwrap(walls.frame, walls.sensor, options).image;
+      EXPECT_EQ(image.count_valid(), rows * cols) << method;
+      const bool knows_count = std::string(method) != "none" && std::string(method) != "single";
+      if (!knows_count) continue;
+      EXPECT_LT((image.range_m - 7).abs().maxCoeff(), 0.1) << method;
+    }
+  }
 }
 
 TEST(Unwrapping, OfAnImageWithoutAnyReturnIsEmpty) {

@@ -263,6 +263,7 @@ struct Slant {
 /// Calls `visit` with all nodes of an image of `rows` x `cols` of them, band by band.
 template <class Visit>
 void for_each_slant(Eigen::Index rows, Eigen::Index cols, const Visit& visit) {
+  if (rows == 0 || cols == 0) return;  // an image of one row or column
   const auto last_row = static_cast<int>(rows) - 1;
   const auto last_col = static_cast<int>(cols) - 1;
   for (int band = 0; band <= last_row; band += band_rows) {
