@@ -223,6 +223,7 @@ std::vector<Variant> ablations() {
       variant("joint", [](UnwrapOptions&) {}),
       variant("no coarser scales", [](auto& o) { o.scales = 1; }),
       variant("amplitude tells of no edge", [](auto& o) { o.amplitude_edges = false; }),
+      variant("mixed pixels believed", [](auto& o) { o.mixed_pixels = false; }),
       variant("no outliers", [](auto& o) { o.outlier_share = 1e-4; }),
       variant("surfaces face the camera (1 cm)", [](auto& o) { o.slope_m = 0.01; }),
       variant("1 iteration", [](auto& o) { o.count_iterations = 1; }),

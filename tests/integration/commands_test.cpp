@@ -235,6 +235,14 @@ TEST_F(Commands, EvaluateComparesTheMethodsThatAreNamedAsFarAsAskedFor) {
   EXPECT_THAT(names_in(out_), ElementsAre("options.yaml", "report.json"));
 }
 
+TEST_F(Commands, EvaluateDrawsFramesByEveryMethod) {
+  ASSERT_EQ(run("evaluate", {"--set", "evaluation.methods=jump none", "--set",
+                             "evaluation.down_to=unwrapping", "--set", "pictures.frames=1"})
+                .status,
+            0);
+  EXPECT_THAT(names_in(out_ / "pictures"), ElementsAre(HasSubstr("_methods.png")));
+}
+
 TEST_F(Commands, EvaluateRefusesMethodsThatThereAreNot) {
   for (const std::string methods : {"jump guess", "jump jump", " "}) {
     const Finished finished = run("evaluate", {"--set", "evaluation.methods=" + methods});

@@ -108,7 +108,7 @@ Finished WithRecording::run(const std::string& command,
                             const std::vector<std::string>& more) const {
   std::vector<std::string> arguments{command, sequence_.string()};
   if (command != "info") arguments.insert(arguments.end(), {"--out", out_.string()});
-  if (command == "unwrap" || command == "map") {
+  if (command != "info" && command != "simulate") {
     arguments.insert(arguments.end(), {"--set", "pictures.frames=0"});
   }
   arguments.insert(arguments.end(), more.begin(), more.end());

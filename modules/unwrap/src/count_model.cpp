@@ -29,13 +29,13 @@ struct Pixels {
   const float* amplitude;
   const float* variance_a_m2;
   const float* variance_b_m2;
+  const float* outlier_share;
 };
 
 struct EvidenceScale {
   double wavelength_ratio;  ///< of A to B
   float wavelength_b_m;
   float farthest_cycles_a;
-  float outlier_share;
 };
 
 /// Pixels whose evidence is found at a time.
@@ -100,8 +100,8 @@ template <bool passes>
         const float other = 1 - size;
         density += exp_of_negative(-0.5F * precision[i] * other * other);
       }
-      const float likelihood =
-          scale.outlier_share + (1 - scale.outlier_share) * height[i] * density;
+      const float outlier = pixels.outlier_share[i];
+      const float likelihood = outlier + (1 - outlier) * height[i] * density;
       const float within = pixels.phase_a[i] <= farthest ? 1.0F : 0.0F;
       const float value = within * likelihood;
       at[i] = halved(value);
@@ -134,6 +134,39 @@ TOFMAP_VECTOR_CLONES void fill_sharp_evidence(const Pixels& pixels, const Eviden
                                               int counts, const Sharpness& sharpness,
                                               HalfFloat* evidence, std::size_t step) {
   fill_evidence_of<false>(Pixels(pixels), EvidenceScale(scale), counts, sharpness, evidence, step);
+}
+
+/// Amplitudes of pixels and their neighbours to four sides.
+struct Cross {
+  const float* here;
+  const float* left;
+  const float* right;
+  const float* above;
+  const float* below;
+};
+
+/// True if an amplitude lies between those of two opposite neighbours, at least `step` from both.
+[[gnu::always_inline]] inline bool lies_between(float one, float here, float other, float step) {
+  const float from_one = here - one;
+  const float to_other = other - here;
+  const float lesser = from_one < to_other ? from_one : to_other;
+  const float greater = from_one < to_other ? to_other : from_one;
+  return lesser > step || greater < -step;
+}
+
+/// 1 for pixels that see two surfaces, else 0.
+TOFMAP_VECTOR_CLONES void find_mixed(int count, const Cross& cross_, float noise, float* mixed) {
+  constexpr float least_contrast = 0.05F;  // shading of one surface changes less in a pixel
+  const Cross cross = cross_;
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) {
+    const float here = cross.here[i];
+    const float contrast = least_contrast * here;
+    const float step = contrast > noise ? contrast : noise;
+    const bool across = lies_between(cross.left[i], here, cross.right[i], step);
+    const bool along = lies_between(cross.above[i], here, cross.below[i], step);
+    mixed[i] = across || along ? 1.0F : 0.0F;
+  }
 }
 
 struct EdgeScale {
@@ -197,6 +230,28 @@ void CountModel::resize(int rows, int cols, int counts) {
   }
 }
 
+/// The beat of a pixel that sees two surfaces is that of none: its evidence is made flat. The outer
+/// pixels of the image are taken at their word.
+void CountModel::mark_mixed_pixels(const ImageF& amplitude, const PhaseNoise& noise) {
+  constexpr float flat = 0.999F;
+  constexpr double deviations = 2.5;  // of the difference of two amplitudes
+  // Noise of the amplitude, which is that of a signal's two parts, as of a phase of one radian.
+  const double sigma = 2 * std::numbers::pi * noise.scale_a;
+  const auto least_step = static_cast<float>(deviations * std::numbers::sqrt2 * sigma);
+  const auto rows = static_cast<int>(amplitude.rows());
+  const auto cols = static_cast<int>(amplitude.cols());
+  std::vector<float> mixed(static_cast<std::size_t>(std::max(cols, 2)));
+  for (int v = 1; v + 1 < rows; ++v) {
+    const float* here = amplitude.data() + v * cols + 1;
+    find_mixed(cols - 2, {here, here - 1, here + 1, here - cols, here + cols}, least_step,
+               mixed.data());
+    for (int u = 1; u + 1 < cols; ++u) {
+      if (mixed[static_cast<std::size_t>(u - 1)] > 0)
+        outlier_share_[layout_.place(u + v, v, 1)] = flat;
+    }
+  }
+}
+
 void CountModel::assign(const DualFrequencyFrame& frame, const BeatLimits& limits,
                         const PhaseNoise& noise, const CountPrior& prior) {
   const auto rows = static_cast<int>(frame.phase_a.rows());
@@ -222,15 +277,22 @@ void CountModel::assign(const DualFrequencyFrame& frame, const BeatLimits& limit
     }
   }
 
+  outlier_share_.assign(layout_.size(1), static_cast<float>(prior.outlier_share));
+  if (prior.mixed_pixels && frame.has_amplitude()) mark_mixed_pixels(frame.amplitude_a, noise);
+
   const auto pixels = [&](int d, int row, int count) {
     const std::size_t at = layout_.place(d, row, 1);
-    return Pixels{count,           &phase_a_[at],       &phase_b_[at],
-                  &amplitude_[at], &variance_a_m2_[at], &variance_b_m2_[at]};
+    return Pixels{count,
+                  &phase_a_[at],
+                  &phase_b_[at],
+                  &amplitude_[at],
+                  &variance_a_m2_[at],
+                  &variance_b_m2_[at],
+                  &outlier_share_[at]};
   };
   const EvidenceScale evidence_scale{
       limits.wavelength_a_m / limits.wavelength_b_m, wavelength_b,
-      static_cast<float>(limits.max_range_m / limits.wavelength_a_m + 0.05),
-      static_cast<float>(prior.outlier_share)};
+      static_cast<float>(limits.max_range_m / limits.wavelength_a_m + 0.05)};
   const EdgeScale edge_scale{wavelength_a, static_cast<float>(prior.slope_m * prior.slope_m),
                              static_cast<float>(prior.edge_share),
                              static_cast<float>(1 / (2 * prior.edge_reach_m)),

@@ -14,7 +14,8 @@ namespace {
 CountEstimation count_estimation(const UnwrapOptions& options) {
   return {.prior = {.outlier_share = options.outlier_share,
                     .slope_m = options.slope_m,
-                    .amplitude_edges = options.amplitude_edges},
+                    .amplitude_edges = options.amplitude_edges,
+                    .mixed_pixels = options.mixed_pixels},
           .iterations = options.count_iterations,
           .scales = options.scales};
 }

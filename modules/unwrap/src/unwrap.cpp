@@ -158,6 +158,9 @@ std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
        "joint: typical difference of true ranges between neighbours on a surface"},
       {"amplitude_edges", &O::amplitude_edges, 0, 1, "",
        "joint: a change of amplitude makes an edge likelier"},
+      {"mixed_pixels", &O::mixed_pixels, 0, 1, "",
+       "joint: a pixel with an amplitude between those of opposite neighbours has two surfaces, and "
+       "is left to them"},
       {"fuse_frequencies", &O::fuse_frequencies, 0, 1, "",
        "joint: ranges from both frequencies, weighted by their noise, not from A alone"},
       {"correct_exposure", &O::correct_exposure, 0, 1, "",

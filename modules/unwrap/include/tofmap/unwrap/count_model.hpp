@@ -20,6 +20,7 @@ struct CountPrior {
   double edge_share = 0.02;     ///< neighbours on different surfaces, at equal amplitude
   double edge_reach_m = 25;     ///< steps from one surface to another lie within ± this
   bool amplitude_edges = true;  ///< edges are likelier where the amplitude changes
+  bool mixed_pixels = true;  ///< pixels between bright and dark neighbours know nothing themselves
 };
 
 /// Probabilities of the wrap counts of all pixels, as a grid of factors (docs/unwrapping.md,
@@ -52,6 +53,7 @@ class CountModel {
 
  private:
   void resize(int rows, int cols, int counts);
+  void mark_mixed_pixels(const ImageF& amplitude, const PhaseNoise& noise);
 
   DiagonalLayout layout_;
   int counts_ = 0;
@@ -64,6 +66,7 @@ class CountModel {
   std::vector<float> amplitude_;
   std::vector<float> variance_a_m2_;
   std::vector<float> variance_b_m2_;
+  std::vector<float> outlier_share_;
 };
 
 }  // namespace tofmap

@@ -37,6 +37,7 @@ struct UnwrapOptions {
   double outlier_share = 0.4;
   double slope_m = 0.2;
   bool amplitude_edges = true;
+  bool mixed_pixels = true;
   bool fuse_frequencies = true;
   bool correct_exposure = true;
   // Of jump and single.
