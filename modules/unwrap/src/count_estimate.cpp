@@ -57,6 +57,41 @@ std::uint8_t nearest_count(float block_cycles, float phase, int counts) {
       std::clamp(static_cast<int>(std::lround(block_cycles - phase)), 0, counts - 1));
 }
 
+/// What the counts of a block, which the pixel is in, say of the pixel's: a factor for each.
+void set_hint(const CountBeliefs& coarse, Eigen::Index row, Eigen::Index col, float block_phase,
+              float phase, std::vector<float>& factors) {
+  // Blocks and pixels see the same light: little of what blocks say is news.
+  constexpr float news = 0.15F;
+  constexpr float least_share = 1e-3F;
+  const auto counts = static_cast<int>(factors.size());
+  const float best = coarse.probability(row, col);
+  const float rival = coarse.rival_probability(row, col);
+  const float others = (1 - best - rival) / static_cast<float>(std::max(counts - 2, 1));
+  const float least = std::max(others / best, least_share);
+  const auto set = [&](std::uint8_t count, float share) {
+    const int n = nearest_count(block_phase + static_cast<float>(count), phase, counts);
+    factors[static_cast<std::size_t>(n)] = std::pow(share, news);
+  };
+  std::fill(factors.begin(), factors.end(), std::pow(least, news));
+  set(coarse.rival(row, col), std::max(rival / best, least));
+  set(coarse.count(row, col), 1);
+}
+
+/// Lets noisy pixels hear what the blocks of 2 x 2 that they are in have found out.
+void hint(const DualFrequencyFrame& pixels, const PhaseNoise& noise,
+          const DualFrequencyFrame& blocks, const CountBeliefs& coarse, CountModel& model) {
+  std::vector<float> factors(static_cast<std::size_t>(model.counts()));
+  for (Eigen::Index v = 0; v < pixels.phase_a.rows(); ++v) {
+    for (Eigen::Index u = 0; u < pixels.phase_a.cols(); ++u) {
+      if (std::isnan(pixels.phase_a(v, u)) || sigma_cycles(pixels, noise, v, u) < loud_cycles) {
+        continue;
+      }
+      set_hint(coarse, v / 2, u / 2, blocks.phase_a(v / 2, u / 2), pixels.phase_a(v, u), factors);
+      model.weigh_evidence(static_cast<int>(v), static_cast<int>(u), factors);
+    }
+  }
+}
+
 /// What two scales together give to the count of the coarse one, which is the surer: both see the
 /// same light, so agreement makes nothing surer, and the choice of the surer one errs to its side.
 float joint_probability(float coarse, float fine, bool agree) {
@@ -127,30 +162,48 @@ DualFrequencyFrame halve(const DualFrequencyFrame& frame) {
   return out;
 }
 
+/// Prepares the scales that noise asks for, at most so many: their blocks and noise.
+int CountEstimator::divide(const DualFrequencyFrame& frame, const PhaseNoise& noise, int most) {
+  scales_.resize(static_cast<std::size_t>(most));
+  scales_[0].noise = noise;
+  const DualFrequencyFrame* finer = &frame;
+  int count = 1;
+  while (count < most && is_loud(*finer, scales_[static_cast<std::size_t>(count) - 1].noise)) {
+    Scale& scale = scales_[static_cast<std::size_t>(count)];
+    const PhaseNoise& finer_noise = scales_[static_cast<std::size_t>(count) - 1].noise;
+    scale.blocks = halve(*finer);
+    scale.noise = {finer_noise.scale_a / 2, finer_noise.scale_b / 2};
+    finer = &scale.blocks;
+    ++count;
+  }
+  return count;
+}
+
 CountBeliefs CountEstimator::estimate(const DualFrequencyFrame& frame, const BeatLimits& limits,
                                       const PhaseNoise& noise, const CountEstimation& options) {
-  scales_.resize(static_cast<std::size_t>(options.scales));
-  scales_[0].model.assign(frame, limits, noise, options.prior);
-  CountBeliefs beliefs = scales_[0].propagation.run(scales_[0].model, options.iterations);
-
-  const DualFrequencyFrame* last = &frame;
-  DualFrequencyFrame blocks;
-  PhaseNoise block_noise = noise;
-  CountPrior prior = options.prior;
-  int block_px = 1;
-  for (std::size_t s = 1; s < scales_.size() && is_loud(*last, block_noise); ++s) {
-    blocks = halve(*last);
-    last = &blocks;
-    block_noise = {block_noise.scale_a / 2, block_noise.scale_b / 2};
-    prior.slope_m *= 2;
-    block_px *= 2;
+  const int count = divide(frame, noise, options.scales);
+  const auto seen_at = [&](std::size_t s) -> const DualFrequencyFrame& {
+    return s == 0 ? frame : scales_[s].blocks;
+  };
+  for (auto s = static_cast<std::size_t>(count); s-- > 0;) {
     Scale& scale = scales_[s];
-    scale.model.assign(blocks, limits, block_noise, prior);
-    const CountBeliefs coarse = scale.propagation.run(scale.model, options.iterations);
-    adopt(frame, blocks, block_px, coarse, block_noise, limits.count_a, beliefs);
-    beliefs.iterations += coarse.iterations;
+    CountPrior prior = options.prior;
+    prior.slope_m *= static_cast<double>(1U << s);
+    scale.model.assign(seen_at(s), limits, scale.noise, prior);
+    if (static_cast<int>(s) + 1 < count) {
+      const Scale& coarser = scales_[s + 1];
+      hint(seen_at(s), scale.noise, coarser.blocks, coarser.beliefs, scale.model);
+    }
+    scale.beliefs = scale.propagation.run(scale.model, options.iterations);
+  }
+
+  CountBeliefs beliefs = scales_[0].beliefs;
+  for (std::size_t s = 1; s < static_cast<std::size_t>(count); ++s) {
+    const Scale& coarse = scales_[s];
+    adopt(frame, coarse.blocks, 1 << s, coarse.beliefs, coarse.noise, limits.count_a, beliefs);
+    beliefs.iterations += coarse.beliefs.iterations;
     beliefs.largest_message_change =
-        std::max(beliefs.largest_message_change, coarse.largest_message_change);
+        std::max(beliefs.largest_message_change, coarse.beliefs.largest_message_change);
   }
   beliefs.count = frame.phase_a.isNaN().select(invalid_wrap_count, beliefs.count);
   beliefs.probability = frame.phase_a.isNaN().select(0.0F, beliefs.probability);

@@ -321,6 +321,19 @@ void CountModel::assign(const DualFrequencyFrame& frame, const BeatLimits& limit
   }
 }
 
+void CountModel::weigh_evidence(int row, int col, std::span<const float> factors) {
+  const std::size_t place = layout_.place(row + col, row, static_cast<std::size_t>(counts_));
+  const std::size_t step = layout_.plane_step(row + col);
+  const auto weighed = [&](std::size_t n) {
+    return widened(evidence_[place + n * step]) * factors[n];
+  };
+  float best = 0;
+  for (std::size_t n = 0; n < factors.size(); ++n) best = std::max(best, weighed(n));
+  for (std::size_t n = 0; n < factors.size(); ++n) {
+    evidence_[place + n * step] = halved(std::max(weighed(n) / best, impossible));
+  }
+}
+
 std::vector<double> CountModel::evidence_of(int row, int col) const {
   const auto counts = static_cast<std::size_t>(counts_);
   std::size_t at = layout_.place(row + col, row, counts);

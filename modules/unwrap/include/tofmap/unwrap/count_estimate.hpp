@@ -34,10 +34,17 @@ class CountEstimator {
                         const PhaseNoise& noise, const CountEstimation& options);
 
  private:
+  /// What is seen at one scale: pixels, or blocks of them.
   struct Scale {
+    DualFrequencyFrame blocks;  ///< empty at the scale of pixels
+    PhaseNoise noise;
     CountModel model;
     CountPropagation propagation;
+    CountBeliefs beliefs;
   };
+
+  int divide(const DualFrequencyFrame& frame, const PhaseNoise& noise, int most);
+
   std::vector<Scale> scales_;
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <tofmap/core/frame.hpp>
@@ -41,6 +42,9 @@ class CountModel {
   /// its memory, so that frames of one size cost no allocation.
   void assign(const DualFrequencyFrame& frame, const BeatLimits& limits, const PhaseNoise& noise,
               const CountPrior& prior);
+
+  /// Multiplies the evidence of a pixel by a factor for each count. The best is 1 again then.
+  void weigh_evidence(int row, int col, std::span<const float> factors);
 
   const DiagonalLayout& layout() const { return layout_; }
   int counts() const { return counts_; }
