@@ -159,7 +159,8 @@ std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
       {"amplitude_edges", &O::amplitude_edges, 0, 1, "",
        "joint: a change of amplitude makes an edge likelier"},
       {"mixed_pixels", &O::mixed_pixels, 0, 1, "",
-       "joint: a pixel with an amplitude between those of opposite neighbours has two surfaces, and "
+       "joint: a pixel with an amplitude between those of opposite neighbours has two surfaces, "
+       "and "
        "is left to them"},
       {"fuse_frequencies", &O::fuse_frequencies, 0, 1, "",
        "joint: ranges from both frequencies, weighted by their noise, not from A alone"},
