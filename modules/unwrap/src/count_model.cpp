@@ -246,8 +246,8 @@ void CountModel::mark_mixed_pixels(const ImageF& amplitude, const PhaseNoise& no
     find_mixed(cols - 2, {here, here - 1, here + 1, here - cols, here + cols}, least_step,
                mixed.data());
     for (int u = 1; u + 1 < cols; ++u) {
-      if (mixed[static_cast<std::size_t>(u - 1)] > 0)
-        outlier_share_[layout_.place(u + v, v, 1)] = flat;
+      if (mixed[static_cast<std::size_t>(u - 1)] == 0) continue;
+      outlier_share_[layout_.place(u + v, v, 1)] = flat;
     }
   }
 }
