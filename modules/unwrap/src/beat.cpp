@@ -14,6 +14,7 @@
 
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/range_image.hpp>
+#include <tofmap/unwrap/diagonal_layout.hpp>
 
 namespace tofmap {
 namespace {
@@ -71,8 +72,8 @@ TOFMAP_VECTOR_CLONES void take_nearer(int pixels, const float* phase_a, const fl
   return is_within && cost < BeatCost::bound ? cost : BeatCost::bound;
 }
 
-/// Counts in a row, one in each lane: as many as the longest vector of a processor has.
-constexpr int count_lanes = 16;
+/// Counts in a row, one in each lane.
+constexpr int count_lanes = DiagonalLayout::lanes;
 
 /// Adds the costs of `size` counts of one pixel, and returns the least sum.
 TOFMAP_VECTOR_CLONES float add_costs(float phase_a, float beat_cycles, float precision,
@@ -179,7 +180,7 @@ ImageF reconstruct_cycles(const ImageF& phase_a, const ImageU8& counts) {
 BeatCost::BeatCost(const DualFrequencyFrame& frame, const BeatLimits& limits,
                    const PhaseNoise& noise)
     : count_a_(limits.count_a),
-      size_(static_cast<std::size_t>(count_a_ + 2 + count_lanes - 1) / count_lanes * count_lanes) {
+      size_(static_cast<std::size_t>(DiagonalLayout::whole_vectors(count_a_ + 2))) {
   const ImageF sigma_a = phase_sigma_cycles(frame.phase_a, frame.amplitude_a, noise.scale_a) *
                          static_cast<float>(limits.wavelength_a_m);
   const ImageF sigma_b = phase_sigma_cycles(frame.phase_b, frame.amplitude_b, noise.scale_b) *

@@ -8,6 +8,7 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include <tofmap/core/range_image.hpp>
 
@@ -197,7 +198,7 @@ CountBeliefs CountEstimator::estimate(const DualFrequencyFrame& frame, const Bea
     scale.beliefs = scale.propagation.run(scale.model, options.iterations);
   }
 
-  CountBeliefs beliefs = scales_[0].beliefs;
+  CountBeliefs beliefs = std::move(scales_[0].beliefs);
   for (std::size_t s = 1; s < static_cast<std::size_t>(count); ++s) {
     const Scale& coarse = scales_[s];
     adopt(frame, coarse.blocks, 1 << s, coarse.beliefs, coarse.noise, limits.count_a, beliefs);

@@ -15,6 +15,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <tofmap/unwrap/diagonal_layout.hpp>
+
 namespace tofmap {
 namespace {
 
@@ -200,7 +202,7 @@ Observations observe(const ImageF& range_m, const ImageF& residual_m, const Imag
 }
 
 /// Equations summed at a time, one in each lane.
-constexpr int lanes = 16;
+constexpr int lanes = DiagonalLayout::lanes;
 
 /// Sums of one lane each: the lower triangle of the information row by row, then the gradient.
 using LaneSums = std::array<std::array<float, lanes>, 27>;

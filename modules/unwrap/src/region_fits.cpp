@@ -14,6 +14,7 @@
 #include <utility>
 
 #include <tofmap/core/range_image.hpp>
+#include <tofmap/unwrap/diagonal_layout.hpp>
 
 namespace tofmap {
 namespace {
@@ -24,7 +25,7 @@ namespace {
 /// the least sum.
 TOFMAP_VECTOR_CLONES float add_shifted(const float* other, float beyond, int offset, int size,
                                        float* costs) {
-  constexpr int lanes = 16;  // of the longest vector of a processor
+  constexpr int lanes = DiagonalLayout::lanes;
   const int shift = std::clamp(offset, -size, size);
   const float* shifted = other + shift;
   std::array<float, lanes> least;
