@@ -34,22 +34,26 @@ bool finds_jumps(const UnwrapOptions& options) {
 /// Each term by itself, fused, and after propagation; probabilities sum to one in all of them.
 Picture jump_stages_picture(const DualFrequencyFrame& frame, const SensorModel& sensor,
                             const UnwrapOptions& options) {
-  const JumpEstimate jumps = estimate_jumps(frame, beat_limits(sensor, options.max_range_m),
-                                            estimate_phase_noise(frame), options);
-  constexpr double full_trust = 1;
-  constexpr double no_trust = 0;
-  const bool has_frequency = jumps.frequency.x[0].size() > 0;
-  const JumpProbabilities& f_d = jumps.discontinuity;
-  const JumpProbabilities& f_f = has_frequency ? jumps.frequency : f_d;
-  const JumpProbabilities by_discontinuity = fuse(f_d, f_f, full_trust, no_trust);
-  const JumpProbabilities by_frequency = fuse(f_d, f_f, no_trust, full_trust);
+  const PhaseSigma sigma(frame, estimate_phase_noise(frame));
+  const BeatLimits limits = beat_limits(sensor, options.max_range_m);
+  const auto estimate = [&](double trust_discontinuity, double trust_frequency) {
+    UnwrapOptions trusting = options;
+    trusting.trust_discontinuity = trust_discontinuity;
+    trusting.trust_frequency = trust_frequency;
+    JumpEstimator estimator;
+    return estimator.estimate(frame, sigma, limits, trusting);
+  };
+  const JumpEstimate by_discontinuity = estimate(1, 0);
+  const JumpEstimate by_frequency = estimate(0, 1);
+  const JumpEstimate by_both = estimate(options.trust_discontinuity, options.trust_frequency);
   std::vector<JumpStage> stages{
-      {"discontinuity term f_d", &by_discontinuity.x, &by_discontinuity.y}};
-  if (has_frequency) {
-    stages.push_back({"frequency term f_f", &by_frequency.x, &by_frequency.y});
-    stages.push_back({"fused", &jumps.evidence.x, &jumps.evidence.y});
+      {"discontinuity term f_d", &by_discontinuity.evidence.x, &by_discontinuity.evidence.y}};
+  if (unwrap_method(options) == UnwrapMethod::jump) {
+    stages.push_back({"frequency term f_f", &by_frequency.evidence.x, &by_frequency.evidence.y});
+    stages.push_back({"fused", &by_both.evidence.x, &by_both.evidence.y});
   }
-  stages.push_back({"after propagation", &jumps.beliefs.marginals.x, &jumps.beliefs.marginals.y});
+  stages.push_back(
+      {"after propagation", &by_both.beliefs.marginals.x, &by_both.beliefs.marginals.y});
   return jump_picture(stages);
 }
 

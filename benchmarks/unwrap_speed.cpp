@@ -79,11 +79,15 @@ void pass_jump_messages(benchmark::State& state, const Size& size) {
   const Example& e = example(size);
   UnwrapOptions options;
   options.method = "jump";
-  const JumpEstimate jumps =
-      estimate_jumps(e.frame, beat_limits(e.sensor, 0), estimate_phase_noise(e.frame), options);
+  JumpEstimator estimator;
+  const JumpEstimate& jumps =
+      estimator.estimate(e.frame, PhaseSigma(e.frame, estimate_phase_noise(e.frame)),
+                         beat_limits(e.sensor, 0), options);
   JumpPropagation propagation;
+  JumpBeliefs beliefs;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(propagation.run(jumps.evidence, iterations, iterations));
+    propagation.run(jumps.evidence, iterations, beliefs, iterations);
+    benchmark::DoNotOptimize(beliefs);
   }
   count_pixel_iterations(state, size, iterations);
 }

@@ -144,14 +144,26 @@ TEST(CurlCount, SeesASingleJumpThatLeadsNowhere) {
   EXPECT_EQ(count_curl_violations(jumps), 0);
 }
 
+JumpProbabilities discontinuity_alone(const ImageF& phase, const ImageF& noise_cycles,
+                                      double sigma_cycles) {
+  JumpProbabilities f_d;
+  find_jump_evidence(phase, noise_cycles, {},
+                     {.sigma_cycles = sigma_cycles,
+                      .window_px = 1,
+                      .trust_discontinuity = 1,
+                      .trust_frequency = 0},
+                     f_d);
+  return f_d;
+}
+
 TEST(DiscontinuityTerm, IsEquationOne) {
   ImageF phase(1, 2);
-  phase << 0.9F, 0.1F;
-  const JumpProbabilities f_d = discontinuity_term(phase, ImageF::Zero(1, 2), 0.15);
-  // exp(−(0.1 − 0.9 − i)² / (2 · 0.15²)) for i = −1, 0, 1
-  EXPECT_NEAR(f_d.x[0](0, 0), 0.411112F, 1e-5F);
-  EXPECT_NEAR(f_d.x[1](0, 0), 6.7e-7F, 1e-7F);
-  EXPECT_NEAR(f_d.x[2](0, 0), 0.0F, 1e-12F);
+  phase << 0.9F, 0.3F;
+  const JumpProbabilities f_d = discontinuity_alone(phase, ImageF::Zero(1, 2), 0.25);
+  // exp(−(0.3 − 0.9 − i)² / (2 · 0.25²)) for i = −1, 0, 1 is 0.278037, 0.056135, 1.3e-9
+  EXPECT_NEAR(f_d.x[0](0, 0), 0.832018F, 1e-5F);
+  EXPECT_NEAR(f_d.x[1](0, 0), 0.167982F, 1e-5F);
+  EXPECT_NEAR(f_d.x[2](0, 0), 1e-6F / 0.334172F, 1e-8F);  // the least that is given
 }
 
 TEST(DiscontinuityTerm, BelievesNoisyPhasesLess) {
@@ -160,9 +172,57 @@ TEST(DiscontinuityTerm, BelievesNoisyPhasesLess) {
   ImageF noise(1, 2);
   noise << 0.12F, 0.16F;
   // 0.15² + 0.12² + 0.16² = 0.25²
-  const JumpProbabilities noisy = discontinuity_term(phase, noise, 0.15);
-  const JumpProbabilities wide = discontinuity_term(phase, ImageF::Zero(1, 2), 0.25);
+  const JumpProbabilities noisy = discontinuity_alone(phase, noise, 0.15);
+  const JumpProbabilities wide = discontinuity_alone(phase, ImageF::Zero(1, 2), 0.25);
   for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(noisy.x[c](0, 0), wide.x[c](0, 0), 1e-6F);
+}
+
+TEST(FrequencyTerm, IsEquationThree) {
+  ImageF phase(1, 2);
+  phase << 0.9F, 0.1F;
+  ImageF reconstruction(1, 2);
+  reconstruction << 0.9F, 1.1F;  // |0.9 − 0.9| − |1.1 − 0.1| = −1: a wrap between them
+  const JumpTerms terms{
+      .sigma_cycles = 0.5, .window_px = 1, .trust_discontinuity = 0, .trust_frequency = 1};
+  JumpProbabilities f_f;
+  find_jump_evidence(phase, ImageF::Zero(1, 2), reconstruction, terms, f_f);
+  // exp(0), exp(−1 / (2 · 0.5²)) and exp(−4 / (2 · 0.5²)), normalised
+  const float sum = 1 + 0.135335F + 0.000335F;
+  EXPECT_NEAR(f_f.x[0](0, 0), 1 / sum, 1e-5F);
+  EXPECT_NEAR(f_f.x[1](0, 0), 0.135335F / sum, 1e-5F);
+  EXPECT_NEAR(f_f.x[2](0, 0), 0.000335F / sum, 1e-5F);
+  EXPECT_EQ(f_f.y[0].size(), 0);
+}
+
+TEST(JumpEvidence, IsTheProductOfBothTermsAsFarAsTheyAreTrusted) {
+  ImageF phase(3, 1);
+  phase << 0.9F, 0.3F, NAN;
+  ImageF reconstruction(3, 1);
+  reconstruction << 0.9F, 1.3F, NAN;
+  const auto evidence = [&](double c_d, double c_f) {
+    JumpProbabilities out;
+    find_jump_evidence(
+        phase, ImageF::Zero(3, 1), reconstruction,
+        {.sigma_cycles = 0.5, .window_px = 1, .trust_discontinuity = c_d, .trust_frequency = c_f},
+        out);
+    return out;
+  };
+  const JumpProbabilities both = evidence(0.9, 0.5);
+  const auto gaussian = [](double difference, int configuration) {
+    return std::exp(-std::pow(difference - configuration, 2) / (2 * 0.5 * 0.5));
+  };
+  double sum = 0;
+  std::array<double, 3> product{};
+  for (int i = -1; i <= 1; ++i) {
+    const auto k = static_cast<std::size_t>(i + 1);
+    product[k] = (0.1 + 0.9 * gaussian(-0.6, i)) * (0.5 + 0.5 * gaussian(-1, i));
+    sum += product[k];
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(both.y[k](0, 0), product[k] / sum, 1e-5);
+    EXPECT_TRUE(std::isnan(both.y[k](1, 0))) << "the lower pixel has no return";
+    EXPECT_NEAR(evidence(0, 0).y[k](0, 0), 1.0 / 3, 1e-6) << "nothing is trusted";
+  }
 }
 
 TEST(SideMedians, AreCutShortAtBordersAndPassOverMissingPixels) {

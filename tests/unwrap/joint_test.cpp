@@ -367,8 +367,8 @@ TEST(Fusion, LeavesAPixelAloneWhoseFrequenciesDisagree) {
   frame.phase_a = ImageF::Constant(1, 1, 0.5F);
   frame.phase_b = ImageF::Constant(1, 1, 0.9F);
   frame.amplitude_a = frame.amplitude_b = ImageF::Constant(1, 1, 1.0F);
-  const FusedRanges out =
-      fuse_ranges(pair_ranges(frame, ImageU8::Constant(1, 1, 1), limits, {0.01, 0.01}), {});
+  const FusedRanges out = fuse_ranges(
+      pair_ranges(frame, ImageU8::Constant(1, 1, 1), limits, PhaseSigma(frame, {0.01, 0.01})), {});
   EXPECT_FLOAT_EQ(out.range_m(0, 0), static_cast<float>(1.5 * limits.wavelength_a_m));
   EXPECT_FLOAT_EQ(out.sigma_m(0, 0), static_cast<float>(0.01 * limits.wavelength_a_m));
 }

@@ -90,8 +90,10 @@ JumpShares jump_shares(const char* method) {
   UnwrapOptions options;
   options.method = method;
   const DualFrequencyFrame& frame = simulated.frame;
-  const JumpEstimate jumps = estimate_jumps(frame, beat_limits(simulator.sensor(), 0),
-                                            estimate_phase_noise(frame), options);
+  JumpEstimator estimator;
+  const JumpEstimate& jumps =
+      estimator.estimate(frame, PhaseSigma(frame, estimate_phase_noise(frame)),
+                         beat_limits(simulator.sensor(), 0), options);
   const auto configurations = most_likely_configurations(jumps.beliefs.marginals);
   const auto wavelength_m = static_cast<float>(simulator.sensor().modulation.wavelength_a_m());
   const ImageF count = (simulated.range_truth_m / wavelength_m - frame.phase_a).round();

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -72,26 +73,67 @@ TOFMAP_VECTOR_CLONES void take_nearer(int pixels, const float* phase_a, const fl
   return is_within && cost < BeatCost::bound ? cost : BeatCost::bound;
 }
 
+/// Pixels of both frequencies.
+struct Pixels {
+  const float* phase_a;
+  const float* phase_b;
+  const float* sigma_a;  ///< of the phase, cycles
+  const float* sigma_b;
+};
+
+/// The beat of count 0, and half its inverse variance, both in cycles of B. Without a return the
+/// phase is beyond any limit.
+TOFMAP_VECTOR_CLONES void fill_beat(int pixels, const Pixels& from_, float wavelength_ratio,
+                                    float* phase_a, float* beat_cycles, float* precision) {
+  constexpr float beyond_any_limit = 1e9F;
+  const Pixels from = from_;
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    const float beat = from.phase_a[i] * wavelength_ratio - from.phase_b[i];
+    const float sigma_a = from.sigma_a[i] * wavelength_ratio;
+    const float variance = sigma_a * sigma_a + from.sigma_b[i] * from.sigma_b[i];
+    const bool is_present = beat == beat;
+    phase_a[i] = is_present ? from.phase_a[i] : beyond_any_limit;
+    beat_cycles[i] = is_present ? beat : 0.0F;
+    precision[i] = is_present ? 0.5F / variance : 0.0F;
+  }
+}
+
 /// Counts in a row, one in each lane.
 constexpr int count_lanes = DiagonalLayout::lanes;
 
-/// Adds the costs of `size` counts of one pixel, and returns the least sum.
-TOFMAP_VECTOR_CLONES float add_costs(float phase_a, float beat_cycles, float precision,
-                                     const float* shift, const float* farthest, int size,
-                                     float* sums) {
-  std::array<float, count_lanes> least;
-  least.fill(std::numeric_limits<float>::infinity());
+/// What a BeatCost knows of pixels and of counts.
+struct CostTables {
+  const float* phase_a;
+  const float* beat_cycles;
+  const float* precision;
+  const float* shift;  ///< of count −1, with room before and after
+  const float* farthest;
+};
+
+/// Adds the costs of `size` counts of pixels to `sums`. Offsets lie within the tables.
+TOFMAP_VECTOR_CLONES void add_costs(const CostTables& tables_, const CountedPixel* pixels,
+                                    int pixel_count, int size, float* sums) {
+  const CostTables tables = tables_;
   for (int n = 0; n < size; n += count_lanes) {
+    std::array<float, count_lanes> lanes;
+    for (int k = 0; k < count_lanes; ++k) lanes[static_cast<std::size_t>(k)] = sums[n + k];
+    for (int i = 0; i < pixel_count; ++i) {
+      const int pixel = pixels[i].pixel;
+      const float phase_a = tables.phase_a[pixel];
+      const float beat_cycles = tables.beat_cycles[pixel];
+      const float precision = tables.precision[pixel];
+      const float* shift = tables.shift + n + pixels[i].offset;
+      const float* farthest = tables.farthest + n + pixels[i].offset;
 #pragma GCC ivdep
-    for (int k = 0; k < count_lanes; ++k) {
-      const float sum =
-          sums[n + k] + cost_of(beat_cycles + shift[n + k], precision, phase_a <= farthest[n + k]);
-      float& lane = least[static_cast<std::size_t>(k)];
-      lane = sum < lane ? sum : lane;
-      sums[n + k] = sum;
+      for (int k = 0; k < count_lanes; ++k) {
+        float& lane = lanes[static_cast<std::size_t>(k)];
+        const float sum = lane + cost_of(beat_cycles + shift[k], precision, phase_a <= farthest[k]);
+        lane = sum;
+      }
     }
+    for (int k = 0; k < count_lanes; ++k) sums[n + k] = lanes[static_cast<std::size_t>(k)];
   }
-  return least_of(least);
 }
 
 /// Adds the likelihoods of one count, and keeps those of the counts that are asked for.
@@ -178,22 +220,17 @@ ImageF reconstruct_cycles(const ImageF& phase_a, const ImageU8& counts) {
 }
 
 BeatCost::BeatCost(const DualFrequencyFrame& frame, const BeatLimits& limits,
-                   const PhaseNoise& noise)
+                   const PhaseSigma& sigma)
     : count_a_(limits.count_a),
       size_(static_cast<std::size_t>(DiagonalLayout::whole_vectors(count_a_ + 2))) {
-  const ImageF sigma_a = phase_sigma_cycles(frame.phase_a, frame.amplitude_a, noise.scale_a) *
-                         static_cast<float>(limits.wavelength_a_m);
-  const ImageF sigma_b = phase_sigma_cycles(frame.phase_b, frame.amplitude_b, noise.scale_b) *
-                         static_cast<float>(limits.wavelength_b_m);
-  const auto half_square_m2 =
-      static_cast<float>(0.5 * limits.wavelength_b_m * limits.wavelength_b_m);
-  precision_ = half_square_m2 / (sigma_a.square() + sigma_b.square());
-  const ImageF beat =
-      frame.phase_a * static_cast<float>(limits.wavelength_a_m / limits.wavelength_b_m) -
-      frame.phase_b;
-  constexpr float beyond_any_limit = 2;
-  phase_a_ = beat.isNaN().select(beyond_any_limit, frame.phase_a);
-  beat_cycles_ = beat.isNaN().select(0.0F, beat);
+  for (ImageF* plane : {&phase_a_, &beat_cycles_, &precision_}) {
+    plane->resize(frame.phase_a.rows(), frame.phase_a.cols());
+  }
+  fill_beat(
+      static_cast<int>(phase_a_.size()),
+      {frame.phase_a.data(), frame.phase_b.data(), sigma.a_cycles.data(), sigma.b_cycles.data()},
+      static_cast<float>(limits.wavelength_a_m / limits.wavelength_b_m), phase_a_.data(),
+      beat_cycles_.data(), precision_.data());
   const int reach = static_cast<int>(size_);
   for (int n = -1 - reach; n < 2 * reach - 1; ++n) {
     const CountStep step = count_step(limits, n);
@@ -209,27 +246,32 @@ float BeatCost::operator()(Eigen::Index pixel, int n_a) const {
                  phase_a_.data()[pixel] <= farthest_[at]);
 }
 
-float BeatCost::add(Eigen::Index pixel, int offset, std::span<float> costs) const {
-  const int reach = static_cast<int>(size_);
-  const auto first = static_cast<std::size_t>(reach + std::clamp(offset, -reach, reach));
-  return add_costs(phase_a_.data()[pixel], beat_cycles_.data()[pixel], precision_.data()[pixel],
-                   &shift_[first], &farthest_[first], reach, costs.data());
+void BeatCost::add(std::span<const CountedPixel> pixels, std::span<float> costs) const {
+  const CostTables tables{phase_a_.data(), beat_cycles_.data(), precision_.data(), &shift_[size_],
+                          &farthest_[size_]};
+  add_costs(tables, pixels.data(), static_cast<int>(pixels.size()), static_cast<int>(size_),
+            costs.data());
 }
 
 ImageF BeatCost::probability(const ImageU8& counts) const {
-  ImageF sums = ImageF::Zero(counts.rows(), counts.cols());
-  ImageF own = sums;
+  ImageF probability(counts.rows(), counts.cols());
+  std::array<float, block_pixels> sums;
+  std::array<float, block_pixels> own;
   for (Eigen::Index done = 0; done < counts.size(); done += block_pixels) {
     const auto pixels =
         static_cast<int>(std::min<Eigen::Index>(block_pixels, counts.size() - done));
+    sums.fill(0);
+    own.fill(0);
     for (int n = 0; n < count_a_; ++n) {
       const std::size_t at = size_ + 1 + static_cast<std::size_t>(n);
       add_likelihoods(pixels, phase_a_.data() + done, beat_cycles_.data() + done,
                       precision_.data() + done, {shift_[at], farthest_[at]}, static_cast<float>(n),
-                      counts.data() + done, sums.data() + done, own.data() + done);
+                      counts.data() + done, sums.data(), own.data());
     }
+    std::transform(own.begin(), own.begin() + pixels, sums.begin(), probability.data() + done,
+                   std::divides());
   }
-  return own / sums;
+  return probability;
 }
 
 }  // namespace tofmap

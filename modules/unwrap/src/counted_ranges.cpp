@@ -3,32 +3,66 @@
 
 #include "counted_ranges.hpp"
 
-namespace tofmap {
+#include "vector_clones.hpp"
 
-RangeImage make_range_image(const ImageF& range_m, const ImageF& sigma_m, const ImageU8& counts,
-                            const ImageF& confidence) {
-  RangeImage image(counts.rows(), counts.cols());
-  for (Eigen::Index v = 0; v < image.rows(); ++v) {
-    for (Eigen::Index u = 0; u < image.cols(); ++u) {
-      if (counts(v, u) == invalid_wrap_count) continue;
-      image.range_m(v, u) = range_m(v, u);
-      image.sigma_m(v, u) = sigma_m(v, u);
-      image.wrap_count(v, u) = counts(v, u);
-      image.confidence(v, u) = confidence(v, u);
-      image.reason(v, u) = static_cast<std::uint8_t>(InvalidReason::none);
-    }
+#include <limits>
+
+namespace tofmap {
+namespace {
+
+/// The planes that a count decides about.
+struct Planes {
+  float* range_m;
+  float* sigma_m;
+  float* confidence;
+  std::uint8_t* reason;
+};
+
+/// Ranges and their noise are (value + n · count_m) · scale.
+TOFMAP_VECTOR_CLONES void fill_counted(int pixels, const float* range, const float* sigma,
+                                       const std::uint8_t* counts, const float* confidence,
+                                       float count_m, float scale, const Planes& out_) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  const Planes out = out_;
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    const bool is_valid = counts[i] != invalid_wrap_count;
+    const float range_m = (range[i] + static_cast<float>(counts[i]) * count_m) * scale;
+    out.range_m[i] = is_valid ? range_m : nan;
+    out.sigma_m[i] = is_valid ? sigma[i] * scale : nan;
+    out.confidence[i] = is_valid ? confidence[i] : 0.0F;
+    out.reason[i] =
+        static_cast<std::uint8_t>(is_valid ? InvalidReason::none : InvalidReason::no_return);
   }
+}
+
+RangeImage counted(const ImageF& range, const ImageF& sigma, const ImageU8& counts,
+                   const ImageF& confidence, float count_m, float scale) {
+  RangeImage image;
+  for (ImageF* plane : {&image.range_m, &image.sigma_m, &image.confidence}) {
+    plane->resize(counts.rows(), counts.cols());
+  }
+  image.reason.resize(counts.rows(), counts.cols());
+  image.wrap_count = counts;
+  fill_counted(
+      static_cast<int>(counts.size()), range.data(), sigma.data(), counts.data(), confidence.data(),
+      count_m, scale,
+      {image.range_m.data(), image.sigma_m.data(), image.confidence.data(), image.reason.data()});
   return image;
 }
 
-RangeImage make_range_image(const DualFrequencyFrame& frame, const ImageU8& counts,
-                            const ImageF& confidence, const BeatLimits& limits,
-                            const PhaseNoise& noise) {
-  const auto wavelength_m = static_cast<float>(limits.wavelength_a_m);
-  const ImageF range_m = (frame.phase_a + counts.cast<float>()) * wavelength_m;
-  const ImageF sigma_m =
-      phase_sigma_cycles(frame.phase_a, frame.amplitude_a, noise.scale_a) * wavelength_m;
-  return make_range_image(range_m, sigma_m, counts, confidence);
+}  // namespace
+
+RangeImage make_range_image(const ImageF& range_m, const ImageF& sigma_m, const ImageU8& counts,
+                            const ImageF& confidence) {
+  return counted(range_m, sigma_m, counts, confidence, 0, 1);
+}
+
+RangeImage make_range_image(const ImageF& phase_a, const ImageF& sigma_a_cycles,
+                            const ImageU8& counts, const ImageF& confidence,
+                            const BeatLimits& limits) {
+  return counted(phase_a, sigma_a_cycles, counts, confidence, 1,
+                 static_cast<float>(limits.wavelength_a_m));
 }
 
 }  // namespace tofmap

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <tofmap/core/frame.hpp>
+#include <tofmap/core/image.hpp>
 #include <tofmap/core/range_image.hpp>
 #include <tofmap/unwrap/beat.hpp>
-#include <tofmap/unwrap/phase_noise.hpp>
 
 namespace tofmap {
 
@@ -14,8 +13,8 @@ RangeImage make_range_image(const ImageF& range_m, const ImageF& sigma_m, const 
                             const ImageF& confidence);
 
 /// The same with A's ranges: (phase_a + n) λ_A.
-RangeImage make_range_image(const DualFrequencyFrame& frame, const ImageU8& counts,
-                            const ImageF& confidence, const BeatLimits& limits,
-                            const PhaseNoise& noise);
+RangeImage make_range_image(const ImageF& phase_a, const ImageF& sigma_a_cycles,
+                            const ImageU8& counts, const ImageF& confidence,
+                            const BeatLimits& limits);
 
 }  // namespace tofmap

@@ -36,10 +36,9 @@ void drop_ambiguous(const CountBeliefs& beliefs, const BeatLimits& limits, Range
 
 /// Ranges from both frequencies; B's are brought back to the instant of A if the camera's rays are
 /// known.
-FusedRanges ranges_of_both(const DualFrequencyFrame& frame, const ImageU8& counts,
-                           const BeatLimits& limits, const PhaseNoise& noise,
-                           const PixelRays& rays) {
-  const RangePair pair = pair_ranges(frame, counts, limits, noise);
+FusedRanges ranges_of_both(const PreparedFrame& frame, const ImageU8& counts,
+                           const BeatLimits& limits, const PixelRays& rays) {
+  const RangePair pair = pair_ranges(frame.returns, counts, limits, frame.sigma);
   if (!same_size(rays.x, counts)) return fuse_ranges(pair, {});
   const ImageF sigma_m = (pair.variance_a_m2 + pair.variance_b_m2).sqrt();
   const ExposureMotion motion =
@@ -50,17 +49,19 @@ FusedRanges ranges_of_both(const DualFrequencyFrame& frame, const ImageU8& count
 
 }  // namespace
 
-UnwrapResult unwrap_jointly(CountEstimator& estimator, const DualFrequencyFrame& frame,
-                            const BeatLimits& limits, const PhaseNoise& noise,
-                            const PixelRays& rays, const UnwrapOptions& options) {
-  const CountBeliefs beliefs = estimator.estimate(frame, limits, noise, count_estimation(options));
+UnwrapResult unwrap_jointly(CountEstimator& estimator, const PreparedFrame& frame,
+                            const BeatLimits& limits, const PixelRays& rays,
+                            const UnwrapOptions& options) {
+  const CountBeliefs beliefs =
+      estimator.estimate(frame.returns, limits, frame.noise, count_estimation(options));
   UnwrapResult result;
   if (options.fuse_frequencies) {
-    const FusedRanges fused = ranges_of_both(frame, beliefs.count, limits, noise, rays);
+    const FusedRanges fused = ranges_of_both(frame, beliefs.count, limits, rays);
     result.image =
         make_range_image(fused.range_m, fused.sigma_m, beliefs.count, beliefs.probability);
   } else {
-    result.image = make_range_image(frame, beliefs.count, beliefs.probability, limits, noise);
+    result.image = make_range_image(frame.returns.phase_a, frame.sigma.a_cycles, beliefs.count,
+                                    beliefs.probability, limits);
   }
   drop_ambiguous(beliefs, limits, result.image);
   result.iterations = beliefs.iterations;

@@ -4,31 +4,24 @@
 #include "tofmap/unwrap/jump_estimate.hpp"
 
 namespace tofmap {
-JumpEstimate estimate_jumps(JumpPropagation& propagation, const DualFrequencyFrame& frame,
-                            const BeatLimits& limits, const PhaseNoise& noise,
-                            const UnwrapOptions& options) {
-  JumpEstimate out;
-  const ImageF sigma = phase_sigma_cycles(frame.phase_a, frame.amplitude_a, noise.scale_a);
-  out.discontinuity = discontinuity_term(frame.phase_a, sigma, options.sigma_cycles);
-  if (unwrap_method(options) == UnwrapMethod::single) {
-    constexpr double no_trust = 0;
-    out.evidence =
-        fuse(out.discontinuity, out.discontinuity, options.trust_discontinuity, no_trust);
-  } else {
-    out.nearest = nearest_pair_counts(frame, limits);
-    out.frequency = frequency_term(frame.phase_a, reconstruct_cycles(frame.phase_a, out.nearest),
-                                   options.window_px, options.sigma_cycles);
-    out.evidence = fuse(out.discontinuity, out.frequency, options.trust_discontinuity,
-                        options.trust_frequency);
-  }
-  out.beliefs = propagation.run(out.evidence, options.iterations);
-  return out;
-}
 
-JumpEstimate estimate_jumps(const DualFrequencyFrame& frame, const BeatLimits& limits,
-                            const PhaseNoise& noise, const UnwrapOptions& options) {
-  JumpPropagation propagation;
-  return estimate_jumps(propagation, frame, limits, noise, options);
+const JumpEstimate& JumpEstimator::estimate(const DualFrequencyFrame& frame,
+                                            const PhaseSigma& sigma, const BeatLimits& limits,
+                                            const UnwrapOptions& options) {
+  JumpTerms terms{.sigma_cycles = options.sigma_cycles,
+                  .window_px = options.window_px,
+                  .trust_discontinuity = options.trust_discontinuity,
+                  .trust_frequency = options.trust_frequency};
+  ImageF reconstruction_cycles;
+  if (unwrap_method(options) == UnwrapMethod::single) {
+    terms.trust_frequency = 0;
+  } else {
+    jumps_.nearest = nearest_pair_counts(frame, limits);
+    reconstruction_cycles = reconstruct_cycles(frame.phase_a, jumps_.nearest);
+  }
+  find_jump_evidence(frame.phase_a, sigma.a_cycles, reconstruction_cycles, terms, jumps_.evidence);
+  propagation_.run(jumps_.evidence, options.iterations, jumps_.beliefs);
+  return jumps_;
 }
 
 }  // namespace tofmap

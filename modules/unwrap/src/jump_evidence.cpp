@@ -17,113 +17,96 @@ namespace {
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// The planes of three configurations from some node on.
-template <class T>
 struct Configurations {
-  T* minus;
-  T* none;
-  T* plus;
+  float* minus;
+  float* none;
+  float* plus;
+
+  Configurations(std::array<ImageF, 3>& planes, Eigen::Index row)
+      : minus(planes[0].data() + row * planes[0].cols()),
+        none(planes[1].data() + row * planes[1].cols()),
+        plus(planes[2].data() + row * planes[2].cols()) {}
 };
 
-Configurations<float> at(std::array<ImageF, 3>& planes, Eigen::Index row) {
-  const Eigen::Index place = row * planes[0].cols();
-  return {planes[0].data() + place, planes[1].data() + place, planes[2].data() + place};
-}
-
-Configurations<const float> at(const std::array<ImageF, 3>& planes, Eigen::Index row) {
-  const Eigen::Index place = row * planes[0].cols();
-  return {planes[0].data() + place, planes[1].data() + place, planes[2].data() + place};
-}
-
-/// Nodes of an image of pixels, without values.
-JumpProbabilities jump_nodes(Eigen::Index rows, Eigen::Index cols) {
-  JumpProbabilities nodes;
-  for (ImageF& plane : nodes.x) plane.resize(rows, std::max<Eigen::Index>(cols - 1, 0));
-  for (ImageF& plane : nodes.y) plane.resize(std::max<Eigen::Index>(rows - 1, 0), cols);
-  return nodes;
-}
-
-/// exp(−(difference − i)² / 2σ²) for the three configurations. `absent` is NaN for absent nodes and
-/// 0 for others: a sum, unlike a choice, leaves the compiler no branch.
-[[gnu::always_inline]] inline void set_gaussians(float difference, float half_precision,
-                                                 float absent, const Configurations<float>& out,
-                                                 int i) {
-  const auto gaussian = [&](float off) {
-    return exp_of_negative(-off * off * half_precision) + absent;
-  };
-  out.minus[i] = gaussian(difference + 1);
-  out.none[i] = gaussian(difference);
-  out.plus[i] = gaussian(difference - 1);
-}
-
-/// Equation 1 for nodes between pixels p and q, both in arrays of phases and of their noise.
-TOFMAP_VECTOR_CLONES void fill_discontinuity(int nodes, const float* phase_p, const float* phase_q,
-                                             const float* noise_p, const float* noise_q,
-                                             float slope_variance,
-                                             const Configurations<float>& out_) {
-  const Configurations<float> out = out_;
-#pragma GCC ivdep
-  for (int i = 0; i < nodes; ++i) {
-    const float difference = phase_q[i] - phase_p[i];
-    const float variance = noise_p[i] * noise_p[i] + noise_q[i] * noise_q[i] + slope_variance;
-    set_gaussians(difference, 0.5F / variance, 0 * difference, out, i);
-  }
-}
-
-/// Medians before and after nodes, of the reconstruction and of the wrapped phase.
-struct NodeMedians {
-  const float* r_neg;
-  const float* a_neg;
-  const float* r_pos;
-  const float* a_pos;
+/// What is known of the nodes of a row: phases of their pixels p and q and the noise of these, and
+/// medians on both sides, of the reconstruction and of the wrapped phase.
+struct NodeRow {
+  const float* phase_p;
+  const float* phase_q;
+  const float* noise_p;
+  const float* noise_q;
+  const float* r_neg = nullptr;
+  const float* a_neg = nullptr;
+  const float* r_pos = nullptr;
+  const float* a_pos = nullptr;
 };
 
-/// Equation 3 for nodes between pixels of these phases.
-TOFMAP_VECTOR_CLONES void fill_frequency(int nodes, const float* phase_p, const float* phase_q,
-                                         const NodeMedians& medians_, float half_precision,
-                                         const Configurations<float>& out_) {
-  const NodeMedians m = medians_;
-  const Configurations<float> out = out_;
-#pragma GCC ivdep
-  for (int i = 0; i < nodes; ++i) {
-    const float wraps = std::abs(m.r_neg[i] - m.a_neg[i]) - std::abs(m.r_pos[i] - m.a_pos[i]);
-    // Within what a configuration can say.
-    const float above = wraps > -1 ? wraps : -1.0F;
-    const float difference = above < 1 ? above : 1.0F;
-    set_gaussians(difference, half_precision, 0 * (phase_q[i] - phase_p[i]), out, i);
-  }
-}
+/// JumpTerms as kernels need them.
+struct Factors {
+  float slope_variance;
+  float half_precision;
+  float trust_discontinuity;
+  float trust_frequency;
 
-struct Trust {
-  float discontinuity;
-  float frequency;
+  explicit Factors(const JumpTerms& terms)
+      : slope_variance(static_cast<float>(terms.sigma_cycles * terms.sigma_cycles)),
+        half_precision(0.5F / slope_variance),
+        trust_discontinuity(static_cast<float>(terms.trust_discontinuity)),
+        trust_frequency(static_cast<float>(terms.trust_frequency)) {}
 };
 
-/// Equation 4.
-TOFMAP_VECTOR_CLONES void fill_fused(int nodes, const Configurations<const float>& f_d_,
-                                     const Configurations<const float>& f_f_, const Trust& trust_,
-                                     const Configurations<float>& out_) {
-  const Configurations<const float> f_d = f_d_;
-  const Configurations<const float> f_f = f_f_;
-  const Trust trust = trust_;
-  const Configurations<float> out = out_;
+/// What both frequencies say of the difference of counts, within what a configuration can say.
+[[gnu::always_inline]] inline float wraps_between(const NodeRow& row, int i) {
+  const float wraps = std::abs(row.r_neg[i] - row.a_neg[i]) - std::abs(row.r_pos[i] - row.a_pos[i]);
+  const float above = wraps > -1 ? wraps : -1.0F;
+  return above < 1 ? above : 1.0F;
+}
+
+template <bool two_frequencies>
+[[gnu::always_inline]] inline void fill_nodes(int nodes, const NodeRow& row, const Factors& factors,
+                                              const Configurations& out) {
+  const float c_d = factors.trust_discontinuity;
+  const float c_f = factors.trust_frequency;
+  const float f_precision = factors.half_precision;
 #pragma GCC ivdep
   for (int i = 0; i < nodes; ++i) {
-    const auto product = [&](float d, float f) {
+    const float step = row.phase_q[i] - row.phase_p[i];
+    const float variance =
+        row.noise_p[i] * row.noise_p[i] + row.noise_q[i] * row.noise_q[i] + factors.slope_variance;
+    const float d_precision = 0.5F / variance;
+    const float wraps = two_frequencies ? wraps_between(row, i) : 0.0F;
+    const auto product = [&](float configuration) {
       constexpr float least = 1e-6F;
-      const float both = (1 - trust.discontinuity + trust.discontinuity * d) *
-                         (1 - trust.frequency + trust.frequency * f);
+      const float d_off = step - configuration;
+      float both = 1 - c_d + c_d * exp_of_negative(-d_off * d_off * d_precision);
+      if (two_frequencies) {
+        const float f_off = wraps - configuration;
+        both *= 1 - c_f + c_f * exp_of_negative(-f_off * f_off * f_precision);
+      }
       return both > least ? both : least;
     };
-    const float minus = product(f_d.minus[i], f_f.minus[i]);
-    const float none = product(f_d.none[i], f_f.none[i]);
-    const float plus = product(f_d.plus[i], f_f.plus[i]);
-    const float sum =
-        f_d.none[i] == f_d.none[i] && f_f.none[i] == f_f.none[i] ? minus + none + plus : nan;
-    const float scale = 1 / sum;
+    const float minus = product(-1);
+    const float none = product(0);
+    const float plus = product(1);
+    // A sum, unlike a choice, leaves the compiler no branch.
+    const float absent = 0 * step;
+    const float scale = 1 / (minus + none + plus) + absent;
     out.minus[i] = minus * scale;
     out.none[i] = none * scale;
     out.plus[i] = plus * scale;
   }
+}
+
+TOFMAP_VECTOR_CLONES void fill_from_one_frequency(int nodes, const NodeRow& row,
+                                                  const Factors& factors,
+                                                  const Configurations& out) {
+  fill_nodes<false>(nodes, NodeRow(row), Factors(factors), Configurations(out));
+}
+
+TOFMAP_VECTOR_CLONES void fill_from_two_frequencies(int nodes, const NodeRow& row,
+                                                    const Factors& factors,
+                                                    const Configurations& out) {
+  fill_nodes<true>(nodes, NodeRow(row), Factors(factors), Configurations(out));
 }
 
 /// Windows treated at a time, one in each lane.
@@ -183,100 +166,143 @@ void line_medians(Eigen::Index windows, std::vector<const float*>& pixels,
   }
 }
 
+/// Medians on both sides of the nodes to the right of pixels, a row at a time.
+class RowMedians {
+ public:
+  RowMedians(const ImageF& image, int window_px)
+      : image_(image),
+        windows_(image.cols() + window_px - 1),
+        line_(static_cast<std::size_t>(windows_ + window_px - 1), nan),
+        medians_(static_cast<std::size_t>(windows_)),
+        pixels_(static_cast<std::size_t>(window_px)) {}
+
+  void move_to(Eigen::Index row) {
+    const auto margin = static_cast<std::ptrdiff_t>(pixels_.size()) - 1;
+    std::copy_n(image_.data() + row * image_.cols(), image_.cols(), line_.begin() + margin);
+    for (std::size_t k = 0; k < pixels_.size(); ++k) pixels_[k] = line_.data() + k;
+    line_medians(windows_, pixels_, window_, medians_.data());
+  }
+
+  // Windows are numbered by where they end: those of the node after pixel t end at t and t + k.
+  const float* neg() const { return medians_.data(); }
+  const float* pos() const { return medians_.data() + pixels_.size(); }
+
+ private:
+  const ImageF& image_;
+  Eigen::Index windows_;
+  std::vector<float> line_;  ///< a row, with missing pixels before and after it
+  std::vector<float> medians_;
+  std::vector<const float*> pixels_;
+  std::vector<float> window_;
+};
+
+/// Medians on both sides of the nodes below pixels, a row after the other from the first on.
+class ColumnMedians {
+ public:
+  ColumnMedians(const ImageF& image, int window_px)
+      : image_(image),
+        no_row_(static_cast<std::size_t>(image.cols()), nan),
+        medians_(static_cast<std::size_t>((window_px + 1) * image.cols())),
+        pixels_(static_cast<std::size_t>(window_px)) {}
+
+  void move_to(Eigen::Index row) {
+    row_ = row;
+    for (; next_ <= row + window_px(); ++next_) {
+      for (Eigen::Index k = 0; k < window_px(); ++k) {
+        const Eigen::Index v = next_ - k;
+        pixels_[static_cast<std::size_t>(k)] =
+            v >= 0 && v < image_.rows() ? image_.data() + v * image_.cols() : no_row_.data();
+      }
+      line_medians(image_.cols(), pixels_, window_, ending_at(next_));
+    }
+  }
+
+  const float* neg() { return ending_at(row_); }
+  const float* pos() { return ending_at(row_ + window_px()); }
+
+ private:
+  Eigen::Index window_px() const { return static_cast<Eigen::Index>(pixels_.size()); }
+
+  float* ending_at(Eigen::Index row) {
+    return medians_.data() + row % (window_px() + 1) * image_.cols();
+  }
+
+  const ImageF& image_;
+  Eigen::Index row_ = 0;
+  Eigen::Index next_ = 0;  ///< row at which windows end that come next
+  std::vector<float> no_row_;
+  std::vector<float> medians_;  ///< of windows that end at k + 1 successive rows, in a ring
+  std::vector<const float*> pixels_;
+  std::vector<float> window_;
+};
+
+template <class Medians>
+SideMedians side_medians(const ImageF& image, int window_px, Eigen::Index rows, Eigen::Index cols) {
+  SideMedians out{ImageF(rows, cols), ImageF(rows, cols)};
+  Medians medians(image, window_px);
+  for (Eigen::Index v = 0; v < rows; ++v) {
+    medians.move_to(v);
+    std::copy_n(medians.neg(), cols, out.neg.data() + v * cols);
+    std::copy_n(medians.pos(), cols, out.pos.data() + v * cols);
+  }
+  return out;
+}
+
+/// Evidence of the nodes of one direction, whose q is `q_from_p` pixels after p.
+template <class Medians>
+void fill_direction(const ImageF& phase, const ImageF& noise_cycles, const ImageF& reconstruction,
+                    const JumpTerms& terms, Eigen::Index q_from_p, std::array<ImageF, 3>& out) {
+  const Factors factors(terms);
+  const auto nodes = static_cast<int>(out[0].cols());
+  const auto node_row = [&](Eigen::Index v) {
+    const float* p = phase.data() + v * phase.cols();
+    const float* noise = noise_cycles.data() + v * phase.cols();
+    return NodeRow{p, p + q_from_p, noise, noise + q_from_p};
+  };
+  if (reconstruction.size() == 0) {
+    for (Eigen::Index v = 0; v < out[0].rows(); ++v) {
+      fill_from_one_frequency(nodes, node_row(v), factors, Configurations(out, v));
+    }
+    return;
+  }
+  Medians r(reconstruction, terms.window_px);
+  Medians a(phase, terms.window_px);
+  for (Eigen::Index v = 0; v < out[0].rows(); ++v) {
+    r.move_to(v);
+    a.move_to(v);
+    NodeRow row = node_row(v);
+    row.r_neg = r.neg();
+    row.a_neg = a.neg();
+    row.r_pos = r.pos();
+    row.a_pos = a.pos();
+    fill_from_two_frequencies(nodes, row, factors, Configurations(out, v));
+  }
+}
+
 }  // namespace
 
 SideMedians side_medians_x(const ImageF& image, int window_px) {
-  const Eigen::Index cols = image.cols();
-  const Eigen::Index nodes = std::max<Eigen::Index>(cols - 1, 0);
-  SideMedians out{ImageF(image.rows(), nodes), ImageF(image.rows(), nodes)};
-  // Windows are numbered by where they end: those of the node after pixel t end at t and t + k.
-  const Eigen::Index windows = cols + window_px - 1;
-  std::vector<float> line(static_cast<std::size_t>(windows + window_px - 1), nan);
-  std::vector<float> medians(static_cast<std::size_t>(windows));
-  std::vector<const float*> pixels(static_cast<std::size_t>(window_px));
-  std::vector<float> window;
-  for (Eigen::Index v = 0; v < image.rows(); ++v) {
-    std::copy_n(image.data() + v * cols, cols, line.begin() + window_px - 1);
-    for (std::size_t k = 0; k < pixels.size(); ++k) pixels[k] = line.data() + k;
-    line_medians(windows, pixels, window, medians.data());
-    std::copy_n(medians.begin(), nodes, out.neg.data() + v * nodes);
-    std::copy_n(medians.begin() + window_px, nodes, out.pos.data() + v * nodes);
-  }
-  return out;
+  return side_medians<RowMedians>(image, window_px, image.rows(),
+                                  std::max<Eigen::Index>(image.cols() - 1, 0));
 }
 
 SideMedians side_medians_y(const ImageF& image, int window_px) {
-  const Eigen::Index cols = image.cols();
-  const Eigen::Index nodes = std::max<Eigen::Index>(image.rows() - 1, 0);
-  SideMedians out{ImageF(nodes, cols), ImageF(nodes, cols)};
-  const std::vector<float> no_row(static_cast<std::size_t>(cols), nan);
-  std::vector<const float*> pixels(static_cast<std::size_t>(window_px));
-  std::vector<float> window;
-  for (Eigen::Index end = 0; end < image.rows() + window_px - 1; ++end) {
-    const bool is_before = end < nodes;
-    const bool is_after = end >= window_px;
-    if (!is_before && !is_after) continue;
-    for (Eigen::Index k = 0; k < window_px; ++k) {
-      const Eigen::Index v = end - k;
-      pixels[static_cast<std::size_t>(k)] =
-          v >= 0 && v < image.rows() ? image.data() + v * cols : no_row.data();
-    }
-    float* medians =
-        is_before ? out.neg.data() + end * cols : out.pos.data() + (end - window_px) * cols;
-    line_medians(cols, pixels, window, medians);
-    if (is_before && is_after) {
-      std::copy_n(medians, cols, out.pos.data() + (end - window_px) * cols);
-    }
+  return side_medians<ColumnMedians>(image, window_px, std::max<Eigen::Index>(image.rows() - 1, 0),
+                                     image.cols());
+}
+
+void find_jump_evidence(const ImageF& phase, const ImageF& noise_cycles,
+                        const ImageF& reconstruction_cycles, const JumpTerms& terms,
+                        JumpProbabilities& out) {
+  for (ImageF& plane : out.x) {
+    plane.resize(phase.rows(), std::max<Eigen::Index>(phase.cols() - 1, 0));
   }
-  return out;
-}
-
-JumpProbabilities discontinuity_term(const ImageF& phase, const ImageF& noise_cycles,
-                                     double sigma_cycles) {
-  const auto variance = static_cast<float>(sigma_cycles * sigma_cycles);
-  JumpProbabilities out = jump_nodes(phase.rows(), phase.cols());
-  const auto fill = [&](Eigen::Index q_from_p, std::array<ImageF, 3>& planes) {
-    for (Eigen::Index v = 0; v < planes[0].rows(); ++v) {
-      const float* p = phase.data() + v * phase.cols();
-      const float* noise = noise_cycles.data() + v * phase.cols();
-      fill_discontinuity(static_cast<int>(planes[0].cols()), p, p + q_from_p, noise,
-                         noise + q_from_p, variance, at(planes, v));
-    }
-  };
-  fill(1, out.x);
-  fill(phase.cols(), out.y);
-  return out;
-}
-
-JumpProbabilities frequency_term(const ImageF& phase, const ImageF& reconstruction_cycles,
-                                 int window_px, double sigma_cycles) {
-  const auto half_precision = static_cast<float>(0.5 / (sigma_cycles * sigma_cycles));
-  JumpProbabilities out = jump_nodes(phase.rows(), phase.cols());
-  const auto fill = [&](const SideMedians& r, const SideMedians& a, Eigen::Index q_from_p,
-                        std::array<ImageF, 3>& planes) {
-    for (Eigen::Index v = 0; v < planes[0].rows(); ++v) {
-      const float* p = phase.data() + v * phase.cols();
-      const Eigen::Index node = v * planes[0].cols();
-      fill_frequency(
-          static_cast<int>(planes[0].cols()), p, p + q_from_p,
-          {r.neg.data() + node, a.neg.data() + node, r.pos.data() + node, a.pos.data() + node},
-          half_precision, at(planes, v));
-    }
-  };
-  fill(side_medians_x(reconstruction_cycles, window_px), side_medians_x(phase, window_px), 1,
-       out.x);
-  fill(side_medians_y(reconstruction_cycles, window_px), side_medians_y(phase, window_px),
-       phase.cols(), out.y);
-  return out;
-}
-
-JumpProbabilities fuse(const JumpProbabilities& f_d, const JumpProbabilities& f_f, double c_d,
-                       double c_f) {
-  const Trust trust{static_cast<float>(c_d), static_cast<float>(c_f)};
-  JumpProbabilities out = jump_nodes(f_d.x[0].rows(), f_d.y[0].cols());
-  fill_fused(static_cast<int>(out.x[0].size()), at(f_d.x, 0), at(f_f.x, 0), trust, at(out.x, 0));
-  fill_fused(static_cast<int>(out.y[0].size()), at(f_d.y, 0), at(f_f.y, 0), trust, at(out.y, 0));
-  return out;
+  for (ImageF& plane : out.y) {
+    plane.resize(std::max<Eigen::Index>(phase.rows() - 1, 0), phase.cols());
+  }
+  fill_direction<RowMedians>(phase, noise_cycles, reconstruction_cycles, terms, 1, out.x);
+  fill_direction<ColumnMedians>(phase, noise_cycles, reconstruction_cycles, terms, phase.cols(),
+                                out.y);
 }
 
 }  // namespace tofmap

@@ -210,7 +210,7 @@ TOFMAP_VECTOR_CLONES int send_first_backward_and_up(int rows, const Diagonal& he
 
 /// Rows whose nodes are brought from images to diagonals, or back, before those of the next rows:
 /// few enough for their lines to stay in the first-level cache.
-constexpr int band_rows = 64;
+constexpr int band_rows = 32;
 
 /// Probabilities of the configurations of nodes in a band.
 struct Triples {
@@ -370,8 +370,7 @@ void JumpPropagation::sweep_backward_and_up(bool is_first, JumpBeliefs& beliefs)
   beliefs.largest_message_change = *std::max_element(change_.begin(), change_.end());
 }
 
-JumpProbabilities JumpPropagation::marginals() {
-  JumpProbabilities out;
+void JumpPropagation::read(JumpProbabilities& out) {
   for (ImageF& plane : out.x) plane.resize(layout_.rows(), layout_.cols() - 1);
   for (ImageF& plane : out.y) plane.resize(layout_.rows() - 1, layout_.cols());
   Triples probability;
@@ -387,13 +386,13 @@ JumpProbabilities JumpPropagation::marginals() {
   };
   read_nodes(evidence_x, from_above, from_below, out.x);
   read_nodes(evidence_y, from_left, from_right, out.y);
-  return out;
 }
 
-JumpBeliefs JumpPropagation::run(const JumpProbabilities& evidence, int max_iterations,
-                                 int min_iterations) {
+void JumpPropagation::run(const JumpProbabilities& evidence, int max_iterations,
+                          JumpBeliefs& beliefs, int min_iterations) {
   load(evidence);
-  JumpBeliefs beliefs;
+  beliefs.iterations = 0;
+  beliefs.converged = false;
   while (beliefs.iterations < max_iterations &&
          (beliefs.iterations < min_iterations || !beliefs.converged)) {
     const bool is_first = beliefs.iterations == 0;
@@ -402,13 +401,14 @@ JumpBeliefs JumpPropagation::run(const JumpProbabilities& evidence, int max_iter
     ++beliefs.iterations;
     beliefs.converged = beliefs.curl_violations == 0;
   }
-  beliefs.marginals = marginals();
-  return beliefs;
+  read(beliefs.marginals);
 }
 
 JumpBeliefs propagate_jump_beliefs(const JumpProbabilities& evidence, int max_iterations,
                                    int min_iterations) {
-  return JumpPropagation().run(evidence, max_iterations, min_iterations);
+  JumpBeliefs beliefs;
+  JumpPropagation().run(evidence, max_iterations, beliefs, min_iterations);
+  return beliefs;
 }
 
 JumpConfigurations most_likely_configurations(const JumpProbabilities& marginals) {

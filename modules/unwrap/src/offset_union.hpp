@@ -34,6 +34,19 @@ class OffsetUnion {
     return {at->parent, offset + at->to_parent};
   }
 
+  /// Makes every member point at its root.
+  void flatten() {
+    for (Member& at : members_) {
+      // Members come after their parents more often than not; those are flat then.
+      const Place place = find(at.parent);
+      at.to_parent += place.offset;
+      at.parent = place.root;
+    }
+  }
+
+  /// What a member points at: its root, if no set has been joined since the last flatten().
+  int parent(int number) const { return members_[static_cast<std::size_t>(number)].parent; }
+
   /// Hangs the set of `child_root` under `root`: count(child_root) = count(root) + offset.
   void join(int root, int child_root, int offset) {
     member(child_root).parent = root;

@@ -218,4 +218,8 @@ ImageF phase_sigma_cycles(const ImageF& phase, const ImageF& amplitude, double s
   return sigma;
 }
 
+PhaseSigma::PhaseSigma(const DualFrequencyFrame& frame, const PhaseNoise& noise)
+    : a_cycles(phase_sigma_cycles(frame.phase_a, frame.amplitude_a, noise.scale_a)),
+      b_cycles(phase_sigma_cycles(frame.phase_b, frame.amplitude_b, noise.scale_b)) {}
+
 }  // namespace tofmap

@@ -87,20 +87,18 @@ TOFMAP_VECTOR_CLONES void fill_fused(int count, const float* range_a_m, const fl
 }  // namespace
 
 RangePair pair_ranges(const DualFrequencyFrame& frame, const ImageU8& counts,
-                      const BeatLimits& limits, const PhaseNoise& noise) {
-  const ImageF sigma_a = phase_sigma_cycles(frame.phase_a, frame.amplitude_a, noise.scale_a);
-  const ImageF sigma_b = phase_sigma_cycles(frame.phase_b, frame.amplitude_b, noise.scale_b);
+                      const BeatLimits& limits, const PhaseSigma& sigma) {
   RangePair pair;
   for (ImageF* plane :
        {&pair.range_a_m, &pair.residual_m, &pair.variance_a_m2, &pair.variance_b_m2}) {
     plane->resize(counts.rows(), counts.cols());
   }
-  fill_pair(
-      static_cast<int>(counts.size()),
-      {frame.phase_a.data(), frame.phase_b.data(), counts.data(), sigma_a.data(), sigma_b.data()},
-      static_cast<float>(limits.wavelength_a_m), static_cast<float>(limits.wavelength_b_m),
-      {pair.range_a_m.data(), pair.residual_m.data(), pair.variance_a_m2.data(),
-       pair.variance_b_m2.data()});
+  fill_pair(static_cast<int>(counts.size()),
+            {frame.phase_a.data(), frame.phase_b.data(), counts.data(), sigma.a_cycles.data(),
+             sigma.b_cycles.data()},
+            static_cast<float>(limits.wavelength_a_m), static_cast<float>(limits.wavelength_b_m),
+            {pair.range_a_m.data(), pair.residual_m.data(), pair.variance_a_m2.data(),
+             pair.variance_b_m2.data()});
   return pair;
 }
 

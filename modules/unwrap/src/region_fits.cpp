@@ -60,33 +60,67 @@ RegionFits::RegionFits(const BeatCost& beat, const ImageU8& nearest, OffsetUnion
       sums_(2 * beat.size()),
       both_(beat.size()) {
   for (std::size_t i = 0; i < regions_.size(); ++i) {
-    const auto pixel = static_cast<int>(i);
     const int best = nearest.data()[i];
-    if (best != invalid_wrap_count) regions_[i] = {best, pixel, pixel};
+    if (best == invalid_wrap_count) continue;
+    const auto pixel = static_cast<int>(i);
+    const int root = forest.parent(pixel);
+    Region& of = region(root);
+    if (pixel == root) of.best = best;
+    if (of.first == none) of.last = pixel;
+    next_[i] = of.first;
+    of.first = pixel;
   }
 }
 
 bool RegionFits::join(int root, int other, int offset, float certainty, double objection_share) {
   Region& into = region(root);
   Region& from = region(other);
-  const bool agree = into.best + offset == from.best;
-  if (!agree || from.slot != none) {
-    sum_up(root);
-    sum_up(other);
-    std::copy_n(slot(into.slot), size_, both_.data());
-    const float least = add_shifted(slot(from.slot), bound(other), offset, size_, both_.data());
+  if (into.best + offset != from.best) {
+    sum_up(from, all);
+    const float least = add_contested(into, from, offset);
     const float apart = slot(into.slot)[into.best + 1] + slot(from.slot)[from.best + 1];
     const auto tolerated = static_cast<float>(objection_share) * log_odds(certainty);
-    if (!agree && least - apart > tolerated) return false;
-    std::copy(both_.begin(), both_.end(), slot(into.slot));
-    free_slots_.push_back(std::exchange(from.slot, none));
-    if (!agree) {
-      const auto best = std::find(both_.begin(), both_.end(), least);
-      into.best = static_cast<int>(best - both_.begin()) - 1;
+    if (least - apart > tolerated) return false;
+    if (both_[static_cast<std::size_t>(into.best) + 1] > least) {
+      into.best = static_cast<int>(std::ranges::find(both_, least) - both_.begin()) - 1;
     }
+    take_sums(into, from);
+  } else if (from.slot != none) {
+    if (into.slot == none) into.slot = new_slot();
+    add_sums(into, from, offset);
+    take_sums(into, from);
   }
   hand_over(from, into);
   return true;
+}
+
+/// Sums of both regions, those of `from` complete, in both_: of enough pixels of `into` that the
+/// least sum is that of all pixels, but for what the others add to it at the best count of `into`.
+/// Returns the least sum.
+float RegionFits::add_contested(Region& into, const Region& from, int offset) {
+  constexpr int first_pixels = 4;
+  for (int pixels = first_pixels;; pixels *= 2) {
+    sum_up(into, pixels);
+    const float least = add_sums(into, from, offset);
+    // All pixels that are not summed have the same best count, and only widen its lead.
+    const bool is_sure =
+        into.first == none || both_[static_cast<std::size_t>(into.best) + 1] <= least;
+    if (is_sure) return least;
+  }
+}
+
+/// The sums of both slots in both_; returns the least.
+float RegionFits::add_sums(const Region& into, const Region& from, int offset) {
+  std::copy_n(slot(into.slot), size_, both_.data());
+  const float beyond = BeatCost::bound * static_cast<float>(from.summed);
+  return add_shifted(slot(from.slot), beyond, offset, size_, both_.data());
+}
+
+/// Makes both_ the sums of `into`.
+void RegionFits::take_sums(Region& into, Region& from) {
+  std::ranges::copy(both_, slot(into.slot));
+  into.summed += std::exchange(from.summed, 0);
+  free_slots_.push_back(std::exchange(from.slot, none));
 }
 
 float* RegionFits::slot(int number) {
@@ -106,20 +140,23 @@ int RegionFits::new_slot() {
   return number;
 }
 
-/// What any count costs that is out of the limits for all pixels of a region.
-float RegionFits::bound(int root) const {
-  return BeatCost::bound * static_cast<float>(forest_.size(root));
-}
-
-/// Sums the costs of all pixels of a region.
-void RegionFits::sum_up(int root) {
-  Region& of = region(root);
+/// Sums the costs of up to so many more pixels of a region.
+void RegionFits::sum_up(Region& of, int pixels) {
   if (of.slot == none) of.slot = new_slot();
-  const std::span<float> sums(slot(of.slot), beat_.size());
-  for (int pixel = of.first; pixel != none; pixel = next_[static_cast<std::size_t>(pixel)]) {
-    beat_.add(pixel, forest_.find(pixel).offset, sums);
+  constexpr int batch_size = 128;
+  std::array<CountedPixel, batch_size> batch;
+  while (of.first != none && pixels > 0) {
+    int size = 0;
+    for (; of.first != none && pixels > 0 && size < batch_size; --pixels) {
+      // All counts beyond the limits cost the same, so offsets need not go farther than those.
+      const int offset = std::clamp(forest_.find(of.first).offset, -size_, size_);
+      batch[static_cast<std::size_t>(size++)] = {of.first, offset};
+      of.first = next_[static_cast<std::size_t>(of.first)];
+    }
+    beat_.add({batch.data(), static_cast<std::size_t>(size)}, {slot(of.slot), beat_.size()});
+    of.summed += size;
   }
-  of.first = of.last = none;
+  if (of.first == none) of.last = none;
 }
 
 /// Gives the pixels that are not summed yet to another region.

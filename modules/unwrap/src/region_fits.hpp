@@ -5,6 +5,7 @@
 #include "offset_union.hpp"
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include <tofmap/core/image.hpp>
@@ -16,10 +17,12 @@ namespace tofmap {
 /// root's.
 ///
 /// Most joins are between regions whose best counts agree; then both fit together as well as apart,
-/// and their pixels need only be remembered. Costs of all counts are summed where they do not.
+/// and their pixels need only be remembered. Where they do not, costs of all counts are summed, of
+/// as many pixels as decide the matter.
 class RegionFits {
  public:
-  /// Every pixel is a region, `nearest` its best count; invalid ones take no part.
+  /// The regions are the trees of a flat forest. `nearest` is the best count of each pixel, and all
+  /// pixels of a tree make the same one best for the root. Invalid ones take no part.
   RegionFits(const BeatCost& beat, const ImageU8& nearest, OffsetUnion& forest);
 
   /// The count of the root at which the beats of all pixels together cost least.
@@ -32,20 +35,25 @@ class RegionFits {
 
  private:
   static constexpr int none = -1;
+  static constexpr int all = std::numeric_limits<int>::max();
 
   struct Region {
     int best = 0;      ///< count of the root that costs least
-    int first = none;  ///< pixels that are not summed yet, as a list
+    int first = none;  ///< pixels that are not summed yet, as a list; the best count of each of
+                       ///< them makes the root's `best`
     int last = none;
     int slot = none;  ///< of the summed costs of all others
+    int summed = 0;   ///< how many those are
   };
 
   Region& region(int root) { return regions_[static_cast<std::size_t>(root)]; }
   const Region& region(int root) const { return regions_[static_cast<std::size_t>(root)]; }
   float* slot(int number);
   int new_slot();
-  float bound(int root) const;
-  void sum_up(int root);
+  void sum_up(Region& of, int pixels);
+  float add_contested(Region& into, const Region& from, int offset);
+  float add_sums(const Region& into, const Region& from, int offset);
+  void take_sums(Region& into, Region& from);
   void hand_over(Region& from, Region& into);
 
   const BeatCost& beat_;

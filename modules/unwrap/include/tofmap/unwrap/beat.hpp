@@ -46,20 +46,26 @@ ImageU8 nearest_pair_counts(const DualFrequencyFrame& frame, const BeatLimits& l
 /// R̂ of equation 2: phase_a + n_A, cycles; NaN where the count is invalid.
 ImageF reconstruct_cycles(const ImageF& phase_a, const ImageU8& counts);
 
+/// A pixel, numbered row by row, whose count is that of something else plus an offset.
+struct CountedPixel {
+  int pixel;
+  int offset;
+};
+
 /// How badly a count fits the beat of each pixel, in nats: half the squared residual over its
 /// variance, bounded so that flying pixels and multipath cannot outvote a surface. Outside the
 /// limits, and without a return, every count costs the bound.
 class BeatCost {
  public:
   BeatCost() = default;
-  BeatCost(const DualFrequencyFrame& frame, const BeatLimits& limits, const PhaseNoise& noise);
+  BeatCost(const DualFrequencyFrame& frame, const BeatLimits& limits, const PhaseSigma& sigma);
 
   /// The cost of n_A at a pixel, numbered row by row: 0 … bound. n_A is any count.
   float operator()(Eigen::Index pixel, int n_a) const;
 
-  /// Costs of counts −1 … size() − 2: all that are within the limits, and at least one more at both
-  /// ends. Adds those of a pixel whose count is n_A + offset, and returns the least of the sums.
-  float add(Eigen::Index pixel, int offset, std::span<float> costs) const;
+  /// Adds costs of counts −1 … size() − 2: of all that are within the limits, and at least one more
+  /// at both ends. The count of each pixel is n_A + offset, where −size() ≤ offset ≤ size().
+  void add(std::span<const CountedPixel> pixels, std::span<float> costs) const;
   std::size_t size() const { return size_; }
 
   /// The likelihood of each pixel's count over the sum of all counts'; 0 where it is invalid.

@@ -20,13 +20,6 @@ struct JumpProbabilities {
   std::array<ImageF, 3> y;
 };
 
-/// Equation 1: f_d(i) = exp(−(φ(q) − φ(p) − i)² / 2σ²), of wrapped phases in cycles. Absent
-/// where either phase is NaN. σ² is that of the paper, the variance of true differences between
-/// neighbours (`sigma_cycles`), plus the variances of the noise of p and q (`noise_cycles`, a
-/// standard deviation a pixel): a noisy difference says little.
-JumpProbabilities discontinuity_term(const ImageF& phase, const ImageF& noise_cycles,
-                                     double sigma_cycles);
-
 /// Medians along one direction on both sides of every jump node (figure 6 of the paper):
 /// `neg` over the k pixels up to and with p, `pos` over the k pixels from q on. NaNs are left
 /// out, borders cut windows short; of an even number the lower of the two middle values.
@@ -38,16 +31,29 @@ struct SideMedians {
 SideMedians side_medians_x(const ImageF& image, int window_px);
 SideMedians side_medians_y(const ImageF& image, int window_px);
 
-/// The frequency term: f_f(i) = exp(−(|m_R̂^neg − m_A^neg| − |m_R̂^pos − m_A^pos| − i)² / 2σ²),
-/// with medians over `window_px` pixels of the wrapped phase and of its reconstruction R̂, in
-/// cycles. Where R̂ holds several wraps the inner difference may pass ±1; it is then taken as
-/// ±1, the nearest that a configuration can say. Absent where p or q is NaN.
-JumpProbabilities frequency_term(const ImageF& phase, const ImageF& reconstruction_cycles,
-                                 int window_px, double sigma_cycles);
+/// How much each term is trusted (equation 4), and how it is made.
+struct JumpTerms {
+  double sigma_cycles;         ///< σ of both terms: of true differences between neighbours
+  int window_px;               ///< k, pixels on each side of a jump in the medians
+  double trust_discontinuity;  ///< c_d
+  double trust_frequency;      ///< c_f
+};
 
-/// Fuses both terms, each trusted by its share: ((1 − c_d) + c_d f_d) ((1 − c_f) + c_f f_f),
-/// normalised; no configuration gets less than 1e-6. A node that either term lacks is absent.
-JumpProbabilities fuse(const JumpProbabilities& f_d, const JumpProbabilities& f_f, double c_d,
-                       double c_f);
+/// The evidence for each configuration of every jump node, from both terms:
+/// ((1 − c_d) + c_d f_d) ((1 − c_f) + c_f f_f), normalised; no configuration gets less than 1e-6.
+///
+/// Equation 1: f_d(i) = exp(−(φ(q) − φ(p) − i)² / 2σ²), of wrapped phases in cycles. To σ² come the
+/// variances of the noise of p and q (`noise_cycles`, a standard deviation a pixel): a noisy
+/// difference says little.
+///
+/// Equation 3: f_f(i) = exp(−(|m_R̂^neg − m_A^neg| − |m_R̂^pos − m_A^pos| − i)² / 2σ²), with medians
+/// of the wrapped phase and of its reconstruction R̂, in cycles. Where R̂ holds several wraps the
+/// inner difference may pass ±1; it is then taken as ±1, the nearest that a configuration can say.
+/// Without R̂, an image of no pixels, there is no f_f.
+///
+/// A node is absent where the phase of p or q is NaN.
+void find_jump_evidence(const ImageF& phase, const ImageF& noise_cycles,
+                        const ImageF& reconstruction_cycles, const JumpTerms& terms,
+                        JumpProbabilities& out);
 
 }  // namespace tofmap

@@ -32,14 +32,15 @@ struct JumpBeliefs {
 /// two iterations suffice. Buffers persist between calls.
 class JumpPropagation {
  public:
-  JumpBeliefs run(const JumpProbabilities& evidence, int max_iterations, int min_iterations = 1);
+  void run(const JumpProbabilities& evidence, int max_iterations, JumpBeliefs& beliefs,
+           int min_iterations = 1);
 
  private:
   void load(const JumpProbabilities& evidence);
   void reset(int rows, int cols);
   void sweep_forward_and_down(bool is_first);
   void sweep_backward_and_up(bool is_first, JumpBeliefs& beliefs);
-  JumpProbabilities marginals();
+  void read(JumpProbabilities& marginals);
 
   DiagonalLayout layout_;      ///< of pixels; nodes and curls lie where their upper left pixel does
   std::vector<float> planes_;  ///< evidence and messages

@@ -28,4 +28,13 @@ PhaseNoise estimate_phase_noise(const DualFrequencyFrame& frame);
 /// σ_phase of every pixel, cycles; NaN where phase is NaN. `amplitude` may be empty.
 ImageF phase_sigma_cycles(const ImageF& phase, const ImageF& amplitude, double scale);
 
+/// The same at both frequencies.
+struct PhaseSigma {
+  ImageF a_cycles;
+  ImageF b_cycles;
+
+  PhaseSigma() = default;
+  PhaseSigma(const DualFrequencyFrame& frame, const PhaseNoise& noise);
+};
+
 }  // namespace tofmap

@@ -27,7 +27,7 @@ struct RangePair {
 /// The ranges of both frequencies. Where noise may carry B across a wrap boundary, or the two
 /// differ by more than noise explains (a mixed pixel, or a wrong count), there is no residual.
 RangePair pair_ranges(const DualFrequencyFrame& frame, const ImageU8& counts,
-                      const BeatLimits& limits, const PhaseNoise& noise);
+                      const BeatLimits& limits, const PhaseSigma& sigma);
 
 /// Their mean, weighted by the inverse variances: less noise than either. A's range alone where
 /// there is no residual. `shrinkage_m` is what the range lost from A's exposure to B's; it may be

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tofmap/core/option_table.hpp>
+
+namespace tofmap {
+
+enum class UnwrapMethod {
+  joint,   ///< beliefs over wrap counts, from both frequencies and all pixels together
+  none,    ///< wrapped: count 0 everywhere
+  pixel,   ///< equation 2 for any number of wraps: each pixel by itself
+  single,  ///< the paper without its frequency term; needs no second frequency
+  jump,    ///< the paper
+};
+
+/// The names of all methods, the best first, with `separator` between them.
+std::string unwrap_method_names(const std::string& separator);
+
+/// The options of unwrapping, group `unwrap`. docs/unwrapping.md has the effect of each.
+struct UnwrapOptions {
+  std::string method = "joint";
+  double max_range_m = 0;
+  // Of joint.
+  int count_iterations = 3;
+  int scales = 3;
+  double outlier_share = 0.4;
+  double slope_m = 0.2;
+  bool amplitude_edges = true;
+  bool mixed_pixels = true;
+  bool fuse_frequencies = true;
+  bool correct_exposure = true;
+  // Of jump and single.
+  int iterations = 5;
+  double trust_discontinuity = 0.9;  ///< c_d of the paper
+  double trust_frequency = 0.5;      ///< c_f
+  int window_px = 5;                 ///< k
+  double sigma_cycles = 0.07;        ///< σ of f_d and f_f
+  double objection_share = 1;
+
+  static std::vector<OptionField<UnwrapOptions>> fields();
+};
+
+/// The method of this name, if there is one.
+std::optional<UnwrapMethod> find_unwrap_method(std::string_view name);
+
+/// The method that the options name. Throws UsageError if there is none of that name.
+UnwrapMethod unwrap_method(const UnwrapOptions& options);
+
+}  // namespace tofmap
