@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "region_fits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <tofmap/core/range_image.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Pixels of one surface, 7 wavelengths away, whose beat is noisy: most of them have the right
+/// count, some any other.
+DualFrequencyFrame noisy_surface(const BeatLimits& limits, int pixels, std::mt19937& random) {
+  std::uniform_real_distribution<double> range_m(7 * limits.wavelength_a_m,
+                                                 8 * limits.wavelength_a_m);
+  std::normal_distribution<double> noise(0, 1);
+  DualFrequencyFrame frame;
+  for (ImageF* image : {&frame.phase_a, &frame.phase_b, &frame.amplitude_a, &frame.amplitude_b}) {
+    *image = ImageF::Ones(1, pixels);
+  }
+  const auto fraction = [](double x) { return static_cast<float>(x - std::floor(x)); };
+  for (int i = 0; i < pixels; ++i) {
+    const double r = range_m(random);
+    frame.phase_a(0, i) = fraction(r / limits.wavelength_a_m + 0.02 * noise(random));
+    frame.phase_b(0, i) = fraction(r / limits.wavelength_b_m + 0.02 * noise(random));
+  }
+  return frame;
+}
+
+/// Costs of counts of a region's root, of all pixels added up.
+class PlainFits {
+ public:
+  PlainFits(const BeatCost& cost, OffsetUnion& forest) : cost_(cost), forest_(forest) {}
+
+  double of(int root, int count) const {
+    double sum = 0;
+    for (int i = 0; i < pixels; ++i) {
+      const OffsetUnion::Place place = forest_.find(i);
+      if (place.root == root) sum += cost_(i, count + place.offset);
+    }
+    return sum;
+  }
+
+  double least(int root) const {
+    return least_of([&](int count) { return of(root, count); });
+  }
+
+  double least_together(int root, int other, int offset) const {
+    return least_of([&](int count) { return of(root, count) + of(other, count + offset); });
+  }
+
+  static constexpr int pixels = 150;
+
+ private:
+  template <class Cost>
+  double least_of(const Cost& cost) const {
+    const auto reach = static_cast<int>(cost_.size());
+    double least = cost(-1);
+    for (int n = 0; n < reach - 1; ++n) least = std::min(least, cost(n));
+    return least;
+  }
+
+  const BeatCost& cost_;
+  OffsetUnion& forest_;
+};
+
+TEST(RegionFits, DecideAsIfAllCostsWereSummed) {
+  SensorModel sensor;
+  sensor.modulation = {29e6, 31e6};
+  const BeatLimits limits = beat_limits(sensor, 0);
+  constexpr double objection_share = 1;
+  int joined = 0;
+  int refused = 0;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    std::mt19937 random(seed);
+    const DualFrequencyFrame frame = noisy_surface(limits, PlainFits::pixels, random);
+    const BeatCost cost(frame, limits, PhaseSigma(frame, {0.02, 0.02}));
+    const ImageU8 nearest = nearest_pair_counts(frame, limits);
+    OffsetUnion forest(PlainFits::pixels);
+    RegionFits fits(cost, nearest, forest);
+    const PlainFits plain(cost, forest);
+    std::uniform_int_distribution<int> pixel(0, PlainFits::pixels - 1);
+    std::discrete_distribution<int> wrong_step({0.05, 0.9, 0.05});
+    std::uniform_real_distribution<float> certainty(0.6F, 1.0F);
+    for (int trial = 0; trial < 400; ++trial) {
+      const OffsetUnion::Place p = forest.find(pixel(random));
+      const OffsetUnion::Place q = forest.find(pixel(random));
+      if (p.root == q.root) continue;
+      const int root = forest.size(p.root) >= forest.size(q.root) ? p.root : q.root;
+      const int other = root == p.root ? q.root : p.root;
+      const int offset = wrong_step(random) - 1;
+      const float sure = certainty(random);
+      const double tolerated = objection_share * std::log(sure / std::max(1 - sure, 1e-6F));
+      const double objection =
+          plain.least_together(root, other, offset) - plain.least(root) - plain.least(other);
+      const bool is_joined = fits.join(root, other, offset, sure, objection_share);
+      constexpr double rounding = 1e-2;  // of sums of up to 150 costs of up to 4.5 in float
+      if (std::abs(objection - tolerated) > rounding) {
+        ASSERT_EQ(is_joined, objection <= tolerated)
+            << "seed " << seed << ", trial " << trial << ": " << objection << " " << tolerated;
+      }
+      (is_joined ? joined : refused) += 1;
+      if (!is_joined) continue;
+      forest.join(root, other, offset);
+      ASSERT_NEAR(plain.of(root, fits.best_count(root)), plain.least(root), rounding);
+    }
+  }
+  EXPECT_GT(joined, 500);
+  EXPECT_GT(refused, 500);
+}
+
+}  // namespace
+}  // namespace tofmap
