@@ -36,7 +36,7 @@ void drop_ambiguous(const CountBeliefs& beliefs, const BeatLimits& limits, Range
 
 /// Ranges from both frequencies; B's are brought back to the instant of A if the camera's rays are
 /// known.
-FusedRanges ranges_of_both(const PreparedFrame& frame, const ImageU8& counts,
+FusedRanges ranges_of_both(const MeasuredFrame& frame, const ImageU8& counts,
                            const BeatLimits& limits, const PixelRays& rays) {
   const RangePair pair = pair_ranges(frame.returns, counts, limits, frame.sigma);
   if (!same_size(rays.x, counts)) return fuse_ranges(pair, {});
@@ -49,7 +49,7 @@ FusedRanges ranges_of_both(const PreparedFrame& frame, const ImageU8& counts,
 
 }  // namespace
 
-UnwrapResult unwrap_jointly(CountEstimator& estimator, const PreparedFrame& frame,
+UnwrapResult unwrap_jointly(CountEstimator& estimator, const MeasuredFrame& frame,
                             const BeatLimits& limits, const PixelRays& rays,
                             const UnwrapOptions& options) {
   const CountBeliefs beliefs =

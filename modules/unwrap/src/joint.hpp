@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "prepared_frame.hpp"
+#include "measured_frame.hpp"
 
 #include <tofmap/core/camera.hpp>
 #include <tofmap/unwrap/count_estimate.hpp>
@@ -12,7 +12,7 @@ namespace tofmap {
 
 /// The method `joint`: counts by belief propagation, ranges from both frequencies. `rays` may be
 /// empty, then B is not brought back to the instant of A.
-UnwrapResult unwrap_jointly(CountEstimator& estimator, const PreparedFrame& frame,
+UnwrapResult unwrap_jointly(CountEstimator& estimator, const MeasuredFrame& frame,
                             const BeatLimits& limits, const PixelRays& rays,
                             const UnwrapOptions& options);
 

@@ -6,7 +6,7 @@
 #include "confidence.hpp"
 #include "counted_ranges.hpp"
 #include "joint.hpp"
-#include "prepared_frame.hpp"
+#include "measured_frame.hpp"
 #include "tofmap/unwrap/beat.hpp"
 #include "tofmap/unwrap/jump_integration.hpp"
 
@@ -29,7 +29,7 @@ ImageU8 absolute_counts(const RelativeCounts& relative, int count_a) {
 }
 
 /// The paper: evidence, propagation, integration, anchors.
-UnwrapResult unwrap_by_jumps(JumpEstimator& estimator, const PreparedFrame& frame,
+UnwrapResult unwrap_by_jumps(JumpEstimator& estimator, const MeasuredFrame& frame,
                              const BeatLimits& limits, const UnwrapOptions& options) {
   const bool two_frequencies = unwrap_method(options) == UnwrapMethod::jump;
   const JumpEstimate& jumps = estimator.estimate(frame.returns, frame.sigma, limits, options);
@@ -56,7 +56,7 @@ UnwrapResult unwrap_by_jumps(JumpEstimator& estimator, const PreparedFrame& fram
 }
 
 /// Every pixel by itself: its counts, as confident as the beat is of them.
-UnwrapResult unwrap_by_pixel(const PreparedFrame& frame, const ImageU8& counts,
+UnwrapResult unwrap_by_pixel(const MeasuredFrame& frame, const ImageU8& counts,
                              const BeatLimits& limits) {
   const ImageF confidence = BeatCost(frame.returns, limits, frame.sigma).probability(counts);
   return {.image = make_range_image(frame.returns.phase_a, frame.sigma.a_cycles, counts, confidence,
@@ -82,25 +82,25 @@ Unwrapper::Unwrapper(const SensorModel& sensor, const UnwrapOptions& options)
 }
 
 UnwrapResult Unwrapper::unwrap(const DualFrequencyFrame& frame) {
-  const PreparedFrame prepared(frame, saturation_amplitude_);
-  const auto unwrap_prepared = [&] {
+  const MeasuredFrame measured(frame, saturation_amplitude_);
+  const auto unwrap_measured = [&] {
     switch (method_) {
       case UnwrapMethod::joint:
-        return unwrap_jointly(count_estimator_, prepared, limits_, rays_, options_);
+        return unwrap_jointly(count_estimator_, measured, limits_, rays_, options_);
       case UnwrapMethod::jump:
       case UnwrapMethod::single:
-        return unwrap_by_jumps(jump_estimator_, prepared, limits_, options_);
+        return unwrap_by_jumps(jump_estimator_, measured, limits_, options_);
       case UnwrapMethod::pixel:
-        return unwrap_by_pixel(prepared, nearest_pair_counts(prepared.returns, limits_), limits_);
+        return unwrap_by_pixel(measured, nearest_pair_counts(measured.returns, limits_), limits_);
       case UnwrapMethod::none:
         break;
     }
-    return unwrap_by_pixel(prepared, wrapped_counts(prepared.valid), limits_);
+    return unwrap_by_pixel(measured, wrapped_counts(measured.valid), limits_);
   };
-  UnwrapResult result = unwrap_prepared();
+  UnwrapResult result = unwrap_measured();
   const auto because_saturated = static_cast<std::uint8_t>(InvalidReason::saturated);
-  result.image.reason = (prepared.saturated != 0).select(because_saturated, result.image.reason);
-  result.phase_noise_cycles = median_phase_noise_cycles(prepared);
+  result.image.reason = (measured.saturated != 0).select(because_saturated, result.image.reason);
+  result.phase_noise_cycles = median_phase_noise_cycles(measured);
   return result;
 }
 

@@ -9,10 +9,10 @@
 namespace tofmap {
 
 /// What every method starts from.
-struct PreparedFrame {
+struct MeasuredFrame {
   /// Throws UsageError if images of the frame differ in size. Amplitudes from
   /// `saturation_amplitude` on are saturated; 0: none is.
-  PreparedFrame(const DualFrequencyFrame& frame, double saturation_amplitude);
+  MeasuredFrame(const DualFrequencyFrame& frame, double saturation_amplitude);
 
   DualFrequencyFrame returns;  ///< phases are NaN at both frequencies where either has no return
   ImageU8 valid;               ///< not 0 where both frequencies have one
@@ -22,6 +22,6 @@ struct PreparedFrame {
 };
 
 /// The median of the noise of A's phase over the pixels with a return, cycles; 0 if there are none.
-double median_phase_noise_cycles(const PreparedFrame& frame);
+double median_phase_noise_cycles(const MeasuredFrame& frame);
 
 }  // namespace tofmap

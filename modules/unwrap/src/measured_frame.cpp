@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "prepared_frame.hpp"
+#include "measured_frame.hpp"
 
 #include "median.hpp"
 #include "vector_clones.hpp"
@@ -53,7 +53,7 @@ TOFMAP_VECTOR_CLONES void keep_lit(int pixels, const float* amplitude_a, const f
 
 }  // namespace
 
-PreparedFrame::PreparedFrame(const DualFrequencyFrame& frame, double saturation_amplitude)
+MeasuredFrame::MeasuredFrame(const DualFrequencyFrame& frame, double saturation_amplitude)
     : returns(frame) {
   check(frame);
   const Eigen::Index rows = frame.phase_a.rows();
@@ -72,7 +72,7 @@ PreparedFrame::PreparedFrame(const DualFrequencyFrame& frame, double saturation_
   sigma = PhaseSigma(returns, noise);
 }
 
-double median_phase_noise_cycles(const PreparedFrame& frame) {
+double median_phase_noise_cycles(const MeasuredFrame& frame) {
   const ImageF& sigma = frame.sigma.a_cycles;
   std::vector<float> sigmas;
   sigmas.reserve(static_cast<std::size_t>(sigma.size()));
