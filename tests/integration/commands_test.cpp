@@ -100,7 +100,7 @@ TEST_F(Commands, UnwrapFiltersOnRequestAndSaysWhyPixelsAreGone) {
   EXPECT_TRUE((amplitude >= 40 || reason != 0).all());
   const auto removed = read_json(out_ / "report.json")["frames"][0]["removed"];
   EXPECT_EQ(removed["amplitude"], (reason == 2).count());
-  EXPECT_EQ(removed["jump_edge"], (reason == 4).count());
+  EXPECT_EQ(removed["plane_edge"], (reason == 4).count());
 }
 
 TEST_F(Commands, UnwrapDropsUnsurePixelsOnRequest) {

@@ -121,12 +121,12 @@ std::optional<RayHit> RayScene::cast(const Eigen::Vector3d& origin,
 
   const TriangleMesh& mesh = embree_->mesh;
   const auto& triangle = mesh.triangles[ray.hit.primID];
-  const Eigen::Vector3d normal(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
   const double u = ray.hit.u;
   const double v = ray.hit.v;
   RayHit hit;
   hit.range_m = ray.ray.tfar;
-  hit.cos_incidence = std::min(1.0, std::abs(normal.dot(direction)) / normal.norm());
+  hit.normal = Eigen::Vector3d(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z).normalized();
+  hit.cos_incidence = std::min(1.0, std::abs(hit.normal.dot(direction)));
   hit.reflectance = (1 - u - v) * mesh.reflectance[triangle[0]] +
                     u * mesh.reflectance[triangle[1]] + v * mesh.reflectance[triangle[2]];
   return hit;

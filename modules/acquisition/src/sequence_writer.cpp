@@ -84,7 +84,8 @@ std::string image_name(int index) {
   return name;
 }
 
-void check_size(const ImageF& image, const CameraModel& camera, const char* what) {
+template <class T>
+void check_size(const Image<T>& image, const CameraModel& camera, const char* what) {
   if (image.cols() == camera.width_px && image.rows() == camera.height_px) return;
   throw UsageError(std::string(what) + " is " + std::to_string(image.cols()) + " x " +
                    std::to_string(image.rows()) + " pixels; the camera has " +
@@ -120,7 +121,8 @@ SequenceWriter::SequenceWriter(std::filesystem::path folder, const SensorModel& 
 
 void SequenceWriter::add(const DualFrequencyFrame& frame,
                          const std::optional<Pose>& world_from_camera,
-                         const std::optional<ImageF>& range_truth_m) {
+                         const std::optional<ImageF>& range_truth_m,
+                         const std::optional<ImageU8>& label_truth) {
   // Compared as written: frames less than a microsecond apart would read back as one instant.
   const double timestamp_s = std::round(frame.timestamp_s * 1e6) / 1e6;
   if (!(std::isfinite(timestamp_s) && timestamp_s > last_timestamp_s_)) {
@@ -130,7 +132,7 @@ void SequenceWriter::add(const DualFrequencyFrame& frame,
   const std::string name = image_name(count_);
   std::ostringstream line;
   line << std::fixed << std::setprecision(6) << timestamp_s;
-  const auto write = [&](const char* kind, const ImageF& image, const ImageU16& pixels) {
+  const auto write = [&](const char* kind, const auto& image, const auto& pixels) {
     check_size(image, sensor_.camera, kind);
     make_folder(folder_ / kind);
     write_png(folder_ / kind / name, pixels);
@@ -147,6 +149,7 @@ void SequenceWriter::add(const DualFrequencyFrame& frame,
   }
   const std::string listed = line.str();
   if (range_truth_m) write("range_truth", *range_truth_m, range_pixels(*range_truth_m));
+  if (label_truth) write("label_truth", *label_truth, *label_truth);
 
   if (world_from_camera) {
     const std::filesystem::path file = folder_ / "groundtruth.txt";

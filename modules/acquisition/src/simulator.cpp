@@ -10,8 +10,9 @@
 #include <complex>
 #include <limits>
 #include <numbers>
-#include <tuple>
+#include <utility>
 
+#include <tofmap/acquisition/pixel_label.hpp>
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/core/error.hpp>
 
@@ -158,6 +159,12 @@ struct Simulator::Exposure {
   std::uint64_t noise_key = 0;
 };
 
+struct Simulator::Exposed {
+  ImageF phase;
+  ImageF amplitude;
+  ImageU8 label;
+};
+
 SimulatedFrame Simulator::simulate(int index) const {
   if (index < 0 || index >= *frame_count()) {
     throw UsageError("frame " + std::to_string(index) + " of the simulation: there are frames 0 " +
@@ -173,61 +180,76 @@ SimulatedFrame Simulator::simulate(int index) const {
   DualFrequencyFrame& frame = simulated.frame;
   frame.index = index;
   frame.timestamp_s = at_a.timestamp_s;
-  std::tie(frame.phase_a, frame.amplitude_a) =
-      expose({at_a.world_from_camera, sensor_.modulation.wavelength_a_m(), key(0)});
-  std::tie(frame.phase_b, frame.amplitude_b) =
-      expose({at_b.world_from_camera, sensor_.modulation.wavelength_b_m(), key(1)});
+  Exposed a = expose({at_a.world_from_camera, sensor_.modulation.wavelength_a_m(), key(0)});
+  Exposed b = expose({at_b.world_from_camera, sensor_.modulation.wavelength_b_m(), key(1)});
+  frame.phase_a = std::move(a.phase);
+  frame.amplitude_a = std::move(a.amplitude);
+  frame.phase_b = std::move(b.phase);
+  frame.amplitude_b = std::move(b.amplitude);
+  // Without a return at either frequency there is no range.
+  simulated.label =
+      frame.phase_b.isNaN().select(static_cast<std::uint8_t>(PixelLabel::no_return), a.label);
   simulated.world_from_camera = at_a.world_from_camera;
-  simulated.range_truth_m = cast_truth(at_a.world_from_camera);
+  cast_truth(simulated);
   return simulated;
 }
 
-std::pair<ImageF, ImageF> Simulator::expose(const Exposure& exposure) const {
+Simulator::Exposed Simulator::expose(const Exposure& exposure) const {
   const int rows = sensor_.camera.height_px;
   const int cols = sensor_.camera.width_px;
   const int rays_per_pixel = options_.subpixels * options_.subpixels;
   const Eigen::Matrix3d turn = exposure.world_from_camera.linear();
   const Eigen::Vector3d origin = exposure.world_from_camera.translation();
-  ImageF phase = ImageF::Constant(rows, cols, nan);
-  ImageF amplitude = ImageF::Zero(rows, cols);
+  Exposed out{ImageF::Constant(rows, cols, nan), ImageF::Zero(rows, cols),
+              ImageU8::Zero(rows, cols)};
 
 #pragma omp parallel for schedule(dynamic)
   for (int v = 0; v < rows; ++v) {
+    std::vector<SubRay> rays(static_cast<std::size_t>(rays_per_pixel));
     for (int u = 0; u < cols; ++u) {
       const std::size_t pixel = static_cast<std::size_t>(v) * cols + u;
       std::complex<double> signal = 0;
       bool any_hit = false;
       for (int i = 0; i < rays_per_pixel; ++i) {
-        const Eigen::Vector3d ray = turn * rays_[pixel * rays_per_pixel + i].cast<double>();
-        const auto hit = ray_scene_.cast(origin, ray, sensor_.max_range_m);
-        if (!hit) continue;
+        SubRay& ray = rays[static_cast<std::size_t>(i)];
+        ray.direction = turn * rays_[pixel * rays_per_pixel + i].cast<double>();
+        ray.hit = ray_scene_.cast(origin, ray.direction, sensor_.max_range_m);
+        if (!ray.hit) continue;
         any_hit = true;
+        const RayHit& hit = *ray.hit;
         const double strength =
-            amplitude_unit * hit->reflectance * hit->cos_incidence / (hit->range_m * hit->range_m);
-        signal += std::polar(strength, two_pi * hit->range_m / exposure.wavelength_m);
+            amplitude_unit * hit.reflectance * hit.cos_incidence / (hit.range_m * hit.range_m);
+        signal += std::polar(strength, two_pi * hit.range_m / exposure.wavelength_m);
       }
       if (!any_hit) continue;
       signal = signal / static_cast<double>(rays_per_pixel) +
                noise_sigma_ * complex_noise(exposure.noise_key, pixel);
       const double modulus = std::abs(signal);
       if (modulus < 0.5) continue;  // rounds to zero: no return
-      amplitude(v, u) = static_cast<float>(std::min(modulus, max_amplitude));
-      phase(v, u) = wrapped_cycles(std::arg(signal));
+      out.amplitude(v, u) = static_cast<float>(std::min(modulus, max_amplitude));
+      out.phase(v, u) = wrapped_cycles(std::arg(signal));
+      const double sigma_m = noise_sigma_ / modulus * exposure.wavelength_m / two_pi;
+      out.label(v, u) = static_cast<std::uint8_t>(
+          label_pixel(rays, out.phase(v, u), exposure.wavelength_m, sigma_m));
     }
   }
-  return {std::move(phase), std::move(amplitude)};
+  return out;
 }
 
-ImageF Simulator::cast_truth(const Pose& world_from_camera) const {
-  ImageF range_m = ImageF::Constant(sensor_.camera.height_px, sensor_.camera.width_px, nan);
+void Simulator::cast_truth(SimulatedFrame& simulated) const {
+  const Pose& world_from_camera = simulated.world_from_camera;
+  simulated.range_truth_m =
+      ImageF::Constant(sensor_.camera.height_px, sensor_.camera.width_px, nan);
+  simulated.cos_incidence = simulated.range_truth_m;
   for (int v = 0; v < sensor_.camera.height_px; ++v) {
     for (int u = 0; u < sensor_.camera.width_px; ++u) {
       const Eigen::Vector3d ray = world_from_camera.linear() * pixel_ray(sensor_.camera, u, v);
       const auto hit = ray_scene_.cast(world_from_camera.translation(), ray, sensor_.max_range_m);
-      if (hit) range_m(v, u) = static_cast<float>(hit->range_m);
+      if (!hit) continue;
+      simulated.range_truth_m(v, u) = static_cast<float>(hit->range_m);
+      simulated.cos_incidence(v, u) = static_cast<float>(hit->cos_incidence);
     }
   }
-  return range_m;
 }
 
 int simulate_sequence(const Simulator& simulator, const std::filesystem::path& folder,
@@ -238,7 +260,8 @@ int simulate_sequence(const Simulator& simulator, const std::filesystem::path& f
   for (int i = 0; i < total; ++i) {
     if (keep_going && !keep_going(i, total)) break;
     const SimulatedFrame simulated = simulator.simulate(i);
-    writer.add(simulated.frame, simulated.world_from_camera, simulated.range_truth_m);
+    writer.add(simulated.frame, simulated.world_from_camera, simulated.range_truth_m,
+               simulated.label);
   }
   return writer.count();
 }

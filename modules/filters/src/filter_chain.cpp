@@ -5,53 +5,112 @@
 
 #include "tofmap/filters/gates.hpp"
 #include "tofmap/filters/jump_edge_filter.hpp"
+#include "tofmap/filters/plane_edge_filter.hpp"
+#include "tofmap/filters/smooth_filter.hpp"
+#include "tofmap/filters/step_edge_filter.hpp"
 
+#include <algorithm>
+#include <array>
 #include <numbers>
 #include <sstream>
+#include <string_view>
 
 #include <tofmap/core/error.hpp>
 
 namespace tofmap {
 namespace {
 
-struct FilterStep {
-  RangeImage image;
-  InvalidReason reason;
+constexpr double rad_per_deg = std::numbers::pi / 180;
+
+/// What filters know of a frame besides its ranges.
+struct FilterInput {
+  const DualFrequencyFrame& frame;
+  const PixelRays& rays;
+  const FilterOptions& options;
 };
 
-FilterStep apply_filter(const std::string& name, const RangeImage& image,
-                        const DualFrequencyFrame& frame, const PixelRays& rays,
-                        const FilterOptions& options) {
-  if (name == "amplitude") {
-    return {drop_low_amplitude(image, frame, options.min_amplitude), InvalidReason::low_amplitude};
-  }
-  if (name == "confidence") {
-    return {drop_low_confidence(image, options.min_confidence), InvalidReason::low_confidence};
-  }
-  if (name == "jump_edge") {
-    const double max_angle_rad = options.max_edge_angle_deg * std::numbers::pi / 180;
-    return {drop_jump_edges(image, rays, max_angle_rad, options.min_edge_gap_sigmas),
-            InvalidReason::jump_edge};
-  }
+struct NamedFilter {
+  std::string_view name;
+  InvalidReason reason;  ///< of what it drops; none if it drops nothing
+  RangeImage (*apply)(const RangeImage&, const FilterInput&);
+};
+
+constexpr std::array<NamedFilter, 6> all_filters{
+    {{"amplitude", InvalidReason::low_amplitude,
+      [](const RangeImage& image, const FilterInput& in) {
+        return drop_low_amplitude(image, in.frame, in.options.min_amplitude);
+      }},
+     {"confidence", InvalidReason::low_confidence,
+      [](const RangeImage& image, const FilterInput& in) {
+        return drop_low_confidence(image, in.options.min_confidence);
+      }},
+     {"jump_edge", InvalidReason::jump_edge,
+      [](const RangeImage& image, const FilterInput& in) {
+        return drop_jump_edges(image, in.rays, in.options.max_edge_angle_deg * rad_per_deg,
+                               in.options.min_edge_gap_sigmas);
+      }},
+     {"step_edge", InvalidReason::jump_edge,
+      [](const RangeImage& image, const FilterInput& in) {
+        return drop_steps(image, in.rays,
+                          {.max_incidence_rad = in.options.max_step_incidence_deg * rad_per_deg,
+                           .min_sigmas = in.options.min_step_sigmas});
+      }},
+     {"plane_edge", InvalidReason::jump_edge,
+      [](const RangeImage& image, const FilterInput& in) {
+        return drop_off_planes(image, in.rays,
+                               {.max_sigmas = in.options.max_plane_sigmas,
+                                .tolerance_m = in.options.plane_tolerance_m});
+      }},
+     {"smooth", InvalidReason::none, [](const RangeImage& image, const FilterInput& in) {
+        return smooth_ranges(image, in.rays,
+                             {.max_sigmas = in.options.max_smooth_sigmas,
+                              .tolerance_m = in.options.smooth_tolerance_m});
+      }}}};
+
+const NamedFilter& find_filter(const std::string& name) {
+  const auto* found = std::ranges::find(all_filters, name, &NamedFilter::name);
+  if (found != all_filters.end()) return *found;
   throw UsageError("option filters.chain: '" + name +
-                   "' is no filter; allowed: amplitude, confidence, jump_edge");
+                   "' is no filter; allowed: " + filter_names(", "));
 }
 
 }  // namespace
 
 std::vector<OptionField<FilterOptions>> FilterOptions::fields() {
   using O = FilterOptions;
+  static const std::string chain_meaning =
+      "names of the filters, in their order: " + filter_names(", ");
   return {
-      {"chain", &O::chain, 0, 0, "",
-       "names of the filters, in their order: amplitude, confidence, jump_edge"},
+      {"chain", &O::chain, 0, 0, "", chain_meaning},
       {"min_amplitude", &O::min_amplitude, 0, 1e9, "",
-       "pixels with a weaker signal are dropped; in the camera's units"},
-      {"min_confidence", &O::min_confidence, 0, 1, "", "pixels less sure than this are dropped"},
+       "amplitude: pixels with a weaker signal are dropped; in the camera's units"},
+      {"min_confidence", &O::min_confidence, 0, 1, "",
+       "confidence: pixels less sure than this are dropped"},
       {"max_edge_angle_deg", &O::max_edge_angle_deg, 90, 180, "deg",
-       "a pixel with a neighbour this straight behind it is a flying one"},
+       "jump_edge: a pixel with a neighbour this straight behind it is a flying one"},
       {"min_edge_gap_sigmas", &O::min_edge_gap_sigmas, 0, 100, "",
-       "neighbours closer than this many standard deviations of the noise are no edge"},
+       "jump_edge: neighbours closer than this many standard deviations of the noise are no edge"},
+      {"max_step_incidence_deg", &O::max_step_incidence_deg, 0, 89.9, "deg",
+       "step_edge: surfaces seen at more than this look like steps"},
+      {"min_step_sigmas", &O::min_step_sigmas, 0, 100, "",
+       "step_edge: steps below this many standard deviations of the noise are none"},
+      {"max_plane_sigmas", &O::max_plane_sigmas, 0, 100, "",
+       "plane_edge: pixels off the planes around them by more standard deviations are dropped"},
+      {"plane_tolerance_m", &O::plane_tolerance_m, 0, 10, "m",
+       "plane_edge: but not if they are no farther off than this"},
+      {"max_smooth_sigmas", &O::max_smooth_sigmas, 0, 100, "",
+       "smooth: pixels that differ by more standard deviations are not averaged"},
+      {"smooth_tolerance_m", &O::smooth_tolerance_m, 0, 10, "m",
+       "smooth: unless they differ by less than this"},
   };
+}
+
+std::string filter_names(const std::string& separator) {
+  std::string names;
+  for (const NamedFilter& filter : all_filters) {
+    names += (names.empty() ? "" : separator) + std::string(filter.name);
+  }
+  return names;
 }
 
 FilterResult apply_filters(const RangeImage& image, const DualFrequencyFrame& frame,
@@ -60,10 +119,10 @@ FilterResult apply_filters(const RangeImage& image, const DualFrequencyFrame& fr
   result.image = image;
   std::istringstream names(options.chain);
   for (std::string name; names >> name;) {
+    const NamedFilter& filter = find_filter(name);
     const int before = result.image.count_valid();
-    FilterStep step = apply_filter(name, result.image, frame, rays, options);
-    result.image = std::move(step.image);
-    result.counts.push_back({name, step.reason, before - result.image.count_valid()});
+    result.image = filter.apply(result.image, {frame, rays, options});
+    result.counts.push_back({name, filter.reason, before - result.image.count_valid()});
   }
   return result;
 }

@@ -4,7 +4,6 @@
 #include "tofmap/unwrap/beat.hpp"
 
 #include "fast_math.hpp"
-#include "vector_clones.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,6 +14,7 @@
 
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/range_image.hpp>
+#include <tofmap/core/vector_clones.hpp>
 #include <tofmap/unwrap/diagonal_layout.hpp>
 
 namespace tofmap {

@@ -3,14 +3,13 @@
 
 #include "confidence.hpp"
 
-#include "vector_clones.hpp"
-
 #include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
 
 #include <tofmap/core/range_image.hpp>
+#include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
 namespace {

@@ -4,12 +4,13 @@
 #include "tofmap/unwrap/count_model.hpp"
 
 #include "fast_math.hpp"
-#include "vector_clones.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+
+#include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
 namespace {

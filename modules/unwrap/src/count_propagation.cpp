@@ -4,12 +4,12 @@
 #include "tofmap/unwrap/count_propagation.hpp"
 
 #include "fast_math.hpp"
-#include "vector_clones.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <tofmap/core/range_image.hpp>
+#include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
 namespace {

@@ -3,9 +3,9 @@
 
 #include "counted_ranges.hpp"
 
-#include "vector_clones.hpp"
-
 #include <limits>
+
+#include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
 namespace {

@@ -3,8 +3,6 @@
 
 #include "tofmap/unwrap/exposure_motion.hpp"
 
-#include "vector_clones.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,6 +13,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <tofmap/core/vector_clones.hpp>
 #include <tofmap/unwrap/diagonal_layout.hpp>
 
 namespace tofmap {

@@ -4,12 +4,13 @@
 #include "tofmap/unwrap/jump_evidence.hpp"
 
 #include "fast_math.hpp"
-#include "vector_clones.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "offset_union.hpp"
 #include "region_fits.hpp"
-#include "vector_clones.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,6 +15,7 @@
 #include <limits>
 #include <numeric>
 
+#include <tofmap/core/vector_clones.hpp>
 #include <tofmap/unwrap/diagonal_layout.hpp>
 
 namespace tofmap {

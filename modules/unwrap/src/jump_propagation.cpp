@@ -3,11 +3,11 @@
 
 #include "tofmap/unwrap/jump_propagation.hpp"
 
-#include "vector_clones.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
 namespace {

@@ -4,7 +4,6 @@
 #include "measured_frame.hpp"
 
 #include "median.hpp"
-#include "vector_clones.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
 namespace {

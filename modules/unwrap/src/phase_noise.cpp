@@ -5,7 +5,6 @@
 
 #include "fast_math.hpp"
 #include "median.hpp"
-#include "vector_clones.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,6 +12,8 @@
 #include <limits>
 #include <numbers>
 #include <vector>
+
+#include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
 namespace {

@@ -4,12 +4,12 @@
 #include "tofmap/unwrap/range_fusion.hpp"
 
 #include "fast_math.hpp"
-#include "vector_clones.hpp"
 
 #include <cmath>
 #include <limits>
 
 #include <tofmap/core/range_image.hpp>
+#include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
 namespace {

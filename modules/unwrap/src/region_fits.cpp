@@ -4,7 +4,6 @@
 #include "region_fits.hpp"
 
 #include "fast_math.hpp"
-#include "vector_clones.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,6 +13,7 @@
 #include <utility>
 
 #include <tofmap/core/range_image.hpp>
+#include <tofmap/core/vector_clones.hpp>
 #include <tofmap/unwrap/diagonal_layout.hpp>
 
 namespace tofmap {

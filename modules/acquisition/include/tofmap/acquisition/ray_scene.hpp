@@ -16,6 +16,7 @@ struct RayHit {
   double range_m = 0;
   double cos_incidence = 0;  ///< between the ray and the surface's normal, 0 … 1
   double reflectance = 0;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the surface, unit, to either side
 };
 
 /// A mesh prepared for exact ray casting (Embree). Queries may come from several threads.

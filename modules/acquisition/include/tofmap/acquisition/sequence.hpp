@@ -79,7 +79,8 @@ class SequenceWriter {
   /// UsageError, not a clamp. Amplitudes above zero are written as at least 1, since zero
   /// means no return. Throws InputError that names the file if it cannot be written.
   void add(const DualFrequencyFrame& frame, const std::optional<Pose>& world_from_camera = {},
-           const std::optional<ImageF>& range_truth_m = {});
+           const std::optional<ImageF>& range_truth_m = {},
+           const std::optional<ImageU8>& label_truth = {});
 
   int count() const { return count_; }
 

@@ -6,7 +6,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <tofmap/acquisition/frame_source.hpp>
@@ -51,6 +50,8 @@ struct SimulatedFrame {
   DualFrequencyFrame frame;
   Pose world_from_camera;  ///< when A was taken
   ImageF range_truth_m;    ///< along the ray of the pixel's centre; NaN where nothing is hit
+  ImageF cos_incidence;    ///< where that ray meets the surface, 0 … 1; NaN where nothing is hit
+  ImageU8 label;           ///< PixelLabel as a number
 };
 
 /// A dual-frequency time-of-flight camera on a path through a scene (docs/simulator.md).
@@ -84,8 +85,9 @@ class Simulator final : public FrameSource {
 
  private:
   struct Exposure;
-  std::pair<ImageF, ImageF> expose(const Exposure& exposure) const;  ///< phase, amplitude
-  ImageF cast_truth(const Pose& world_from_camera) const;
+  struct Exposed;
+  Exposed expose(const Exposure& exposure) const;
+  void cast_truth(SimulatedFrame& simulated) const;
 
   Scene scene_;
   SimulatorOptions options_;

@@ -13,11 +13,17 @@
 namespace tofmap {
 
 struct FilterOptions {
-  std::string chain = "amplitude confidence jump_edge";
+  std::string chain = "amplitude confidence plane_edge";
   double min_amplitude = 0;
   double min_confidence = 0;
   double max_edge_angle_deg = 170;
   double min_edge_gap_sigmas = 5;
+  double max_step_incidence_deg = 80;
+  double min_step_sigmas = 3;
+  double max_plane_sigmas = 2.5;
+  double plane_tolerance_m = 0.03;
+  double max_smooth_sigmas = 3;
+  double smooth_tolerance_m = 0.005;
 
   static std::vector<OptionField<FilterOptions>> fields();
 };
@@ -34,8 +40,11 @@ struct FilterResult {
   std::vector<FilterCount> counts;  ///< in the order of the chain
 };
 
+/// The names of all filters, with `separator` between them.
+std::string filter_names(const std::string& separator);
+
 /// Applies the filters named in `options.chain`, in that order. Throws UsageError for a name
-/// that is none: amplitude, confidence, jump_edge.
+/// that is none of filter_names().
 FilterResult apply_filters(const RangeImage& image, const DualFrequencyFrame& frame,
                            const PixelRays& rays, const FilterOptions& options);
 

@@ -1,42 +1,24 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include "range_images.hpp"
+
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
 #include <tofmap/core/error.hpp>
-#include <tofmap/filters/filter_chain.hpp>
-#include <tofmap/filters/gates.hpp>
 #include <tofmap/filters/jump_edge_filter.hpp>
 
 namespace tofmap {
 namespace {
 
+using test::camera;
+using test::plane;
+using test::slanted_plane;
+
 constexpr double edge_angle_rad = 170 * std::numbers::pi / 180;
-
-CameraModel camera() {
-  return {.width_px = 20,
-          .height_px = 16,
-          .fx_px = 20,
-          .fy_px = 20,
-          .cx_px = 9.5,
-          .cy_px = 7.5,
-          .distortion = {}};
-}
-
-/// A plane across the view at z = depth.
-RangeImage plane(double depth_m, float sigma_m = 0.001F) {
-  const PixelRays rays = pixel_rays(camera());
-  RangeImage image(16, 20);
-  image.range_m = static_cast<float>(depth_m) / rays.z;
-  image.sigma_m.setConstant(sigma_m);
-  image.wrap_count.setZero();
-  image.confidence.setConstant(0.9F);
-  image.reason.setZero();
-  return image;
-}
 
 /// The angle at p_i as May et al. define it, in degrees, the slow way.
 double angle_at_deg(const Eigen::Vector3d& p_i, const Eigen::Vector3d& p_n) {
@@ -46,17 +28,6 @@ double angle_at_deg(const Eigen::Vector3d& p_i, const Eigen::Vector3d& p_n) {
 TEST(JumpEdgeFilter, KeepsAPlaneWhole) {
   const RangeImage out = drop_jump_edges(plane(3), pixel_rays(camera()), edge_angle_rad, 0);
   EXPECT_EQ(out.count_valid(), 20 * 16);
-}
-
-/// A plane through (0, 0, depth) that turns away to the right: x sin(slant) = (depth − z)
-/// cos(slant) leaves 90° − slant between the optical axis and the plane.
-RangeImage slanted_plane(double depth_m, double slant_rad) {
-  const PixelRays rays = pixel_rays(camera());
-  RangeImage image = plane(depth_m);
-  const auto s = static_cast<float>(std::sin(slant_rad));
-  const auto c = static_cast<float>(std::cos(slant_rad));
-  image.range_m = static_cast<float>(depth_m) * c / (rays.z * c + rays.x * s);
-  return image;
 }
 
 TEST(JumpEdgeFilter, KeepsAPlaneAtASlantWhole) {
@@ -168,69 +139,6 @@ TEST(JumpEdgeFilter, TakesNoNoiseForAnEdge) {
   const PixelRays rays = pixel_rays(camera());
   EXPECT_FALSE(drop_jump_edges(image, rays, edge_angle_rad, 0).valid(8, 10));
   EXPECT_EQ(drop_jump_edges(image, rays, edge_angle_rad, 5).count_valid(), 20 * 16);
-}
-
-TEST(AmplitudeFilter, JudgesByTheWeakerFrequency) {
-  DualFrequencyFrame frame;
-  frame.amplitude_a = ImageF::Constant(16, 20, 100);
-  frame.amplitude_b = ImageF::Constant(16, 20, 100);
-  frame.amplitude_b(2, 3) = 9;
-  const RangeImage out = drop_low_amplitude(plane(3), frame, 10);
-  EXPECT_EQ(out.count_valid(), 20 * 16 - 1);
-  EXPECT_EQ(out.reason(2, 3), static_cast<int>(InvalidReason::low_amplitude));
-}
-
-TEST(AmplitudeFilter, DoesNothingWithoutAmplitudes) {
-  EXPECT_EQ(drop_low_amplitude(plane(3), {}, 10).count_valid(), 20 * 16);
-}
-
-TEST(AmplitudeFilter, RefusesAFrameOfAnotherSize) {
-  DualFrequencyFrame frame;
-  frame.amplitude_a = ImageF::Constant(16, 19, 100);
-  frame.amplitude_b = ImageF::Constant(16, 19, 100);
-  EXPECT_THROW(drop_low_amplitude(plane(3), frame, 10), UsageError);
-}
-
-TEST(ConfidenceFilter, KeepsWhatIsAsSureAsAskedFor) {
-  RangeImage image = plane(3);
-  image.confidence(2, 3) = 0.49F;
-  image.confidence(4, 5) = 0.5F;
-  const RangeImage out = drop_low_confidence(image, 0.5);
-  EXPECT_EQ(out.reason(2, 3), static_cast<int>(InvalidReason::low_confidence));
-  EXPECT_TRUE(out.valid(4, 5));
-  EXPECT_EQ(out.count_valid(), 20 * 16 - 1);
-}
-
-TEST(FilterChain, RunsInTheOrderThatIsAskedFor) {
-  RangeImage image = plane(3);
-  image.range_m(7, 9) += 6;  // its neighbours are edges, unless it is gone before
-  image.confidence(7, 9) = 0.1F;
-  FilterOptions options;
-  options.min_confidence = 0.5;
-  options.chain = "jump_edge confidence";
-  EXPECT_EQ(apply_filters(image, {}, pixel_rays(camera()), options).counts[0].removed, 8);
-  options.chain = "confidence jump_edge";
-  EXPECT_EQ(apply_filters(image, {}, pixel_rays(camera()), options).counts[1].removed, 0);
-  options.chain = "";
-  EXPECT_EQ(apply_filters(image, {}, pixel_rays(camera()), options).image.count_valid(), 20 * 16);
-}
-
-TEST(FilterChain, CountsWhatEachFilterRemoves) {
-  RangeImage image = plane(3);
-  image.confidence(0, 0) = 0.1F;
-  FilterOptions options;
-  options.min_confidence = 0.5;
-  const FilterResult result = apply_filters(image, {}, pixel_rays(camera()), options);
-  ASSERT_EQ(result.counts.size(), 3U);
-  EXPECT_EQ(result.counts[1].name, "confidence");
-  EXPECT_EQ(result.counts[1].removed, 1);
-  EXPECT_EQ(result.counts[2].removed, 0);
-}
-
-TEST(FilterChain, RefusesAFilterItDoesNotHave) {
-  FilterOptions options;
-  options.chain = "jump_edge magic";
-  EXPECT_THROW(apply_filters(plane(3), {}, pixel_rays(camera()), options), UsageError);
 }
 
 }  // namespace

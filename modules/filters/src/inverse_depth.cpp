@@ -1,0 +1,214 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "inverse_depth.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/core/vector_clones.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+/// Ranges are never surer than that: 0.1 mm a metre.
+constexpr float least_relative_sigma = 1e-4F;
+
+/// Confidences below weigh as much as that.
+constexpr float least_trust = 0.01F;
+
+/// Rows of pixels of a RangeImage and their rays.
+struct RangeRow {
+  const float* range_m;
+  const float* sigma_m;
+  const float* confidence;
+  const float* ray_z;
+};
+
+TOFMAP_VECTOR_CLONES void fill_inverse(int pixels, const RangeRow& from_, float* value,
+                                       float* variance, float* weight) {
+  const RangeRow from = from_;
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    const float depth_m = from.range_m[i] * from.ray_z[i];
+    const float relative = from.sigma_m[i] / from.range_m[i];
+    const float sigma = relative > least_relative_sigma ? relative : least_relative_sigma;
+    const float confidence = from.confidence[i];
+    const float depth_variance = sigma * sigma * depth_m * depth_m;
+    // The mean of 1 / (z + noise) is larger than 1 / z by its (sigma / z)², as long as that is
+    // small.
+    value[i] = 1 / (depth_m * (1 + sigma * sigma));
+    variance[i] = depth_variance;
+    weight[i] = (confidence > least_trust ? confidence : least_trust) / depth_variance;
+  }
+}
+
+/// Sums over pairs, for each pixel of a row.
+struct Sums {
+  std::vector<float> value;  ///< weighted
+  std::vector<float> weight;
+  std::vector<float> variance;  ///< weighted by the square of the weight
+
+  explicit Sums(int cols)
+      : value(static_cast<std::size_t>(cols)), weight(value.size()), variance(value.size()) {}
+};
+
+/// Rows of an InverseDepth from one pixel on.
+struct DepthRow {
+  const float* value;
+  const float* variance;
+  const float* weight;
+};
+
+TOFMAP_VECTOR_CLONES void begin_sums(int pixels, const DepthRow& own_, float* value, float* weight,
+                                     float* variance) {
+  const DepthRow own = own_;
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    value[i] = own.weight[i] * own.value[i];
+    weight[i] = own.weight[i];
+    variance[i] = own.weight[i] * own.weight[i] * own.variance[i];
+  }
+}
+
+/// Two opposite pixels of each pixel of a row.
+struct PairRow {
+  DepthRow one;
+  DepthRow other;
+};
+
+/// Limits of PairAverage, squared.
+struct SquaredLimits {
+  float sigmas;
+  float tolerance;
+};
+
+/// Of one pair: its mean and the half of its difference, with their variance, and its weight in
+/// means.
+struct Pair {
+  float mean;
+  float half_difference;
+  float variance;
+  float weight;
+
+  [[gnu::always_inline]] Pair(const PairRow& row, int i)
+      : mean(0.5F * (row.one.value[i] + row.other.value[i])),
+        half_difference(0.5F * (row.one.value[i] - row.other.value[i])),
+        variance(0.25F * (row.one.variance[i] + row.other.variance[i])),
+        weight(4 * row.one.weight[i] * row.other.weight[i] /
+               (row.one.weight[i] + row.other.weight[i])) {}
+};
+
+/// How far an inverse depth may still be off, as a share of what is tolerated; negative if it is
+/// too far. Noise of depths is that of inverse depths by the fourth power of these: of the farther
+/// one of two, so that what is very near tolerates nothing far away.
+[[gnu::always_inline]] inline float room_for(float off, float depth_variance, float value,
+                                             float other_value, const SquaredLimits& limits) {
+  const float square = value * value;
+  const float other_square = other_value * other_value;
+  const float least = square < other_square ? square : other_square;
+  return 1 - off * off / ((limits.sigmas * depth_variance + limits.tolerance) * least * least);
+}
+
+/// Adds the means of two pairs along an axis, one and two pixels away, as far as they agree with
+/// the pixel. On a plane the farther pair differs by twice as much as the nearer one; across an
+/// edge by as much, which is seen even where the pixel's own noise hides that their mean is neither
+/// surface.
+TOFMAP_VECTOR_CLONES void add_axis(int pixels, const DepthRow& own_, const PairRow& near_,
+                                   const PairRow& far_, const SquaredLimits& limits_, float* value,
+                                   float* weight, float* variance) {
+  const DepthRow own = own_;
+  const PairRow near_row = near_;
+  const PairRow far_row = far_;
+  const SquaredLimits limits = limits_;
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    const Pair near(near_row, i);
+    const Pair far(far_row, i);
+    const float own_value = own.value[i];
+    const float bend = near.half_difference - 0.5F * far.half_difference;
+    const float bend_noise = near.variance + 0.25F * far.variance;
+    const float bend_room = room_for(bend, bend_noise, own_value, near.mean, limits);
+    const float near_room = room_for(near.mean - own_value, own.variance[i] + near.variance,
+                                     own_value, near.mean, limits);
+    const float far_room =
+        room_for(far.mean - own_value, own.variance[i] + far.variance, own_value, far.mean, limits);
+    const bool near_agrees = bend_room > 0 && near_room > 0;
+    const bool far_agrees = bend_room > 0 && far_room > 0;
+    const float near_weight = near_agrees ? near.weight * near_room * near_room : 0.0F;
+    const float far_weight = far_agrees ? far.weight * far_room * far_room : 0.0F;
+    const float near_value = near_agrees ? near.mean : 0.0F;
+    const float far_value = far_agrees ? far.mean : 0.0F;
+    const float near_variance = near_agrees ? near.variance : 0.0F;
+    const float far_variance = far_agrees ? far.variance : 0.0F;
+    value[i] += near_weight * near_value + far_weight * far_value;
+    weight[i] += near_weight + far_weight;
+    variance[i] +=
+        near_weight * near_weight * near_variance + far_weight * far_weight * far_variance;
+  }
+}
+
+TOFMAP_VECTOR_CLONES void end_sums(int pixels, const float* value, const float* weight,
+                                   const float* variance, float* out_value, float* out_variance) {
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    out_value[i] = value[i] / weight[i];
+    out_variance[i] = variance[i] / (weight[i] * weight[i]);
+  }
+}
+
+}  // namespace
+
+InverseDepth::InverseDepth(Eigen::Index rows, Eigen::Index cols)
+    : rows_(static_cast<int>(rows)),
+      cols_(static_cast<int>(cols)),
+      values_(static_cast<std::size_t>((rows_ + 2 * margin) * stride()), nan),
+      variances_(values_),
+      weights_(values_) {}
+
+InverseDepth::InverseDepth(const RangeImage& image, const PixelRays& rays)
+    : InverseDepth(image.rows(), image.cols()) {
+  if (!same_size(image.range_m, rays.x)) {
+    throw UsageError("filter: range image and camera differ in size");
+  }
+  for (int v = 0; v < rows_; ++v) {
+    const Eigen::Index first = v * image.cols();
+    fill_inverse(cols_,
+                 {image.range_m.data() + first, image.sigma_m.data() + first,
+                  image.confidence.data() + first, rays.z.data() + first},
+                 value(v), variance(v), weight(v));
+  }
+}
+
+InverseDepth averaged_over_pairs(const InverseDepth& depth, const PairAverage& options) {
+  const SquaredLimits limits{static_cast<float>(options.max_sigmas * options.max_sigmas),
+                             static_cast<float>(options.tolerance_m * options.tolerance_m)};
+  const int below = depth.stride();
+  const std::array<int, 4> axes{1, below - 1, below, below + 1};
+  InverseDepth out(depth.rows(), depth.cols());
+  Sums sums(depth.cols());
+  for (int v = 0; v < depth.rows(); ++v) {
+    const auto row_at = [&](int offset) {
+      return DepthRow{depth.value(v) + offset, depth.variance(v) + offset,
+                      depth.weight(v) + offset};
+    };
+    const auto pair_at = [&](int offset) { return PairRow{row_at(offset), row_at(-offset)}; };
+    const DepthRow own = row_at(0);
+    begin_sums(depth.cols(), own, sums.value.data(), sums.weight.data(), sums.variance.data());
+    for (const int axis : axes) {
+      add_axis(depth.cols(), own, pair_at(axis), pair_at(2 * axis), limits, sums.value.data(),
+               sums.weight.data(), sums.variance.data());
+    }
+    end_sums(depth.cols(), sums.value.data(), sums.weight.data(), sums.variance.data(),
+             out.value(v), out.variance(v));
+    std::copy_n(depth.weight(v), depth.cols(), out.weight(v));
+  }
+  return out;
+}
+
+}  // namespace tofmap

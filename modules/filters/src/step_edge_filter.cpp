@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/filters/step_edge_filter.hpp"
+
+#include <array>
+#include <cmath>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Offset to a neighbour.
+struct Offset {
+  Eigen::Index rows;
+  Eigen::Index cols;
+};
+
+class StepFinder {
+ public:
+  StepFinder(const RangeImage& image, const PixelRays& rays, const StepEdgeLimits& limits)
+      : image_(image),
+        rays_(rays),
+        slope_(static_cast<float>(std::tan(limits.max_incidence_rad))),
+        sigmas_(static_cast<float>(limits.min_sigmas)) {}
+
+  bool is_between_steps(Eigen::Index row, Eigen::Index col) const {
+    constexpr std::array<Offset, 4> directions{{{0, 1}, {1, 0}, {1, 1}, {1, -1}}};
+    for (const Offset& to : directions) {
+      const int one = step(row, col, row + to.rows, col + to.cols);
+      const int other = step(row, col, row - to.rows, col - to.cols);
+      if (one * other < 0) return true;
+    }
+    return false;
+  }
+
+ private:
+  /// 1 where the neighbour is a step behind the pixel, −1 where it is one before it, 0 else.
+  int step(Eigen::Index row, Eigen::Index col, Eigen::Index r, Eigen::Index c) const {
+    const bool is_inside = r >= 0 && r < image_.rows() && c >= 0 && c < image_.cols();
+    if (!is_inside || !image_.valid(r, c)) return 0;
+    const float own_m = image_.range_m(row, col);
+    const float other_m = image_.range_m(r, c);
+    const float spacing_rad =
+        std::hypot(rays_.x(r, c) - rays_.x(row, col), rays_.y(r, c) - rays_.y(row, col),
+                   rays_.z(r, c) - rays_.z(row, col));
+    const float noise_m = std::hypot(image_.sigma_m(row, col), image_.sigma_m(r, c));
+    const float least_m = slope_ * spacing_rad * std::min(own_m, other_m) + sigmas_ * noise_m;
+    const float difference_m = other_m - own_m;
+    if (std::abs(difference_m) <= least_m) return 0;
+    return difference_m > 0 ? 1 : -1;
+  }
+
+  const RangeImage& image_;
+  const PixelRays& rays_;
+  float slope_;  ///< range over the arc between two pixels
+  float sigmas_;
+};
+
+}  // namespace
+
+RangeImage drop_steps(const RangeImage& image, const PixelRays& rays,
+                      const StepEdgeLimits& limits) {
+  if (!same_size(image.range_m, rays.x)) {
+    throw UsageError("step-edge filter: range image and camera differ in size");
+  }
+  const StepFinder finder(image, rays, limits);
+  RangeImage out = image;
+  for (Eigen::Index row = 0; row < image.rows(); ++row) {
+    for (Eigen::Index col = 0; col < image.cols(); ++col) {
+      if (image.valid(row, col) && finder.is_between_steps(row, col)) {
+        out.invalidate(row, col, InvalidReason::jump_edge);
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace tofmap

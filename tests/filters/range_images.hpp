@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+
+#include <tofmap/core/camera.hpp>
+#include <tofmap/core/range_image.hpp>
+
+namespace tofmap::test {
+
+inline CameraModel camera() {
+  return {.width_px = 20,
+          .height_px = 16,
+          .fx_px = 20,
+          .fy_px = 20,
+          .cx_px = 9.5,
+          .cy_px = 7.5,
+          .distortion = {}};
+}
+
+/// A plane across the view at z = depth.
+inline RangeImage plane(double depth_m, float sigma_m = 0.001F) {
+  const PixelRays rays = pixel_rays(camera());
+  RangeImage image(16, 20);
+  image.range_m = static_cast<float>(depth_m) / rays.z;
+  image.sigma_m.setConstant(sigma_m);
+  image.wrap_count.setZero();
+  image.confidence.setConstant(0.9F);
+  image.reason.setZero();
+  return image;
+}
+
+/// A plane through (0, 0, depth) that turns away to the right: x sin(slant) = (depth − z)
+/// cos(slant) leaves 90° − slant between the optical axis and the plane.
+inline RangeImage slanted_plane(double depth_m, double slant_rad) {
+  const PixelRays rays = pixel_rays(camera());
+  RangeImage image = plane(depth_m);
+  const auto s = static_cast<float>(std::sin(slant_rad));
+  const auto c = static_cast<float>(std::cos(slant_rad));
+  image.range_m = static_cast<float>(depth_m) * c / (rays.z * c + rays.x * s);
+  return image;
+}
+
+}  // namespace tofmap::test
