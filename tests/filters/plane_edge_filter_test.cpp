@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include <gtest/gtest.h>
 
@@ -19,6 +18,7 @@ namespace {
 using test::camera;
 using test::plane;
 using test::slanted_plane;
+using test::with_noise;
 
 constexpr double rad_per_deg = std::numbers::pi / 180;
 constexpr int pixels = 20 * 16;
@@ -40,13 +40,6 @@ RangeImage edge_with_flying_pixels() {
   return image;
 }
 
-void add_noise(float sigma_m, unsigned seed, RangeImage& image) {
-  std::mt19937 random(seed);
-  std::normal_distribution<float> noise(0, sigma_m);
-  for (float& range_m : image.range_m.reshaped()) range_m += noise(random);
-  image.sigma_m.setConstant(sigma_m);
-}
-
 TEST(PlaneEdgeFilter, KeepsPlanesWholeHoweverSlanted) {
   // The rays are up to 25° off the axis, so incidences go up to 89°.
   for (int slant_deg = -64; slant_deg <= 64; slant_deg += 8) {
@@ -60,8 +53,7 @@ TEST(PlaneEdgeFilter, KeepsNoisyPlanes) {
   int kept = 0;
   constexpr int seeds = 20;
   for (unsigned seed = 0; seed < seeds; ++seed) {
-    RangeImage image = slanted_plane(3, 40 * rad_per_deg);
-    add_noise(0.1F, seed, image);
+    const RangeImage image = with_noise(slanted_plane(3, 40 * rad_per_deg), 0.1F, seed);
     kept += off_planes_dropped(image).count_valid();
   }
   // Most of what goes is at the borders, which are a quarter of this small image.
@@ -150,8 +142,7 @@ TEST(StepEdgeFilter, KeepsSlopesUpToItsAngleAndDropsSteeperOnes) {
 }
 
 TEST(StepEdgeFilter, TakesNoNoiseForASlope) {
-  RangeImage image = plane(3);
-  add_noise(0.5F, 1, image);
+  const RangeImage image = with_noise(plane(3), 0.5F, 1);
   EXPECT_GT(steps_dropped(image).count_valid(), 0.99 * pixels);
 }
 

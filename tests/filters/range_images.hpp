@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <random>
 
 #include <tofmap/core/camera.hpp>
 #include <tofmap/core/range_image.hpp>
@@ -40,6 +41,16 @@ inline RangeImage slanted_plane(double depth_m, double slant_rad) {
   const auto c = static_cast<float>(std::cos(slant_rad));
   image.range_m = static_cast<float>(depth_m) * c / (rays.z * c + rays.x * s);
   return image;
+}
+
+/// Normal noise of the same strength on all ranges, which sigma_m tells of.
+inline RangeImage with_noise(const RangeImage& image, float sigma_m, unsigned seed) {
+  RangeImage noisy = image;
+  std::mt19937 random(seed);
+  std::normal_distribution<float> noise(0, sigma_m);
+  for (float& range_m : noisy.range_m.reshaped()) range_m += noise(random);
+  noisy.sigma_m.setConstant(sigma_m);
+  return noisy;
 }
 
 }  // namespace tofmap::test

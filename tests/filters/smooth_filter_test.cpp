@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include <gtest/gtest.h>
 
@@ -18,20 +17,12 @@ namespace {
 using test::camera;
 using test::plane;
 using test::slanted_plane;
+using test::with_noise;
 
 constexpr double rad_per_deg = std::numbers::pi / 180;
 
 RangeImage smoothed(const RangeImage& image) {
   return smooth_ranges(image, pixel_rays(camera()), {});
-}
-
-RangeImage with_noise(const RangeImage& image, float sigma_m, unsigned seed) {
-  RangeImage noisy = image;
-  std::mt19937 random(seed);
-  std::normal_distribution<float> noise(0, sigma_m);
-  for (float& range_m : noisy.range_m.reshaped()) range_m += noise(random);
-  noisy.sigma_m.setConstant(sigma_m);
-  return noisy;
 }
 
 /// Errors of many noisy images of a surface, smoothed.
