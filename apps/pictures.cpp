@@ -35,25 +35,30 @@ bool finds_jumps(const UnwrapOptions& options) {
 Picture jump_stages_picture(const DualFrequencyFrame& frame, const SensorModel& sensor,
                             const UnwrapOptions& options) {
   const PhaseSigma sigma(frame, estimate_phase_noise(frame));
-  const BeatLimits limits = beat_limits(sensor, options.max_range_m);
-  const auto estimate = [&](double trust_discontinuity, double trust_frequency) {
-    UnwrapOptions trusting = options;
-    trusting.trust_discontinuity = trust_discontinuity;
-    trusting.trust_frequency = trust_frequency;
-    JumpEstimator estimator;
-    return estimator.estimate(frame, sigma, limits, trusting);
+  JumpEstimator estimator;
+  const JumpEstimate& jumps =
+      estimator.estimate(frame, sigma, beat_limits(sensor, options.max_range_m), options);
+  const bool has_frequency = unwrap_method(options) == UnwrapMethod::jump;
+  const ImageF reconstruction_cycles =
+      has_frequency ? reconstruct_cycles(frame.phase_a, jumps.nearest) : ImageF();
+  const auto evidence = [&](double trust_discontinuity, double trust_frequency) {
+    JumpTerms terms = jump_terms(options);
+    terms.trust_discontinuity = trust_discontinuity;
+    terms.trust_frequency = trust_frequency;
+    JumpProbabilities out;
+    find_jump_evidence(frame.phase_a, sigma.a_cycles, reconstruction_cycles, terms, out);
+    return out;
   };
-  const JumpEstimate by_discontinuity = estimate(1, 0);
-  const JumpEstimate by_frequency = estimate(0, 1);
-  const JumpEstimate by_both = estimate(options.trust_discontinuity, options.trust_frequency);
+  const JumpProbabilities by_discontinuity = evidence(1, 0);
   std::vector<JumpStage> stages{
-      {"discontinuity term f_d", &by_discontinuity.evidence.x, &by_discontinuity.evidence.y}};
-  if (unwrap_method(options) == UnwrapMethod::jump) {
-    stages.push_back({"frequency term f_f", &by_frequency.evidence.x, &by_frequency.evidence.y});
-    stages.push_back({"fused", &by_both.evidence.x, &by_both.evidence.y});
+      {"discontinuity term f_d", &by_discontinuity.x, &by_discontinuity.y}};
+  JumpProbabilities by_frequency;
+  if (has_frequency) {
+    by_frequency = evidence(0, 1);
+    stages.push_back({"frequency term f_f", &by_frequency.x, &by_frequency.y});
+    stages.push_back({"fused", &jumps.evidence.x, &jumps.evidence.y});
   }
-  stages.push_back(
-      {"after propagation", &by_both.beliefs.marginals.x, &by_both.beliefs.marginals.y});
+  stages.push_back({"after propagation", &jumps.beliefs.marginals.x, &jumps.beliefs.marginals.y});
   return jump_picture(stages);
 }
 

@@ -152,17 +152,24 @@ std::optional<SourcedFrame> Simulator::next() {
   return sourced;
 }
 
-/// What one image needs: where from, at which wavelength, and the key of its noise.
+/// What one image needs: where from, at which wavelength, the key of its noise, and whether its
+/// pixels are wanted with labels.
 struct Simulator::Exposure {
   Pose world_from_camera;
   double wavelength_m = 0;
   std::uint64_t noise_key = 0;
+  bool with_labels = false;
 };
 
 struct Simulator::Exposed {
   ImageF phase;
   ImageF amplitude;
-  ImageU8 label;
+  ImageU8 label;  ///< 0 if not wanted
+};
+
+struct Simulator::Truth {
+  ImageF range_m;
+  ImageF cos_incidence;
 };
 
 SimulatedFrame Simulator::simulate(int index) const {
@@ -180,8 +187,8 @@ SimulatedFrame Simulator::simulate(int index) const {
   DualFrequencyFrame& frame = simulated.frame;
   frame.index = index;
   frame.timestamp_s = at_a.timestamp_s;
-  Exposed a = expose({at_a.world_from_camera, sensor_.modulation.wavelength_a_m(), key(0)});
-  Exposed b = expose({at_b.world_from_camera, sensor_.modulation.wavelength_b_m(), key(1)});
+  Exposed a = expose({at_a.world_from_camera, sensor_.modulation.wavelength_a_m(), key(0), true});
+  Exposed b = expose({at_b.world_from_camera, sensor_.modulation.wavelength_b_m(), key(1), false});
   frame.phase_a = std::move(a.phase);
   frame.amplitude_a = std::move(a.amplitude);
   frame.phase_b = std::move(b.phase);
@@ -190,7 +197,9 @@ SimulatedFrame Simulator::simulate(int index) const {
   simulated.label =
       frame.phase_b.isNaN().select(static_cast<std::uint8_t>(PixelLabel::no_return), a.label);
   simulated.world_from_camera = at_a.world_from_camera;
-  cast_truth(simulated);
+  Truth truth = cast_truth(at_a.world_from_camera);
+  simulated.range_truth_m = std::move(truth.range_m);
+  simulated.cos_incidence = std::move(truth.cos_incidence);
   return simulated;
 }
 
@@ -228,6 +237,7 @@ Simulator::Exposed Simulator::expose(const Exposure& exposure) const {
       if (modulus < 0.5) continue;  // rounds to zero: no return
       out.amplitude(v, u) = static_cast<float>(std::min(modulus, max_amplitude));
       out.phase(v, u) = wrapped_cycles(std::arg(signal));
+      if (!exposure.with_labels) continue;
       const double sigma_m = noise_sigma_ / modulus * exposure.wavelength_m / two_pi;
       out.label(v, u) = static_cast<std::uint8_t>(
           label_pixel(rays, out.phase(v, u), exposure.wavelength_m, sigma_m));
@@ -236,20 +246,19 @@ Simulator::Exposed Simulator::expose(const Exposure& exposure) const {
   return out;
 }
 
-void Simulator::cast_truth(SimulatedFrame& simulated) const {
-  const Pose& world_from_camera = simulated.world_from_camera;
-  simulated.range_truth_m =
-      ImageF::Constant(sensor_.camera.height_px, sensor_.camera.width_px, nan);
-  simulated.cos_incidence = simulated.range_truth_m;
+Simulator::Truth Simulator::cast_truth(const Pose& world_from_camera) const {
+  const ImageF nothing = ImageF::Constant(sensor_.camera.height_px, sensor_.camera.width_px, nan);
+  Truth truth{nothing, nothing};
   for (int v = 0; v < sensor_.camera.height_px; ++v) {
     for (int u = 0; u < sensor_.camera.width_px; ++u) {
       const Eigen::Vector3d ray = world_from_camera.linear() * pixel_ray(sensor_.camera, u, v);
       const auto hit = ray_scene_.cast(world_from_camera.translation(), ray, sensor_.max_range_m);
       if (!hit) continue;
-      simulated.range_truth_m(v, u) = static_cast<float>(hit->range_m);
-      simulated.cos_incidence(v, u) = static_cast<float>(hit->cos_incidence);
+      truth.range_m(v, u) = static_cast<float>(hit->range_m);
+      truth.cos_incidence(v, u) = static_cast<float>(hit->cos_incidence);
     }
   }
+  return truth;
 }
 
 int simulate_sequence(const Simulator& simulator, const std::filesystem::path& folder,

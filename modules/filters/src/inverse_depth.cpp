@@ -206,7 +206,6 @@ InverseDepth averaged_over_pairs(const InverseDepth& depth, const PairAverage& o
     }
     end_sums(depth.cols(), sums.value.data(), sums.weight.data(), sums.variance.data(),
              out.value(v), out.variance(v));
-    std::copy_n(depth.weight(v), depth.cols(), out.weight(v));
   }
   return out;
 }

@@ -58,7 +58,7 @@ struct PairAverage {
 /// and diagonals, whose means agree with it: on a plane the mean of each pair is the pixel's own
 /// value, whatever the slant. Pairs weigh the less the farther off they are (Tukey's biweight), and
 /// both of an axis are left out where they do not lie on one line, as across an edge. Pixels that
-/// have no value get none.
+/// have no value get none. Averages have no weights.
 InverseDepth averaged_over_pairs(const InverseDepth& depth, const PairAverage& options);
 
 }  // namespace tofmap

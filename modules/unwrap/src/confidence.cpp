@@ -3,6 +3,8 @@
 
 #include "confidence.hpp"
 
+#include "configurations.hpp"
+
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -16,9 +18,7 @@ namespace {
 
 /// Nodes of one row: the marginals of their configurations, and the counts of their pixels.
 struct NodeRow {
-  const float* minus;
-  const float* none;
-  const float* plus;
+  Configurations<const float> marginal;
   const std::uint8_t* count_p;
   const std::uint8_t* count_q;
 };
@@ -30,9 +30,9 @@ TOFMAP_VECTOR_CLONES void find_steps(int nodes, const NodeRow& row_, float* step
 #pragma GCC ivdep
   for (int i = 0; i < nodes; ++i) {
     const int step = static_cast<int>(row.count_q[i]) - static_cast<int>(row.count_p[i]);
-    const float side = step == 1 ? row.minus[i] : step == -1 ? row.plus[i] : 0.0F;
-    const float probability = step == 0 ? row.none[i] : side;
-    const bool is_present = row.none[i] == row.none[i];
+    const float side = step == 1 ? row.marginal.minus[i] : step == -1 ? row.marginal.plus[i] : 0.0F;
+    const float probability = step == 0 ? row.marginal.none[i] : side;
+    const bool is_present = row.marginal.none[i] == row.marginal.none[i];
     steps[i] = is_present ? probability : 0.0F;
     present[i] = is_present ? 1.0F : 0.0F;
   }
@@ -54,10 +54,8 @@ struct Steps {
       std::ranges::fill(present, 0.0F);
       return;
     }
-    const Eigen::Index node = row * marginals[0].cols();
     find_steps(static_cast<int>(marginals[0].cols()),
-               {marginals[0].data() + node, marginals[1].data() + node, marginals[2].data() + node,
-                count_p, count_p + q_from_p},
+               {Configurations<const float>(marginals, row), count_p, count_p + q_from_p},
                probability.data() + 1, present.data() + 1);
   }
 };

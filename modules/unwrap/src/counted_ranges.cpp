@@ -18,16 +18,16 @@ struct Planes {
   std::uint8_t* reason;
 };
 
-/// Ranges and their noise are (value + n · count_m) · scale.
+/// Ranges and their noise are (value + n · per_count) · scale.
 TOFMAP_VECTOR_CLONES void fill_counted(int pixels, const float* range, const float* sigma,
                                        const std::uint8_t* counts, const float* confidence,
-                                       float count_m, float scale, const Planes& out_) {
+                                       float per_count, float scale, const Planes& out_) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   const Planes out = out_;
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
     const bool is_valid = counts[i] != invalid_wrap_count;
-    const float range_m = (range[i] + static_cast<float>(counts[i]) * count_m) * scale;
+    const float range_m = (range[i] + static_cast<float>(counts[i]) * per_count) * scale;
     out.range_m[i] = is_valid ? range_m : nan;
     out.sigma_m[i] = is_valid ? sigma[i] * scale : nan;
     out.confidence[i] = is_valid ? confidence[i] : 0.0F;
@@ -37,7 +37,7 @@ TOFMAP_VECTOR_CLONES void fill_counted(int pixels, const float* range, const flo
 }
 
 RangeImage counted(const ImageF& range, const ImageF& sigma, const ImageU8& counts,
-                   const ImageF& confidence, float count_m, float scale) {
+                   const ImageF& confidence, float per_count, float scale) {
   RangeImage image;
   for (ImageF* plane : {&image.range_m, &image.sigma_m, &image.confidence}) {
     plane->resize(counts.rows(), counts.cols());
@@ -46,7 +46,7 @@ RangeImage counted(const ImageF& range, const ImageF& sigma, const ImageU8& coun
   image.wrap_count = counts;
   fill_counted(
       static_cast<int>(counts.size()), range.data(), sigma.data(), counts.data(), confidence.data(),
-      count_m, scale,
+      per_count, scale,
       {image.range_m.data(), image.sigma_m.data(), image.confidence.data(), image.reason.data()});
   return image;
 }

@@ -3,6 +3,7 @@
 
 #include "tofmap/unwrap/jump_evidence.hpp"
 
+#include "configurations.hpp"
 #include "fast_math.hpp"
 
 #include <algorithm>
@@ -16,18 +17,6 @@ namespace tofmap {
 namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
-/// The planes of three configurations from some node on.
-struct Configurations {
-  float* minus;
-  float* none;
-  float* plus;
-
-  Configurations(std::array<ImageF, 3>& planes, Eigen::Index row)
-      : minus(planes[0].data() + row * planes[0].cols()),
-        none(planes[1].data() + row * planes[1].cols()),
-        plus(planes[2].data() + row * planes[2].cols()) {}
-};
 
 /// What is known of the nodes of a row: phases of their pixels p and q and the noise of these, and
 /// medians on both sides, of the reconstruction and of the wrapped phase.
@@ -65,7 +54,7 @@ struct Factors {
 
 template <bool two_frequencies>
 [[gnu::always_inline]] inline void fill_nodes(int nodes, const NodeRow& row, const Factors& factors,
-                                              const Configurations& out) {
+                                              const Configurations<float>& out) {
   const float c_d = factors.trust_discontinuity;
   const float c_f = factors.trust_frequency;
   const float f_precision = factors.half_precision;
@@ -100,14 +89,14 @@ template <bool two_frequencies>
 
 TOFMAP_VECTOR_CLONES void fill_from_one_frequency(int nodes, const NodeRow& row,
                                                   const Factors& factors,
-                                                  const Configurations& out) {
-  fill_nodes<false>(nodes, NodeRow(row), Factors(factors), Configurations(out));
+                                                  const Configurations<float>& out) {
+  fill_nodes<false>(nodes, NodeRow(row), Factors(factors), Configurations<float>(out));
 }
 
 TOFMAP_VECTOR_CLONES void fill_from_two_frequencies(int nodes, const NodeRow& row,
                                                     const Factors& factors,
-                                                    const Configurations& out) {
-  fill_nodes<true>(nodes, NodeRow(row), Factors(factors), Configurations(out));
+                                                    const Configurations<float>& out) {
+  fill_nodes<true>(nodes, NodeRow(row), Factors(factors), Configurations<float>(out));
 }
 
 /// Windows treated at a time, one in each lane.
@@ -262,7 +251,7 @@ void fill_direction(const ImageF& phase, const ImageF& noise_cycles, const Image
   };
   if (reconstruction.size() == 0) {
     for (Eigen::Index v = 0; v < out[0].rows(); ++v) {
-      fill_from_one_frequency(nodes, node_row(v), factors, Configurations(out, v));
+      fill_from_one_frequency(nodes, node_row(v), factors, Configurations<float>(out, v));
     }
     return;
   }
@@ -276,7 +265,7 @@ void fill_direction(const ImageF& phase, const ImageF& noise_cycles, const Image
     row.a_neg = a.neg();
     row.r_pos = r.pos();
     row.a_pos = a.pos();
-    fill_from_two_frequencies(nodes, row, factors, Configurations(out, v));
+    fill_from_two_frequencies(nodes, row, factors, Configurations<float>(out, v));
   }
 }
 

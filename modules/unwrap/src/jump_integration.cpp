@@ -3,6 +3,7 @@
 
 #include "tofmap/unwrap/jump_integration.hpp"
 
+#include "configurations.hpp"
 #include "offset_union.hpp"
 #include "region_fits.hpp"
 
@@ -27,6 +28,7 @@ struct Bridge {
   int q;
   int step;         ///< n(q) − n(p)
   float certainty;  ///< marginal of the step
+  int rank_step;    ///< the lower, the higher its rank
 };
 
 /// Nodes of one direction, decided, at the places of their pixels p.
@@ -40,23 +42,13 @@ struct Decisions {
         support(step.size(), std::numeric_limits<float>::quiet_NaN()) {}
 };
 
-/// The planes of three configurations from some row on.
-struct Configurations {
-  const float* minus;
-  const float* none;
-  const float* plus;
+using ReadConfigurations = Configurations<const float>;
 
-  Configurations(const std::array<ImageF, 3>& planes, Eigen::Index row)
-      : minus(planes[0].data() + row * planes[0].cols()),
-        none(planes[1].data() + row * planes[1].cols()),
-        plus(planes[2].data() + row * planes[2].cols()) {}
-};
-
-TOFMAP_VECTOR_CLONES void decide(int nodes, const Configurations& marginal_,
-                                 const Configurations& evidence_, std::int8_t* step,
+TOFMAP_VECTOR_CLONES void decide(int nodes, const ReadConfigurations& marginal_,
+                                 const ReadConfigurations& evidence_, std::int8_t* step,
                                  float* support) {
-  const Configurations marginal = marginal_;
-  const Configurations evidence = evidence_;
+  const ReadConfigurations marginal = marginal_;
+  const ReadConfigurations evidence = evidence_;
 #pragma GCC ivdep
   for (int i = 0; i < nodes; ++i) {
     const float minus = marginal.minus[i];
@@ -77,8 +69,9 @@ Decisions decided(const std::array<ImageF, 3>& marginal, const std::array<ImageF
                   Eigen::Index rows, Eigen::Index cols) {
   Decisions out(rows * cols);
   for (Eigen::Index v = 0; v < marginal[0].rows(); ++v) {
-    decide(static_cast<int>(marginal[0].cols()), Configurations(marginal, v),
-           Configurations(evidence, v), out.step.data() + v * cols, out.support.data() + v * cols);
+    decide(static_cast<int>(marginal[0].cols()), ReadConfigurations(marginal, v),
+           ReadConfigurations(evidence, v), out.step.data() + v * cols,
+           out.support.data() + v * cols);
   }
   return out;
 }
@@ -144,16 +137,15 @@ class Bridges {
   std::vector<Bridge> sorted(const IsWanted& is_wanted) const {
     std::array<int, rank_steps + 1> first{};
     std::vector<Bridge> wanted;
-    std::vector<int> rank_steps_of_wanted;
     const auto append = [&](const Decisions& nodes, const std::array<ImageF, 3>& marginal, int p,
                             int q, int node) {
       const auto i = static_cast<std::size_t>(p);
       if (std::isnan(nodes.support[i]) || !is_wanted(p, q)) return;
       const int rank = rank_step(nodes.support[i] / greatest_);
-      rank_steps_of_wanted.push_back(rank);
       ++first[static_cast<std::size_t>(rank) + 1];
       const int step = nodes.step[i];
-      wanted.push_back({p, q, step, marginal[static_cast<std::size_t>(1 - step)].data()[node]});
+      wanted.push_back(
+          {p, q, step, marginal[static_cast<std::size_t>(1 - step)].data()[node], rank});
     };
     for (int row = 0; row < rows_; ++row) {
       for (int p = row * cols_; p < (row + 1) * cols_; ++p) {
@@ -163,9 +155,9 @@ class Bridges {
     }
     std::partial_sum(first.begin(), first.end(), first.begin());
     std::vector<Bridge> sorted(wanted.size());
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-      int& place = first[static_cast<std::size_t>(rank_steps_of_wanted[i])];
-      sorted[static_cast<std::size_t>(place++)] = wanted[i];
+    for (const Bridge& bridge : wanted) {
+      int& place = first[static_cast<std::size_t>(bridge.rank_step)];
+      sorted[static_cast<std::size_t>(place++)] = bridge;
     }
     return sorted;
   }

@@ -87,7 +87,8 @@ class Simulator final : public FrameSource {
   struct Exposure;
   struct Exposed;
   Exposed expose(const Exposure& exposure) const;
-  void cast_truth(SimulatedFrame& simulated) const;
+  struct Truth;
+  Truth cast_truth(const Pose& world_from_camera) const;
 
   Scene scene_;
   SimulatorOptions options_;

@@ -16,6 +16,9 @@ struct JumpEstimate {
   JumpBeliefs beliefs;         ///< after propagation
 };
 
+/// The terms that the options ask for; `single` has no frequency term to trust.
+JumpTerms jump_terms(const UnwrapOptions& options);
+
 /// Estimates the phase jumps of frames whose phases are NaN where there is no return, for the
 /// methods `jump` and `single`. Buffers persist between calls.
 class JumpEstimator {
