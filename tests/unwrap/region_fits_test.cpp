@@ -72,21 +72,38 @@ class PlainFits {
   OffsetUnion& forest_;
 };
 
-TEST(RegionFits, DecideAsIfAllCostsWereSummed) {
+BeatLimits all_ranges() {
   SensorModel sensor;
   sensor.modulation = {29e6, 31e6};
-  const BeatLimits limits = beat_limits(sensor, 0);
+  return beat_limits(sensor, 0);
+}
+
+/// Regions of the pixels of a noisy surface, each by itself at first.
+struct Pixels {
+  Pixels(double noise_cycles, std::mt19937& random)
+      : limits(all_ranges()),
+        frame(noisy_surface(limits, PlainFits::pixels, noise_cycles, random)),
+        cost(frame, limits, PhaseSigma(frame, {noise_cycles, noise_cycles})),
+        forest(PlainFits::pixels),
+        fits(cost, nearest_pair_counts(frame, limits), forest),
+        plain(cost, forest) {}
+
+  BeatLimits limits;
+  DualFrequencyFrame frame;
+  BeatCost cost;
+  OffsetUnion forest;
+  RegionFits fits;
+  PlainFits plain;
+};
+
+TEST(RegionFits, DecideAsIfAllCostsWereSummed) {
   constexpr double objection_share = 1;
   int joined = 0;
   int refused = 0;
   for (unsigned seed = 0; seed < 10; ++seed) {
     std::mt19937 random(seed);
-    const DualFrequencyFrame frame = noisy_surface(limits, PlainFits::pixels, 0.02, random);
-    const BeatCost cost(frame, limits, PhaseSigma(frame, {0.02, 0.02}));
-    const ImageU8 nearest = nearest_pair_counts(frame, limits);
-    OffsetUnion forest(PlainFits::pixels);
-    RegionFits fits(cost, nearest, forest);
-    const PlainFits plain(cost, forest);
+    Pixels pixels(0.02, random);
+    auto& [limits, frame, cost, forest, fits, plain] = pixels;
     std::uniform_int_distribution<int> pixel(0, PlainFits::pixels - 1);
     std::discrete_distribution<int> wrong_step({0.2, 0.6, 0.2});
     std::uniform_real_distribution<float> certainty(0.6F, 1.0F);
@@ -122,16 +139,9 @@ TEST(RegionFits, DecideAsIfAllCostsWereSummed) {
 }
 
 TEST(RegionFits, OfTwoLargeRegionsBothAreHeard) {
-  SensorModel sensor;
-  sensor.modulation = {29e6, 31e6};
-  const BeatLimits limits = beat_limits(sensor, 0);
   std::mt19937 random(3);
-  const DualFrequencyFrame frame = noisy_surface(limits, PlainFits::pixels, 0.002, random);
-  const BeatCost cost(frame, limits, PhaseSigma(frame, {0.002, 0.002}));
-  const ImageU8 nearest = nearest_pair_counts(frame, limits);
-  OffsetUnion forest(PlainFits::pixels);
-  RegionFits fits(cost, nearest, forest);
-  const PlainFits plain(cost, forest);
+  Pixels pixels(0.002, random);
+  auto& [limits, frame, cost, forest, fits, plain] = pixels;
   constexpr int other = 100;  // the first of fifty pixels
   for (int i = 1; i < PlainFits::pixels; ++i) {
     const int root = i < other ? 0 : other;

@@ -12,6 +12,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
 
 namespace tofmap {
 namespace {
@@ -54,12 +55,6 @@ bool is_choice(const std::string& word, const std::string& choices) {
     if (choice != "|" && choice == word) return true;
   }
   return false;
-}
-
-std::string joined(const std::vector<std::string>& words, const char* separator) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
-  return text;
 }
 
 }  // namespace

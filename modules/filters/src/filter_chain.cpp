@@ -12,10 +12,12 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <ranges>
 #include <sstream>
 #include <string_view>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
 
 namespace tofmap {
 namespace {
@@ -106,11 +108,7 @@ std::vector<OptionField<FilterOptions>> FilterOptions::fields() {
 }
 
 std::string filter_names(const std::string& separator) {
-  std::string names;
-  for (const NamedFilter& filter : all_filters) {
-    names += (names.empty() ? "" : separator) + std::string(filter.name);
-  }
-  return names;
+  return joined(std::views::transform(all_filters, &NamedFilter::name), separator);
 }
 
 FilterResult apply_filters(const RangeImage& image, const DualFrequencyFrame& frame,

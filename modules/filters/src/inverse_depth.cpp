@@ -3,12 +3,13 @@
 
 #include "inverse_depth.hpp"
 
+#include "size_check.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include <tofmap/core/error.hpp>
 #include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
@@ -173,9 +174,7 @@ InverseDepth::InverseDepth(Eigen::Index rows, Eigen::Index cols)
 
 InverseDepth::InverseDepth(const RangeImage& image, const PixelRays& rays)
     : InverseDepth(image.rows(), image.cols()) {
-  if (!same_size(image.range_m, rays.x)) {
-    throw UsageError("filter: range image and camera differ in size");
-  }
+  check_size(image, rays, "filter");
   for (int v = 0; v < rows_; ++v) {
     const Eigen::Index first = v * image.cols();
     fill_inverse(cols_,

@@ -3,10 +3,10 @@
 
 #include "tofmap/filters/jump_edge_filter.hpp"
 
+#include "size_check.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include <tofmap/core/error.hpp>
 
 namespace tofmap {
 namespace {
@@ -46,9 +46,7 @@ bool has_neighbour_behind(const RangeImage& image, const PixelRays& rays, Eigen:
 
 RangeImage drop_jump_edges(const RangeImage& image, const PixelRays& rays, double max_angle_rad,
                            double min_gap_sigmas) {
-  if (!same_size(image.range_m, rays.x)) {
-    throw UsageError("jump-edge filter: range image and camera differ in size");
-  }
+  check_size(image, rays, "jump-edge filter");
   const EdgeLimits limits{static_cast<float>(std::cos(max_angle_rad)),
                           static_cast<float>(min_gap_sigmas * min_gap_sigmas)};
   RangeImage out = image;

@@ -3,10 +3,10 @@
 
 #include "tofmap/filters/step_edge_filter.hpp"
 
+#include "size_check.hpp"
+
 #include <array>
 #include <cmath>
-
-#include <tofmap/core/error.hpp>
 
 namespace tofmap {
 namespace {
@@ -62,9 +62,7 @@ class StepFinder {
 
 RangeImage drop_steps(const RangeImage& image, const PixelRays& rays,
                       const StepEdgeLimits& limits) {
-  if (!same_size(image.range_m, rays.x)) {
-    throw UsageError("step-edge filter: range image and camera differ in size");
-  }
+  check_size(image, rays, "step-edge filter");
   const StepFinder finder(image, rays, limits);
   RangeImage out = image;
   for (Eigen::Index row = 0; row < image.rows(); ++row) {

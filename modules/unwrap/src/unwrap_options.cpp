@@ -4,8 +4,10 @@
 #include "tofmap/unwrap/unwrap_options.hpp"
 
 #include <array>
+#include <ranges>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
 
 namespace tofmap {
 namespace {
@@ -67,11 +69,7 @@ std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
 }
 
 std::string unwrap_method_names(const std::string& separator) {
-  std::string names;
-  for (const NamedMethod& named : methods) {
-    names += (names.empty() ? "" : separator) + std::string(named.name);
-  }
-  return names;
+  return joined(std::views::transform(methods, &NamedMethod::name), separator);
 }
 
 std::optional<UnwrapMethod> find_unwrap_method(std::string_view name) {
