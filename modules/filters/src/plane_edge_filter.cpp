@@ -5,7 +5,6 @@
 
 #include "inverse_depth.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -23,10 +22,10 @@ struct Direction {
   const float* second_variance;
 };
 
-/// Sets `agrees` to 1 where the two pixels of a direction predict the pixel, else to 0.
+/// Sets a bit where the two pixels of a direction predict the pixel.
 TOFMAP_VECTOR_CLONES void predict(int pixels, const float* value, const float* variance,
                                   const Direction& from_, float max_sigmas2, float tolerance2,
-                                  int* agrees) {
+                                  int bit, int* agrees) {
   const Direction from = from_;
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
@@ -36,15 +35,81 @@ TOFMAP_VECTOR_CLONES void predict(int pixels, const float* value, const float* v
     // Noise of depths is that of inverse depths by their fourth power.
     const float square = predicted * predicted;
     const float tolerated = (max_sigmas2 * noise + tolerance2) * square * square;
-    agrees[i] = off * off <= tolerated ? 1 : 0;
+    agrees[i] |= off * off <= tolerated ? bit : 0;
   }
 }
 
-/// Adds 1 where three directions in a row agree.
-TOFMAP_VECTOR_CLONES void add_sectors(int pixels, const int* first, const int* second,
-                                      const int* third, int* sectors) {
-#pragma GCC ivdep
-  for (int i = 0; i < pixels; ++i) sectors[i] += first[i] & second[i] & third[i];
+constexpr int directions = 8;
+constexpr int axes = directions / 2;
+
+/// From a pixel to its neighbours, counter-clockwise from the right; opposite ones are `axes`
+/// apart.
+std::array<int, directions> neighbour_offsets(int below) {
+  return {1, 1 - below, -below, -below - 1, -1, below - 1, below, below + 1};
+}
+
+/// For each pixel the directions whose next two pixels predict it, a bit each.
+class Predictions {
+ public:
+  Predictions(const InverseDepth& depth, const InverseDepth& smooth, const PlaneEdgeLimits& limits)
+      : stride_(depth.stride()),
+        agrees_(static_cast<std::size_t>((depth.rows() + 2 * margin) * stride_)) {
+    const auto step = neighbour_offsets(stride_);
+    const auto max_sigmas2 = static_cast<float>(limits.max_sigmas * limits.max_sigmas);
+    const auto tolerance2 = static_cast<float>(limits.tolerance_m * limits.tolerance_m);
+    for (int v = 0; v < depth.rows(); ++v) {
+      for (std::size_t d = 0; d < directions; ++d) {
+        predict(depth.cols(), depth.value(v), depth.variance(v),
+                {smooth.value(v) + step[d], smooth.variance(v) + step[d],
+                 smooth.value(v) + 2 * step[d], smooth.variance(v) + 2 * step[d]},
+                max_sigmas2, tolerance2, 1 << d, agrees_.data() + place(v, 0));
+      }
+    }
+  }
+
+  /// Whether three adjacent directions agree.
+  bool agree_in_a_sector(int row, int col) const {
+    const unsigned bits = static_cast<unsigned>(agrees_[place(row, col)]);
+    const unsigned twice = bits | bits << directions;
+    return (bits & twice >> 1 & twice >> 2) != 0;
+  }
+
+  /// The axes along which both directions agree, a bit each; none outside the image.
+  int lines(int row, int col) const {
+    const int bits = agrees_[place(row, col)];
+    return bits & bits >> axes;
+  }
+
+ private:
+  static constexpr int margin = 1;
+
+  std::size_t place(int row, int col) const {
+    return static_cast<std::size_t>((row + margin) * stride_ + margin + col);
+  }
+
+  int stride_;
+  std::vector<int> agrees_;
+};
+
+/// Whether a pixel and one beside it are parts of two parallel lines that are equally deep: a strip
+/// two pixels wide.
+bool lies_on_a_strip(int row, int col, const InverseDepth& depth, const InverseDepth& smooth,
+                     const Predictions& predictions, float tolerance_m) {
+  constexpr float noise = 1.5F;  // tighter than for predictions, which need not be that near
+  const int lines = predictions.lines(row, col);
+  if (lines == 0) return false;
+  const auto step = neighbour_offsets(depth.stride());
+  constexpr std::array<int, directions> rows{0, -1, -1, -1, 0, 1, 1, 1};
+  constexpr std::array<int, directions> cols{1, 1, 0, -1, -1, -1, 0, 1};
+  for (std::size_t d = 0; d < directions; ++d) {
+    const int along = 1 << d % axes;  // both lie on this line anyhow
+    const int common = lines & predictions.lines(row + rows[d], col + cols[d]) & ~along;
+    if (common == 0) continue;
+    const float gap_m = 1 / depth.value(row)[col] - 1 / *(depth.value(row) + col + step[d]);
+    const float variance = depth.variance(row)[col] + *(smooth.variance(row) + col + step[d]);
+    if (gap_m * gap_m <= tolerance_m * tolerance_m + noise * noise * variance) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -54,35 +119,16 @@ RangeImage drop_off_planes(const RangeImage& image, const PixelRays& rays,
   // Stricter than for smoothing: what is left out only adds noise, what is taken in wrongly moves
   // predictions.
   constexpr PairAverage average{.max_sigmas = 2.5, .tolerance_m = 0.005};
-  constexpr std::size_t directions = 8;
   const InverseDepth depth(image, rays);
   const InverseDepth smooth = averaged_over_pairs(depth, average);
-  const int below = depth.stride();
-  const std::array<int, directions> step{1,  1 - below, -below, -below - 1,
-                                         -1, below - 1, below,  below + 1};
-  const auto max_sigmas2 = static_cast<float>(limits.max_sigmas * limits.max_sigmas);
-  const auto tolerance2 = static_cast<float>(limits.tolerance_m * limits.tolerance_m);
-  const auto cols = static_cast<std::size_t>(depth.cols());
-  std::array<std::vector<int>, directions> agrees;
-  agrees.fill(std::vector<int>(cols));
-  std::vector<int> sectors(cols);
+  const Predictions predictions(depth, smooth, limits);
+  const auto tolerance_m = static_cast<float>(limits.tolerance_m);
   RangeImage out = image;
   for (int v = 0; v < depth.rows(); ++v) {
-    for (std::size_t d = 0; d < directions; ++d) {
-      predict(depth.cols(), depth.value(v), depth.variance(v),
-              {smooth.value(v) + step[d], smooth.variance(v) + step[d],
-               smooth.value(v) + 2 * step[d], smooth.variance(v) + 2 * step[d]},
-              max_sigmas2, tolerance2, agrees[d].data());
-    }
-    std::ranges::fill(sectors, 0);
-    for (std::size_t d = 0; d < directions; ++d) {
-      add_sectors(depth.cols(), agrees[d].data(), agrees[(d + 1) % directions].data(),
-                  agrees[(d + 2) % directions].data(), sectors.data());
-    }
     for (int u = 0; u < depth.cols(); ++u) {
-      if (image.valid(v, u) && sectors[static_cast<std::size_t>(u)] == 0) {
-        out.invalidate(v, u, InvalidReason::jump_edge);
-      }
+      if (!image.valid(v, u) || predictions.agree_in_a_sector(v, u)) continue;
+      if (lies_on_a_strip(v, u, depth, smooth, predictions, tolerance_m)) continue;
+      out.invalidate(v, u, InvalidReason::jump_edge);
     }
   }
   return out;

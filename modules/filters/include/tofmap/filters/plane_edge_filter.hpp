@@ -9,7 +9,7 @@ namespace tofmap {
 
 /// Limits of drop_off_planes().
 struct PlaneEdgeLimits {
-  double max_sigmas = 2.5;    ///< farther off, in the noise of pixel and plane, is off
+  double max_sigmas = 2.3;    ///< farther off, in the noise of pixel and plane, is off
   double tolerance_m = 0.03;  ///< but not if it is no farther than that in depth
 };
 
@@ -22,7 +22,10 @@ struct PlaneEdgeLimits {
 /// averaged with their surroundings (averaged_over_pairs), so that noise hides no flying pixel nor
 /// makes one.
 ///
-/// What is thinner than two pixels goes, too. Every pixel is judged by the image as it came in.
+/// On a strip that is two pixels wide, only the two directions along it agree. So a pixel stays,
+/// too, if that holds for one beside it as well and both are equally deep.
+///
+/// What is thinner than two pixels goes. Every pixel is judged by the image as it came in.
 /// To be used after unwrapping. Throws UsageError if image and rays differ in size.
 RangeImage drop_off_planes(const RangeImage& image, const PixelRays& rays,
                            const PlaneEdgeLimits& limits);
