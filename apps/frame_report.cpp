@@ -54,6 +54,17 @@ Json damaged_json(const SourcedFrame& frame) {
   return {{"index", frame.index}, {"timestamp", frame.timestamp_s}, {"damage", frame.damage}};
 }
 
+void add_filter_counts(Json& frame, const std::vector<FilterCount>& counts) {
+  Json removed = Json::object();
+  Json corrected = Json::object();
+  for (const FilterCount& count : counts) {
+    removed[count.name] = removed.value(count.name, 0) + count.removed;
+    corrected[count.name] = corrected.value(count.name, 0) + count.corrected;
+  }
+  frame["removed"] = std::move(removed);
+  frame["corrected"] = std::move(corrected);
+}
+
 Json frame_json(const FrameRecord& record) {
   Json json = {{"index", record.index}, {"timestamp", record.timestamp_s}};
   if (!record.damage.empty()) {
@@ -65,6 +76,7 @@ Json frame_json(const FrameRecord& record) {
   json["phase_noise_cycles"] = record.phase_noise_cycles;
   json["valid_pixels"] = record.valid_pixels;
   json["kept_pixels"] = record.kept_pixels;
+  add_filter_counts(json, record.filters);
   json["tracking"] = tracking_json(record.tracking);
   json["milliseconds"] = times_json(record.times);
   return json;

@@ -12,6 +12,9 @@ namespace tofmap::app {
 /// {"index", "timestamp", "damage"} of a frame that could not be read.
 nlohmann::ordered_json damaged_json(const SourcedFrame& frame);
 
+/// Adds "removed" and "corrected", pixels by filter. A filter that is named twice counts once.
+void add_filter_counts(nlohmann::ordered_json& frame, const std::vector<FilterCount>& counts);
+
 /// One frame of a map's report: unwrapping, filtering, tracking and times.
 nlohmann::ordered_json frame_json(const FrameRecord& record);
 

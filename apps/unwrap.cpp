@@ -99,9 +99,10 @@ UnwrappedFrame unwrap_frame(const SequenceReader& source, int index, Unwrapper& 
                  {"saturated_pixels", count_reason(result.image, InvalidReason::saturated)},
                  {"valid_pixels", image.count_valid()}};
   if (arguments.with_filters) {
-    FilterResult filtered = apply_filters(image, *sourced.frame, rays, options.filters);
+    FilterResult filtered =
+        apply_filters(image, *sourced.frame, source.sensor().modulation, rays, options.filters);
     image = std::move(filtered.image);
-    for (const FilterCount& count : filtered.counts) report["removed"][count.name] = count.removed;
+    add_filter_counts(report, filtered.counts);
   }
   const std::filesystem::path name = source.files()[index].phase_a.filename();
   write_png(out / "range" / name, range_mm(image, name.string()));

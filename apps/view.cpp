@@ -90,7 +90,9 @@ View view_of_frame(const ViewArguments& arguments, const PipelineOptions& option
   if (!sourced.frame) throw InputError(sourced.damage);
   const PixelRays rays = pixel_rays(source.sensor().camera);
   const RangeImage unwrapped = unwrap(*sourced.frame, source.sensor(), options.unwrap).image;
-  const RangeImage kept = apply_filters(unwrapped, *sourced.frame, rays, options.filters).image;
+  const RangeImage kept =
+      apply_filters(unwrapped, *sourced.frame, source.sensor().modulation, rays, options.filters)
+          .image;
   View view;
   view.drawing = frame_drawing(kept, kept.range_m, rays);
   view.viewpoint = arguments.from == "above" ? frame_viewpoint_above(kept.range_m, rays)

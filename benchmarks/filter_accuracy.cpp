@@ -35,6 +35,7 @@ struct Sample {
 
 struct Case {
   std::string name;
+  Modulation modulation;
   PixelRays rays;
   std::vector<Sample> samples;
 };
@@ -163,6 +164,7 @@ Score score_filter(const Filter& filter, const Case& example) {
 void add_samples(const std::string& scene, int scene_seed, const SimulatorOptions& options,
                  int frames, Case& example) {
   const Simulator simulator(make_scene(scene, scene_seed), options);
+  example.modulation = simulator.sensor().modulation;
   example.rays = pixel_rays(simulator.sensor().camera);
   Unwrapper unwrapper(simulator.sensor(), {});
   for (int i = 0; i < frames; ++i) {
@@ -175,13 +177,13 @@ void add_samples(const std::string& scene, int scene_seed, const SimulatorOption
 std::vector<Case> make_cases(int divisor) {
   std::vector<Case> cases;
   SimulatorOptions options;
-  Case rooms{"random rooms", {}, {}};
+  Case rooms{"random rooms", {}, {}, {}};
   for (int seed = 1; seed <= std::max(1, 24 / divisor); ++seed) {
     add_samples("random", seed, options, 2, rooms);
   }
   cases.push_back(std::move(rooms));
   for (const char* scene : {"room", "hall", "flat", "corridor"}) {
-    Case example{scene, {}, {}};
+    Case example{scene, {}, {}, {}};
     add_samples(scene, 1, options, std::max(1, 16 / divisor), example);
     cases.push_back(std::move(example));
   }
@@ -189,10 +191,11 @@ std::vector<Case> make_cases(int divisor) {
 }
 
 Filter chain(const std::string& name, const FilterOptions& options) {
-  return {
-      name, [options](const Case& example, const Sample& sample) {
-        return apply_filters(sample.unwrapped, sample.simulated.frame, example.rays, options).image;
-      }};
+  return {name, [options](const Case& example, const Sample& sample) {
+            return apply_filters(sample.unwrapped, sample.simulated.frame, example.modulation,
+                                 example.rays, options)
+                .image;
+          }};
 }
 
 std::vector<Filter> filters() {
@@ -204,7 +207,8 @@ std::vector<Filter> filters() {
   as_published.chain = "jump_edge";
   as_published.min_edge_gap_sigmas = 0;
   all.push_back(chain("jump_edge, as published", as_published));
-  for (const char* name : {"jump_edge", "step_edge", "plane_edge", "smooth", "plane_edge smooth"}) {
+  for (const char* name :
+       {"jump_edge", "step_edge", "plane_edge", "outlier", "smooth", "plane_edge smooth"}) {
     options.chain = name;
     all.push_back(chain(name, options));
   }

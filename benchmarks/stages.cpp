@@ -26,8 +26,9 @@ struct Example {
     const int middle = *simulator.frame_count() / 2;
     frame = simulator.simulate(middle).frame;
     Unwrapper unwrapper(simulator.sensor(), options.unwrap);
-    prepared = prepare_frame(frame, unwrapper, rays, options);
-    next = prepare_frame(simulator.simulate(middle + 1).frame, unwrapper, rays, options);
+    const SensorModel& sensor = simulator.sensor();
+    prepared = prepare_frame(frame, unwrapper, sensor, rays, options);
+    next = prepare_frame(simulator.simulate(middle + 1).frame, unwrapper, sensor, rays, options);
   }
 };
 
@@ -51,8 +52,9 @@ BENCHMARK_CAPTURE(unwrap_by, joint, "joint")->Unit(benchmark::kMillisecond);
 void filter(benchmark::State& state) {
   const Example& e = example();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(
-        apply_filters(e.prepared.unwrapped.image, e.frame, e.rays, e.options.filters));
+    benchmark::DoNotOptimize(apply_filters(e.prepared.unwrapped.image, e.frame,
+                                           e.simulator.sensor().modulation, e.rays,
+                                           e.options.filters));
   }
 }
 BENCHMARK(filter)->Unit(benchmark::kMillisecond);

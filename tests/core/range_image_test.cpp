@@ -50,10 +50,11 @@ TEST(RangeImage, IsInvalidInAllPlanesAtOnce) {
 
 TEST(InvalidReason, HasTheNumbersThatFilesHold) {
   // reason/NNNNNN.png is read by others: numbers and names stay.
-  const char* names[] = {"none",      "no_return",    "low_amplitude", "low_confidence",
-                         "jump_edge", "out_of_range", "ambiguous",     "saturated"};
-  for (int i = 0; i < 8; ++i) {
-    EXPECT_EQ(std::string(reason_name(static_cast<InvalidReason>(i))), names[i]);
+  const std::vector<std::string> names{
+      "none",      "no_return", "low_amplitude", "low_confidence", "jump_edge", "out_of_range",
+      "ambiguous", "saturated", "isolated_wrap", "outlier",        "unknown"};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    EXPECT_EQ(reason_name(static_cast<InvalidReason>(i)), names[i]);
   }
 }
 

@@ -14,6 +14,11 @@ namespace {
 using test::camera;
 using test::plane;
 
+FilterResult filtered(const RangeImage& image, const FilterOptions& options) {
+  return apply_filters(image, test::frame_of(image.range_m), test::modulation(),
+                       pixel_rays(camera()), options);
+}
+
 TEST(FilterChain, RunsInTheOrderThatIsAskedFor) {
   RangeImage image = plane(3);
   image.range_m(7, 9) += 6;  // its neighbours are edges, unless it is gone before
@@ -21,11 +26,11 @@ TEST(FilterChain, RunsInTheOrderThatIsAskedFor) {
   FilterOptions options;
   options.min_confidence = 0.5;
   options.chain = "jump_edge confidence";
-  EXPECT_EQ(apply_filters(image, {}, pixel_rays(camera()), options).counts[0].removed, 8);
+  EXPECT_EQ(filtered(image, options).counts[0].removed, 8);
   options.chain = "confidence jump_edge";
-  EXPECT_EQ(apply_filters(image, {}, pixel_rays(camera()), options).counts[1].removed, 0);
+  EXPECT_EQ(filtered(image, options).counts[1].removed, 0);
   options.chain = "";
-  EXPECT_EQ(apply_filters(image, {}, pixel_rays(camera()), options).image.count_valid(), 20 * 16);
+  EXPECT_EQ(filtered(image, options).image.count_valid(), 20 * 16);
 }
 
 TEST(FilterChain, CountsWhatEachFilterRemoves) {
@@ -33,17 +38,41 @@ TEST(FilterChain, CountsWhatEachFilterRemoves) {
   image.confidence(0, 0) = 0.1F;
   FilterOptions options;
   options.min_confidence = 0.5;
-  const FilterResult result = apply_filters(image, {}, pixel_rays(camera()), options);
-  ASSERT_EQ(result.counts.size(), 3U);
+  const FilterResult result = filtered(image, options);
+  ASSERT_EQ(result.counts.size(), 4U);
   EXPECT_EQ(result.counts[1].name, "confidence");
   EXPECT_EQ(result.counts[1].removed, 1);
   EXPECT_EQ(result.counts[2].removed, 0);
+  EXPECT_EQ(result.counts[3].removed, 0);
+}
+
+TEST(FilterChain, CountsWhatAFilterCorrects) {
+  RangeImage image = plane(7);
+  image.wrap_count.setConstant(1);
+  const DualFrequencyFrame frame = test::frame_of(image.range_m);
+  image.wrap_count(7, 9) = 0;
+  image.range_m(7, 9) -= static_cast<float>(test::modulation().wavelength_a_m());
+  const FilterResult result =
+      apply_filters(image, frame, test::modulation(), pixel_rays(camera()), {});
+  EXPECT_EQ(result.counts[2].name, "isolated_wrap");
+  EXPECT_EQ(result.counts[2].corrected, 1);
+  EXPECT_EQ(result.counts[2].removed, 0);
+  EXPECT_EQ(result.counts[3].corrected, 0);
 }
 
 TEST(FilterChain, RefusesAFilterItDoesNotHave) {
   FilterOptions options;
   options.chain = "jump_edge magic";
-  EXPECT_THROW(apply_filters(plane(3), {}, pixel_rays(camera()), options), UsageError);
+  EXPECT_THROW(filtered(plane(3), options), UsageError);
+}
+
+TEST(FilterChain, RunsEveryFilterOnAnImageWithoutARange) {
+  const RangeImage nothing(16, 20);
+  FilterOptions options;
+  options.chain = filter_names(" ");
+  const FilterResult result = filtered(nothing, options);
+  EXPECT_EQ(result.image.count_valid(), 0);
+  EXPECT_EQ(count_reason(result.image, InvalidReason::no_return), 20 * 16);
 }
 
 }  // namespace

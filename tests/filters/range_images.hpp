@@ -6,6 +6,8 @@
 #include <random>
 
 #include <tofmap/core/camera.hpp>
+#include <tofmap/core/frame.hpp>
+#include <tofmap/core/modulation.hpp>
 #include <tofmap/core/range_image.hpp>
 
 namespace tofmap::test {
@@ -30,6 +32,20 @@ inline RangeImage plane(double depth_m, float sigma_m = 0.001F) {
   image.confidence.setConstant(0.9F);
   image.reason.setZero();
   return image;
+}
+
+inline Modulation modulation() { return {.frequency_a_hz = 29e6, .frequency_b_hz = 31e6}; }
+
+/// What a camera without noise measures of these ranges; no amplitudes.
+inline DualFrequencyFrame frame_of(const ImageF& range_m) {
+  const auto phase = [&](double wavelength_m) -> ImageF {
+    const ImageF cycles = range_m / static_cast<float>(wavelength_m);
+    return cycles - cycles.floor();
+  };
+  DualFrequencyFrame frame;
+  frame.phase_a = phase(modulation().wavelength_a_m());
+  frame.phase_b = phase(modulation().wavelength_b_m());
+  return frame;
 }
 
 /// A plane through (0, 0, depth) that turns away to the right: x sin(slant) = (depth − z)

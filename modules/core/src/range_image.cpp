@@ -30,6 +30,10 @@ const char* reason_name(InvalidReason reason) {
       return "ambiguous";
     case InvalidReason::saturated:
       return "saturated";
+    case InvalidReason::isolated_wrap:
+      return "isolated_wrap";
+    case InvalidReason::outlier:
+      return "outlier";
   }
   return "unknown";
 }

@@ -4,7 +4,9 @@
 #include "tofmap/filters/filter_chain.hpp"
 
 #include "tofmap/filters/gates.hpp"
+#include "tofmap/filters/isolated_wrap_filter.hpp"
 #include "tofmap/filters/jump_edge_filter.hpp"
+#include "tofmap/filters/outlier_filter.hpp"
 #include "tofmap/filters/plane_edge_filter.hpp"
 #include "tofmap/filters/smooth_filter.hpp"
 #include "tofmap/filters/step_edge_filter.hpp"
@@ -27,6 +29,7 @@ constexpr double rad_per_deg = std::numbers::pi / 180;
 /// What filters know of a frame besides its ranges.
 struct FilterInput {
   const DualFrequencyFrame& frame;
+  const Modulation& modulation;
   const PixelRays& rays;
   const FilterOptions& options;
 };
@@ -37,7 +40,7 @@ struct NamedFilter {
   RangeImage (*apply)(const RangeImage&, const FilterInput&);
 };
 
-constexpr std::array<NamedFilter, 6> all_filters{
+constexpr std::array<NamedFilter, 8> all_filters{
     {{"amplitude", InvalidReason::low_amplitude,
       [](const RangeImage& image, const FilterInput& in) {
         return drop_low_amplitude(image, in.frame, in.options.min_amplitude);
@@ -45,6 +48,11 @@ constexpr std::array<NamedFilter, 6> all_filters{
      {"confidence", InvalidReason::low_confidence,
       [](const RangeImage& image, const FilterInput& in) {
         return drop_low_confidence(image, in.options.min_confidence);
+      }},
+     {"isolated_wrap", InvalidReason::isolated_wrap,
+      [](const RangeImage& image, const FilterInput& in) {
+        return mend_isolated_wraps(image, in.frame, in.modulation,
+                                   {.max_share = in.options.max_isolated_share});
       }},
      {"jump_edge", InvalidReason::jump_edge,
       [](const RangeImage& image, const FilterInput& in) {
@@ -63,6 +71,10 @@ constexpr std::array<NamedFilter, 6> all_filters{
                                {.max_sigmas = in.options.max_plane_sigmas,
                                 .tolerance_m = in.options.plane_tolerance_m});
       }},
+     {"outlier", InvalidReason::outlier,
+      [](const RangeImage& image, const FilterInput& in) {
+        return drop_outliers(image, in.rays, in.options.max_outlier_deviations);
+      }},
      {"smooth", InvalidReason::none, [](const RangeImage& image, const FilterInput& in) {
         return smooth_ranges(image, in.rays,
                              {.max_sigmas = in.options.max_smooth_sigmas,
@@ -74,6 +86,11 @@ const NamedFilter& find_filter(const std::string& name) {
   if (found != all_filters.end()) return *found;
   throw UsageError("option filters.chain: '" + name +
                    "' is no filter; allowed: " + filter_names(", "));
+}
+
+/// Pixels that are valid in both with different wrap counts.
+int count_corrected(const RangeImage& before, const RangeImage& after) {
+  return static_cast<int>((after.reason == 0 && before.wrap_count != after.wrap_count).count());
 }
 
 }  // namespace
@@ -88,6 +105,8 @@ std::vector<OptionField<FilterOptions>> FilterOptions::fields() {
        "amplitude: pixels with a weaker signal are dropped; in the camera's units"},
       {"min_confidence", &O::min_confidence, 0, 1, "",
        "confidence: pixels less sure than this are dropped"},
+      {"max_isolated_share", &O::max_isolated_share, 0, 1, "",
+       "isolated_wrap: regions of a larger share of the image are left alone"},
       {"max_edge_angle_deg", &O::max_edge_angle_deg, 90, 180, "deg",
        "jump_edge: a pixel with a neighbour this straight behind it is a flying one"},
       {"min_edge_gap_sigmas", &O::min_edge_gap_sigmas, 0, 100, "",
@@ -104,6 +123,10 @@ std::vector<OptionField<FilterOptions>> FilterOptions::fields() {
        "smooth: pixels that differ by more standard deviations are not averaged"},
       {"smooth_tolerance_m", &O::smooth_tolerance_m, 0, 10, "m",
        "smooth: unless they differ by less than this"},
+      {"max_outlier_deviations", &O::max_outlier_deviations, 0, 1000, "",
+       "outlier: points that much farther from those around them than most are dropped, in "
+       "standard "
+       "deviations"},
   };
 }
 
@@ -112,15 +135,19 @@ std::string filter_names(const std::string& separator) {
 }
 
 FilterResult apply_filters(const RangeImage& image, const DualFrequencyFrame& frame,
-                           const PixelRays& rays, const FilterOptions& options) {
+                           const Modulation& modulation, const PixelRays& rays,
+                           const FilterOptions& options) {
   FilterResult result;
   result.image = image;
   std::istringstream names(options.chain);
   for (std::string name; names >> name;) {
     const NamedFilter& filter = find_filter(name);
-    const int before = result.image.count_valid();
-    result.image = filter.apply(result.image, {frame, rays, options});
-    result.counts.push_back({name, filter.reason, before - result.image.count_valid()});
+    RangeImage filtered = filter.apply(result.image, {frame, modulation, rays, options});
+    result.counts.push_back({.name = name,
+                             .reason = filter.reason,
+                             .removed = result.image.count_valid() - filtered.count_valid(),
+                             .corrected = count_corrected(result.image, filtered)});
+    result.image = std::move(filtered);
   }
   return result;
 }

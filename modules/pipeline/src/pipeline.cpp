@@ -38,12 +38,13 @@ std::vector<SourcedFrame> take(FrameSource& source, int count) {
 /// Prepares frames side by side; damaged ones stay empty.
 std::vector<std::optional<PreparedFrame>> prepare_all(const std::vector<SourcedFrame>& frames,
                                                       std::vector<Unwrapper>& unwrappers,
+                                                      const SensorModel& sensor,
                                                       const PixelRays& rays,
                                                       const PipelineOptions& options) {
   return side_by_side(
       static_cast<int>(frames.size()), unwrappers, [&](Unwrapper& unwrapper, int i) {
         const std::optional<DualFrequencyFrame>& frame = frames[static_cast<std::size_t>(i)].frame;
-        return frame ? std::optional(prepare_frame(*frame, unwrapper, rays, options))
+        return frame ? std::optional(prepare_frame(*frame, unwrapper, sensor, rays, options))
                      : std::nullopt;
       });
 }
@@ -65,6 +66,7 @@ FrameRecord prepared_record(const PreparedFrame& frame) {
   record.phase_noise_cycles = frame.unwrapped.phase_noise_cycles;
   record.valid_pixels = frame.unwrapped.image.count_valid();
   record.kept_pixels = frame.filtered.image.count_valid();
+  record.filters = frame.filtered.counts;
   record.times = frame.times;
   return record;
 }
@@ -102,13 +104,14 @@ int RoomMap::damaged() const {
 }
 
 PreparedFrame prepare_frame(const DualFrequencyFrame& frame, Unwrapper& unwrapper,
-                            const PixelRays& rays, const PipelineOptions& options) {
+                            const SensorModel& sensor, const PixelRays& rays,
+                            const PipelineOptions& options) {
   PreparedFrame out;
   out.index = frame.index;
   out.timestamp_s = frame.timestamp_s;
   out.unwrapped = timed(out.times.unwrap_ms, [&] { return unwrapper.unwrap(frame); });
   out.filtered = timed(out.times.filter_ms, [&] {
-    return apply_filters(out.unwrapped.image, frame, rays, options.filters);
+    return apply_filters(out.unwrapped.image, frame, sensor.modulation, rays, options.filters);
   });
   out.cloud = timed(out.times.cloud_ms, [&] {
     return std::make_shared<const SurfaceCloud>(
@@ -132,7 +135,7 @@ RoomMap map_room(FrameSource& source, const PipelineOptions& options, const MapH
   while (may_go_on()) {
     const std::vector<SourcedFrame> frames = take(source, omp_get_max_threads());
     if (frames.empty()) break;
-    const auto prepared = prepare_all(frames, unwrappers, rays, options);
+    const auto prepared = prepare_all(frames, unwrappers, sensor, rays, options);
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (prepared[i] && hooks.on_frame) hooks.on_frame(*prepared[i]);
       map.frames.push_back(prepared[i] ? place(*prepared[i], odometry, surface, map.trajectory)

@@ -7,15 +7,17 @@
 
 #include <tofmap/core/camera.hpp>
 #include <tofmap/core/frame.hpp>
+#include <tofmap/core/modulation.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/core/range_image.hpp>
 
 namespace tofmap {
 
 struct FilterOptions {
-  std::string chain = "amplitude confidence plane_edge";
+  std::string chain = "amplitude confidence isolated_wrap plane_edge";
   double min_amplitude = 0;
   double min_confidence = 0;
+  double max_isolated_share = 0.01;
   double max_edge_angle_deg = 170;
   double min_edge_gap_sigmas = 5;
   double max_step_incidence_deg = 80;
@@ -24,6 +26,7 @@ struct FilterOptions {
   double plane_tolerance_m = 0.03;
   double max_smooth_sigmas = 3;
   double smooth_tolerance_m = 0.005;
+  double max_outlier_deviations = 5;
 
   static std::vector<OptionField<FilterOptions>> fields();
 };
@@ -33,6 +36,7 @@ struct FilterCount {
   std::string name;
   InvalidReason reason = InvalidReason::none;
   int removed = 0;
+  int corrected = 0;  ///< pixels that got another wrap count
 };
 
 struct FilterResult {
@@ -46,6 +50,7 @@ std::string filter_names(const std::string& separator);
 /// Applies the filters named in `options.chain`, in that order. Throws UsageError for a name
 /// that is none of filter_names().
 FilterResult apply_filters(const RangeImage& image, const DualFrequencyFrame& frame,
-                           const PixelRays& rays, const FilterOptions& options);
+                           const Modulation& modulation, const PixelRays& rays,
+                           const FilterOptions& options);
 
 }  // namespace tofmap

@@ -55,7 +55,8 @@ struct PreparedFrame {
 /// Phases to surface. Depends on no other frame, so frames can be prepared side by side, each
 /// thread with an unwrapper of its own.
 PreparedFrame prepare_frame(const DualFrequencyFrame& frame, Unwrapper& unwrapper,
-                            const PixelRays& rays, const PipelineOptions& options);
+                            const SensorModel& sensor, const PixelRays& rays,
+                            const PipelineOptions& options);
 
 /// What became of one frame.
 struct FrameRecord {
@@ -67,6 +68,7 @@ struct FrameRecord {
   double phase_noise_cycles = 0;
   int valid_pixels = 0;  ///< after unwrapping
   int kept_pixels = 0;   ///< after filtering
+  std::vector<FilterCount> filters;
   TrackingResult tracking;
   StageTimes times;
 };

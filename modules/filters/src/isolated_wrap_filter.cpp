@@ -1,0 +1,206 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/filters/isolated_wrap_filter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+struct Pixel {
+  int row;
+  int col;
+};
+
+/// Two neighbours, the first in a region and the second outside.
+struct BorderPair {
+  Pixel inside;
+  Pixel outside;
+};
+
+struct Region {
+  std::vector<Pixel> pixels;
+  std::vector<BorderPair> border;
+};
+
+/// Parts of an image that hang together without a step of half a wavelength.
+class RegionFinder {
+ public:
+  RegionFinder(const RangeImage& image, double wavelength_m)
+      : image_(image),
+        max_step_m_(static_cast<float>(wavelength_m / 2)),
+        is_seen_(Image<bool>::Constant(image.rows(), image.cols(), false)) {}
+
+  bool is_seen(int row, int col) const { return is_seen_(row, col); }
+
+  /// The region of a pixel, all of whose pixels are seen then.
+  const Region& find(int row, int col) {
+    region_.pixels.clear();
+    region_.border.clear();
+    visit({row, col});
+    for (std::size_t next = 0; next < region_.pixels.size(); ++next) {
+      const Pixel at = region_.pixels[next];
+      for (const Pixel to : {Pixel{at.row, at.col + 1}, Pixel{at.row + 1, at.col},
+                             Pixel{at.row, at.col - 1}, Pixel{at.row - 1, at.col}}) {
+        if (!is_valid(to)) continue;
+        if (step_m(at, to) >= max_step_m_) {
+          region_.border.push_back({at, to});
+        } else if (!is_seen_(to.row, to.col)) {
+          visit(to);
+        }
+      }
+    }
+    return region_;
+  }
+
+ private:
+  bool is_valid(Pixel at) const {
+    return at.row >= 0 && at.row < image_.rows() && at.col >= 0 && at.col < image_.cols() &&
+           image_.valid(at.row, at.col);
+  }
+
+  float step_m(Pixel from, Pixel to) const {
+    return std::abs(image_.range_m(to.row, to.col) - image_.range_m(from.row, from.col));
+  }
+
+  void visit(Pixel at) {
+    is_seen_(at.row, at.col) = true;
+    region_.pixels.push_back(at);
+  }
+
+  const RangeImage& image_;
+  float max_step_m_;
+  Image<bool> is_seen_;
+  Region region_;
+};
+
+/// What the surroundings say of a region.
+struct Vote {
+  int wraps = 0;  ///< that the region lacks
+  float confidence = 0;
+};
+
+/// How many wavelengths a region lacks to fit what is around it, if most of its border agrees.
+std::optional<Vote> vote(const Region& region, const RangeImage& image, double wavelength_m) {
+  constexpr double tolerated_wavelengths = 1.0 / 16;  // slant, from a pixel to the next
+  constexpr double tolerated_sigmas = 3;
+  struct Ballot {
+    int pairs = 0;
+    float confidence = 0;
+  };
+  std::map<int, Ballot> ballots;
+  for (const auto& [in, out] : region.border) {
+    const double step_m = image.range_m(out.row, out.col) - image.range_m(in.row, in.col);
+    const double noise_m =
+        std::hypot(image.sigma_m(in.row, in.col), image.sigma_m(out.row, out.col));
+    const double wraps = std::round(step_m / wavelength_m);
+    const double tolerated_m = tolerated_wavelengths * wavelength_m + tolerated_sigmas * noise_m;
+    if (std::abs(step_m - wraps * wavelength_m) > tolerated_m) continue;
+    Ballot& ballot = ballots[static_cast<int>(wraps)];
+    ++ballot.pairs;
+    ballot.confidence += image.confidence(out.row, out.col);
+  }
+  for (const auto& [wraps, ballot] : ballots) {
+    if (2 * ballot.pairs > static_cast<int>(region.border.size())) {
+      return Vote{wraps, ballot.confidence / static_cast<float>(ballot.pairs)};
+    }
+  }
+  return std::nullopt;
+}
+
+/// How badly the beat fits a region whose counts are all changed alike: the sum of squared
+/// residuals, in cycles of B.
+double beat_misfit(const Region& region, int change, const RangeImage& image,
+                   const DualFrequencyFrame& frame, double b_cycles_per_a_cycle) {
+  double sum = 0;
+  for (const Pixel at : region.pixels) {
+    const double a_cycles =
+        frame.phase_a(at.row, at.col) + image.wrap_count(at.row, at.col) + change;
+    const double beat = a_cycles * b_cycles_per_a_cycle - frame.phase_b(at.row, at.col);
+    const double residual = beat - std::round(beat);
+    sum += residual * residual;
+  }
+  return sum;
+}
+
+bool allows(const Region& region, int change, const RangeImage& image) {
+  return std::ranges::all_of(region.pixels, [&](const Pixel at) {
+    const int count = image.wrap_count(at.row, at.col) + change;
+    return count >= 0 && count < invalid_wrap_count;
+  });
+}
+
+void correct(const Region& region, const Vote& vote, const DualFrequencyFrame& frame,
+             double wavelength_m, RangeImage& image) {
+  for (const Pixel at : region.pixels) {
+    const int count = image.wrap_count(at.row, at.col) + vote.wraps;
+    image.wrap_count(at.row, at.col) = static_cast<std::uint8_t>(count);
+    image.range_m(at.row, at.col) =
+        static_cast<float>((frame.phase_a(at.row, at.col) + count) * wavelength_m);
+    image.sigma_m(at.row, at.col) *= std::numbers::sqrt2_v<float>;  // of A alone
+    image.confidence(at.row, at.col) = vote.confidence;
+  }
+}
+
+/// Corrects or drops a region that is an isolated wrap.
+void mend(const Region& region, const DualFrequencyFrame& frame, const Modulation& modulation,
+          const RangeImage& image, RangeImage& out) {
+  const double wavelength_m = modulation.wavelength_a_m();
+  const std::optional<Vote> surroundings = vote(region, image, wavelength_m);
+  if (!surroundings) return;
+  const double b_per_a = modulation.frequency_b_hz / modulation.frequency_a_hz;
+  const auto misfit = [&](int change) {
+    return beat_misfit(region, change, image, frame, b_per_a);
+  };
+  const double own = misfit(0);
+  const int change = surroundings->wraps;
+  if (allows(region, change, image) && misfit(change) < own) {
+    correct(region, *surroundings, frame, wavelength_m, out);
+    return;
+  }
+  constexpr std::array near_counts{-2, -1, 1, 2};
+  const bool fits_a_third = std::ranges::any_of(near_counts, [&](int other) {
+    return other != change && allows(region, other, image) && misfit(other) < own;
+  });
+  if (!fits_a_third) return;
+  for (const Pixel at : region.pixels) {
+    out.invalidate(at.row, at.col, InvalidReason::isolated_wrap);
+  }
+}
+
+bool has_wraps(const RangeImage& image) {
+  return (image.wrap_count > 0 && image.wrap_count != invalid_wrap_count).any();
+}
+
+}  // namespace
+
+RangeImage mend_isolated_wraps(const RangeImage& image, const DualFrequencyFrame& frame,
+                               const Modulation& modulation, const IsolatedWrapLimits& limits) {
+  if (!same_size(image.range_m, frame.phase_a) || !same_size(image.range_m, frame.phase_b)) {
+    throw UsageError("isolated-wrap filter: range image and frame differ in size");
+  }
+  RangeImage out = image;
+  if (!has_wraps(image)) return out;
+  const double max_pixels = limits.max_share * static_cast<double>(image.range_m.size());
+  RegionFinder finder(image, modulation.wavelength_a_m());
+  for (int row = 0; row < image.rows(); ++row) {
+    for (int col = 0; col < image.cols(); ++col) {
+      if (!image.valid(row, col) || finder.is_seen(row, col)) continue;
+      const Region& region = finder.find(row, col);
+      if (static_cast<double>(region.pixels.size()) > max_pixels) continue;
+      mend(region, frame, modulation, image, out);
+    }
+  }
+  return out;
+}
+
+}  // namespace tofmap
