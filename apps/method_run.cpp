@@ -18,15 +18,6 @@
 namespace tofmap::app {
 namespace {
 
-/// The true pose of a frame; nothing if none is within half a frame of a slow camera.
-std::optional<Pose> true_pose(const Trajectory& poses, double timestamp_s) {
-  constexpr double max_gap_s = 0.02;
-  for (const StampedPose& pose : poses) {
-    if (std::abs(pose.timestamp_s - timestamp_s) < max_gap_s) return pose.world_from_camera;
-  }
-  return std::nullopt;
-}
-
 UnwrappingRecord record_of(const UnwrapResult& unwrapped, double milliseconds,
                            const SequenceReader& recording, int index) {
   UnwrappingRecord record;
@@ -63,8 +54,8 @@ Truth read_truth(const SequenceReader& source) {
   const PixelRays rays = pixel_rays(source.sensor().camera);
   constexpr int every = 3;  // neighbouring frames see the same surface
   for (int i = 0; i < *source.frame_count(); i += every) {
-    const auto pose =
-        true_pose(truth.poses, source.files()[static_cast<std::size_t>(i)].timestamp_s);
+    const auto pose = pose_at(truth.poses, source.files()[static_cast<std::size_t>(i)].timestamp_s,
+                              max_pose_gap_s);
     const auto ranges = source.range_truth(i);
     if (pose && ranges) truth.surface.add(*ranges, rays, *pose);
   }

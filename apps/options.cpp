@@ -25,6 +25,9 @@ OptionTable option_table(const std::string& command, ProgramOptions& options) {
                      "' is no command with options; there are: simulate, info, unwrap, map, "
                      "evaluate, view");
   }
+  // Of unwrap the ranges are the result. Maps are made of planes fitted to them, which is the
+  // better smoothing, and noise that neighbours share already would look like shape.
+  if (command == "unwrap") options.pipeline.filters.chain += " smooth";
   OptionTable table;
   table.bind("", options.run);
   if (is_any_of({"simulate"})) table.bind("simulator", options.simulator);
@@ -34,6 +37,7 @@ OptionTable option_table(const std::string& command, ProgramOptions& options) {
     table.bind("unwrap", options.pipeline.unwrap);
     table.bind("filters", options.pipeline.filters);
   }
+  if (is_any_of({"unwrap"})) table.bind("fusion", options.fusion);
   if (is_any_of({"evaluate"})) table.bind("evaluation", options.evaluation);
   if (is_any_of({"unwrap", "map", "evaluate"})) table.bind("pictures", options.pictures);
   return table;

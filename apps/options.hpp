@@ -9,6 +9,7 @@
 
 #include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/core/option_table.hpp>
+#include <tofmap/filters/view_fusion.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
 
 namespace tofmap::app {
@@ -25,6 +26,7 @@ struct ProgramOptions {
   RunOptions run;
   SimulatorOptions simulator;
   PipelineOptions pipeline;
+  FusionOptions fusion;
   EvaluationOptions evaluation;
   PictureOptions pictures;
 };

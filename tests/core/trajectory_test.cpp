@@ -139,5 +139,23 @@ TEST(Interpolation, TurnsTheShorterWayRound) {
   EXPECT_TRUE(interpolate(a, b, 0.5).isApprox(pose(pi, {0, 0, 1}, {0, 0, 0}), 1e-9));
 }
 
+TEST(PoseAt, LiesBetweenThePosesBeforeAndAfter) {
+  const Trajectory path{{2, pose(0.2, {0, 0, 1}, {4, 0, 0})}, {1, pose(0, {0, 0, 1}, {0, 0, 0})}};
+  const auto found = pose_at(path, 1.25, 1);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->translation().x(), 1, 1e-12);
+  EXPECT_NEAR(rotation_angle_rad(*found, path[1].world_from_camera), 0.05, 1e-12);
+  EXPECT_NEAR(pose_at(path, 1, 1)->translation().x(), 0, 1e-12);
+}
+
+TEST(PoseAt, IsTheOnlyOneThatIsNear) {
+  const Trajectory path{{1, pose(0, {0, 0, 1}, {0, 0, 0})}, {2, pose(0, {0, 0, 1}, {4, 0, 0})}};
+  EXPECT_EQ(pose_at(path, 1.1, 0.2)->translation().x(), 0);
+  EXPECT_EQ(pose_at(path, 1.9, 0.2)->translation().x(), 4);
+  EXPECT_EQ(pose_at(path, 0.9, 0.2)->translation().x(), 0);
+  EXPECT_FALSE(pose_at(path, 1.5, 0.2));
+  EXPECT_FALSE(pose_at({}, 1.5, 0.2));
+}
+
 }  // namespace
 }  // namespace tofmap

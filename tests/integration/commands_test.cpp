@@ -103,6 +103,40 @@ TEST_F(Commands, UnwrapFiltersOnRequestAndSaysWhyPixelsAreGone) {
   EXPECT_EQ(removed["plane_edge"], (reason == 4).count());
 }
 
+/// The mean error of the ranges of frame 1 that are off by less than half a metre, millimetres.
+double mean_error_mm(const fs::path& out, const fs::path& sequence) {
+  const ImageU16 range_mm = read_png_16(out / "range" / "000001.png");
+  const ImageU16 truth_mm = read_png_16(sequence / "range_truth" / "000001.png");
+  const auto error_mm = (range_mm.cast<double>() - truth_mm.cast<double>()).abs().eval();
+  const auto is_counted = (range_mm > 0 && truth_mm > 0 && error_mm < 500).eval();
+  return is_counted.select(error_mm, 0).sum() / static_cast<double>(is_counted.count());
+}
+
+TEST_F(Commands, UnwrapFusesFramesWhosePosesAreKnown) {
+  ASSERT_EQ(run("unwrap").status, 0);
+  const double alone_mm = mean_error_mm(out_, sequence_);
+  ASSERT_EQ(run("map").status, 0);
+  const std::string poses = (folder_.path() / "poses.txt").string();
+  fs::copy_file(out_ / "trajectory.txt", poses);
+  const Finished finished = run("unwrap", {"--poses", poses});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  EXPECT_LT(mean_error_mm(out_, sequence_), 0.8 * alone_mm);
+  const auto report = read_json(out_ / "report.json");
+  EXPECT_EQ(report["frames"][0]["fused_views"], 2) << "none before it, two after it";
+  EXPECT_EQ(report["frames"][1]["fused_views"], 3);
+  EXPECT_EQ(report["frames"].size(), frames);
+}
+
+TEST_F(Commands, UnwrapRefusesPosesOfAnotherRecording) {
+  const fs::path poses = folder_.path() / "poses.txt";
+  std::ofstream(poses) << "12345.6 0 0 0 0 0 0 1\n";
+  const Finished finished = run("unwrap", {"--poses", poses.string()});
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, AllOf(HasSubstr("poses.txt"), HasSubstr("another recording")));
+  EXPECT_EQ(run("unwrap", {"--poses", "/nowhere.txt"}).status, 3);
+  EXPECT_FALSE(fs::exists(out_));
+}
+
 TEST_F(Commands, UnwrapDropsUnsurePixelsOnRequest) {
   ASSERT_EQ(run("unwrap").status, 0);
   const ImageU16 all = read_png_16(out_ / "confidence" / "000000.png");

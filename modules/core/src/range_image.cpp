@@ -34,6 +34,8 @@ const char* reason_name(InvalidReason reason) {
       return "isolated_wrap";
     case InvalidReason::outlier:
       return "outlier";
+    case InvalidReason::seen_through:
+      return "seen_through";
   }
   return "unknown";
 }

@@ -35,6 +35,25 @@ Pose interpolate(const Pose& a, const Pose& b, double share) {
   return pose;
 }
 
+std::optional<Pose> pose_at(const Trajectory& trajectory, double timestamp_s, double max_gap_s) {
+  const StampedPose* before = nullptr;
+  const StampedPose* after = nullptr;
+  for (const StampedPose& pose : trajectory) {
+    if (std::abs(pose.timestamp_s - timestamp_s) > max_gap_s) continue;
+    if (pose.timestamp_s <= timestamp_s) {
+      if (before == nullptr || pose.timestamp_s > before->timestamp_s) before = &pose;
+    } else if (after == nullptr || pose.timestamp_s < after->timestamp_s) {
+      after = &pose;
+    }
+  }
+  if (before == nullptr && after == nullptr) return std::nullopt;
+  if (before == nullptr) return after->world_from_camera;
+  if (after == nullptr) return before->world_from_camera;
+  const double share =
+      (timestamp_s - before->timestamp_s) / (after->timestamp_s - before->timestamp_s);
+  return interpolate(before->world_from_camera, after->world_from_camera, share);
+}
+
 Trajectory read_trajectory(const std::filesystem::path& file) {
   std::ifstream in(file);
   if (!in) throw InputError(file.string() + ": cannot be read; is it there?");

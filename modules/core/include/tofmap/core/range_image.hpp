@@ -20,6 +20,7 @@ enum class InvalidReason : std::uint8_t {
   saturated = 7,       ///< the signal is too strong to be measured at one of the frequencies
   isolated_wrap = 8,   ///< a small region whose wrap count fits neither surroundings nor beat
   outlier = 9,         ///< farther from all around it than the image's points mostly are
+  seen_through = 10,   ///< other views see what is behind it
 };
 
 /// The name of a reason, as the documentation spells it.

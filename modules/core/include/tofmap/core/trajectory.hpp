@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -32,6 +33,10 @@ Pose pose_from_twist(const Eigen::Matrix<double, 6, 1>& twist);
 /// Linear in translation, spherical in rotation; `share` 0 gives `a`, 1 gives `b`.
 /// Outside 0 … 1 it extrapolates.
 Pose interpolate(const Pose& a, const Pose& b, double share);
+
+/// The pose at a time: between the last one before and the first one after it if both are within
+/// `max_gap_s`, else the one that is; nothing if neither is. The trajectory is in any order.
+std::optional<Pose> pose_at(const Trajectory& trajectory, double timestamp_s, double max_gap_s);
 
 /// Reads a trajectory in the form of the TUM RGB-D benchmark: a line a pose, `timestamp tx ty tz
 /// qx qy qz qw`, # starts a comment. Throws InputError that names file and line if a line
