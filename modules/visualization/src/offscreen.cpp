@@ -4,6 +4,8 @@
 // Debian's VTK opens windows through X alone. Drawing without a display goes through a window of
 // VTK's that leaves the OpenGL context to its user: here one of EGL, without any surface.
 
+#include "offscreen.hpp"
+
 #include "renderer.hpp"
 
 #include <EGL/egl.h>
@@ -109,15 +111,20 @@ Picture grab(vtkRenderWindow& window) {
 
 }  // namespace
 
-Picture draw(const Drawing& drawing, const Viewpoint& viewpoint, int width_px, int height_px) {
+Picture picture_of(vtkRenderer& renderer, int width_px, int height_px) {
   const SurfacelessContext context;
   vtkNew<OffscreenWindow> window;
   window->SetReadyForRendering(true);
   window->SetSize(width_px, height_px);
   window->SetMultiSamples(0);
-  window->AddRenderer(make_renderer(drawing, viewpoint));
+  window->AddRenderer(&renderer);
   window->Render();
   return grab(*window);
+}
+
+Picture draw(const Drawing& drawing, const Viewpoint& viewpoint, int width_px, int height_px) {
+  const auto renderer = make_renderer(drawing, viewpoint);
+  return picture_of(*renderer, width_px, height_px);
 }
 
 }  // namespace tofmap

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/visualization/plot.hpp"
+
+#include "offscreen.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <vtkAxis.h>
+#include <vtkChartLegend.h>
+#include <vtkChartXY.h>
+#include <vtkContextActor.h>
+#include <vtkContextScene.h>
+#include <vtkDoubleArray.h>
+#include <vtkNew.h>
+#include <vtkPen.h>
+#include <vtkPlotPoints.h>
+#include <vtkRenderer.h>
+#include <vtkTable.h>
+#include <vtkTextProperty.h>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Colours that all kinds of eyes tell apart (Okabe and Ito, Color universal design, 2008).
+constexpr std::array<Rgb, 7> line_colors{{{0, 114, 178},
+                                          {213, 94, 0},
+                                          {0, 158, 115},
+                                          {204, 121, 167},
+                                          {86, 180, 233},
+                                          {230, 159, 0},
+                                          {0, 0, 0}}};
+constexpr std::array line_dashes{vtkPen::SOLID_LINE, vtkPen::DASH_LINE, vtkPen::DASH_DOT_LINE};
+constexpr std::array line_marks{vtkPlotPoints::CIRCLE, vtkPlotPoints::SQUARE,
+                                vtkPlotPoints::DIAMOND, vtkPlotPoints::CROSS, vtkPlotPoints::PLUS};
+
+vtkSmartPointer<vtkDoubleArray> column(const std::string& name, const std::vector<double>& values) {
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetName(name.c_str());
+  for (const double value : values) array->InsertNextValue(value);
+  return array;
+}
+
+void add_line(const PlotLine& line, std::size_t number, vtkChartXY& chart) {
+  vtkNew<vtkTable> table;
+  table->AddColumn(column("x", line.x));
+  table->AddColumn(column(line.name, line.y));
+  auto* drawn = vtkPlotPoints::SafeDownCast(chart.AddPlot(vtkChart::LINE));
+  drawn->SetInputData(table, 0, 1);
+  drawn->SetLabel(line.name);
+  const Rgb color = line_colors[number % line_colors.size()];
+  drawn->SetColor(color.red, color.green, color.blue, 255);
+  drawn->SetWidth(2);
+  drawn->GetPen()->SetLineType(line_dashes[number % line_dashes.size()]);
+  drawn->SetMarkerStyle(line_marks[number % line_marks.size()]);
+  drawn->SetMarkerSize(7);
+}
+
+void set_axis(vtkAxis& axis, const std::string& label, double limit) {
+  axis.SetTitle(label);
+  axis.GetTitleProperties()->SetFontSize(15);
+  axis.GetTitleProperties()->BoldOff();
+  axis.GetLabelProperties()->SetFontSize(14);
+  axis.SetMinimum(0);
+  if (limit > 0) axis.SetMaximum(limit);
+  axis.SetBehavior(vtkAxis::FIXED);
+}
+
+/// The limit, or a tenth beyond the greatest value.
+double limit_or(double limit, const Plot& plot, std::vector<double> PlotLine::*values) {
+  if (limit > 0) return limit;
+  double greatest = 0;
+  for (const PlotLine& line : plot.lines) {
+    for (const double value : line.*values) {
+      if (std::isfinite(value)) greatest = std::max(greatest, value);
+    }
+  }
+  return greatest > 0 ? 1.1 * greatest : 1;
+}
+
+}  // namespace
+
+Picture plot_picture(const Plot& plot, int width_px, int height_px) {
+  vtkNew<vtkChartXY> chart;
+  chart->SetTitle(plot.title);
+  chart->GetTitleProperties()->SetFontSize(18);
+  chart->SetShowLegend(true);
+  for (std::size_t i = 0; i < plot.lines.size(); ++i) {
+    const PlotLine& line = plot.lines[i];
+    if (line.x.size() != line.y.size()) {
+      throw UsageError("plot: line '" + line.name + "' has not as many x as y");
+    }
+    add_line(line, i, *chart);
+  }
+  set_axis(*chart->GetAxis(vtkAxis::BOTTOM), plot.x_label,
+           limit_or(plot.x_limit, plot, &PlotLine::x));
+  set_axis(*chart->GetAxis(vtkAxis::LEFT), plot.y_label,
+           limit_or(plot.y_limit, plot, &PlotLine::y));
+  chart->GetLegend()->SetLabelSize(14);
+  chart->GetLegend()->SetHorizontalAlignment(vtkChartLegend::LEFT);
+  vtkNew<vtkContextActor> actor;
+  actor->GetScene()->AddItem(chart);
+  vtkNew<vtkRenderer> renderer;
+  renderer->SetBackground(1, 1, 1);
+  renderer->AddActor(actor);
+  return picture_of(*renderer, width_px, height_px);
+}
+
+}  // namespace tofmap

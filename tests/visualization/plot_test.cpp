@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/visualization/plot.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr Rgb first_line{0, 114, 178};
+
+Plot rising() {
+  return {.title = "a plot",
+          .x_label = "x, m",
+          .y_label = "y, %",
+          .lines = {{"rising", {0, 5, 10}, {0, 50, 100}}},
+          .x_limit = 10,
+          .y_limit = 100};
+}
+
+/// Pixels of the first line's colour within a part of the picture.
+std::ptrdiff_t count_line(const Picture& picture, int from_x, int to_x, int from_y, int to_y) {
+  std::ptrdiff_t count = 0;
+  for (int y = from_y; y < to_y; ++y) {
+    for (int x = from_x; x < to_x; ++x) count += picture.at(x, y) == first_line ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(PlotPicture, DrawsALineFromTheLowerLeftToTheUpperRight) {
+  const Picture picture = plot_picture(rising(), 600, 400);
+  ASSERT_EQ(picture.width_px, 600);
+  ASSERT_EQ(picture.height_px, 400);
+  EXPECT_GT(count_line(picture, 0, 300, 200, 400), 50) << "lower left";
+  EXPECT_GT(count_line(picture, 400, 600, 0, 200), 50) << "upper right";
+  EXPECT_EQ(count_line(picture, 400, 600, 250, 400), 0) << "lower right";
+}
+
+TEST(PlotPicture, LeavesAGapWhereThereIsNoValue) {
+  Plot plot = rising();
+  plot.lines[0].y[1] = std::nan("");
+  const Picture picture = plot_picture(plot, 600, 400);
+  EXPECT_EQ(count_line(picture, 250, 350, 150, 250), 0);
+}
+
+TEST(PlotPicture, FindsItsLimitsItself) {
+  Plot plot = rising();
+  plot.x_limit = plot.y_limit = 0;
+  plot.lines[0].y = {0, 0.5, 1};
+  EXPECT_GT(count_line(plot_picture(plot, 600, 400), 400, 600, 0, 200), 50);
+}
+
+TEST(PlotPicture, CanBeEmpty) {
+  Plot plot = rising();
+  plot.lines[0].x.clear();
+  plot.lines[0].y.clear();
+  EXPECT_EQ(plot_picture(plot, 300, 200).width_px, 300);
+}
+
+TEST(PlotPicture, RefusesALineWithoutAsManyXAsY) {
+  Plot plot = rising();
+  plot.lines[0].x.pop_back();
+  EXPECT_THROW(plot_picture(plot, 300, 200), UsageError);
+}
+
+}  // namespace
+}  // namespace tofmap
