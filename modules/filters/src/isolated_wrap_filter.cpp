@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -117,17 +118,24 @@ std::optional<Vote> vote(const Region& region, const RangeImage& image, double w
   return std::nullopt;
 }
 
-/// How badly the beat fits a region whose counts are all changed alike: the sum of squared
-/// residuals, in cycles of B.
-double beat_misfit(const Region& region, int change, const RangeImage& image,
-                   const DualFrequencyFrame& frame, double b_cycles_per_a_cycle) {
+/// Differences of costs below that say nothing: three standard deviations of one pixel, in nats.
+/// What the beat of a pixel costs is bounded by the same, so that none outvotes a region.
+constexpr double sure_nats = 4.5;
+
+/// How badly the beat fits a region whose counts are all changed alike: the sum of half the squared
+/// residuals over their variances.
+double beat_cost(const Region& region, int change, const RangeImage& image,
+                 const DualFrequencyFrame& frame, const Modulation& modulation) {
+  const double b_per_a = modulation.frequency_b_hz / modulation.frequency_a_hz;
   double sum = 0;
   for (const Pixel at : region.pixels) {
     const double a_cycles =
         frame.phase_a(at.row, at.col) + image.wrap_count(at.row, at.col) + change;
-    const double beat = a_cycles * b_cycles_per_a_cycle - frame.phase_b(at.row, at.col);
+    const double beat = a_cycles * b_per_a - frame.phase_b(at.row, at.col);
     const double residual = beat - std::round(beat);
-    sum += residual * residual;
+    // The range is the mean of A's and B's, their difference twice as uncertain.
+    const double sigma = 2 * image.sigma_m(at.row, at.col) / modulation.wavelength_a_m();
+    sum += std::min(sure_nats, residual * residual / (2 * sigma * sigma));
   }
   return sum;
 }
@@ -157,23 +165,22 @@ void mend(const Region& region, const DualFrequencyFrame& frame, const Modulatio
   const double wavelength_m = modulation.wavelength_a_m();
   const std::optional<Vote> surroundings = vote(region, image, wavelength_m);
   if (!surroundings) return;
-  const double b_per_a = modulation.frequency_b_hz / modulation.frequency_a_hz;
-  const auto misfit = [&](int change) {
-    return beat_misfit(region, change, image, frame, b_per_a);
-  };
-  const double own = misfit(0);
+  const auto cost = [&](int change) { return beat_cost(region, change, image, frame, modulation); };
   const int change = surroundings->wraps;
-  if (allows(region, change, image) && misfit(change) < own) {
-    correct(region, *surroundings, frame, wavelength_m, out);
-    return;
-  }
+  const double own = cost(0);
+  const double theirs =
+      allows(region, change, image) ? cost(change) : std::numeric_limits<double>::infinity();
   constexpr std::array near_counts{-2, -1, 1, 2};
   const bool fits_a_third = std::ranges::any_of(near_counts, [&](int other) {
-    return other != change && allows(region, other, image) && misfit(other) < own;
+    return other != change && allows(region, other, image) &&
+           cost(other) + sure_nats < std::min(own, theirs);
   });
-  if (!fits_a_third) return;
-  for (const Pixel at : region.pixels) {
-    out.invalidate(at.row, at.col, InvalidReason::isolated_wrap);
+  if (fits_a_third) {
+    for (const Pixel at : region.pixels) {
+      out.invalidate(at.row, at.col, InvalidReason::isolated_wrap);
+    }
+  } else if (theirs < own + sure_nats) {
+    correct(region, *surroundings, frame, wavelength_m, out);
   }
 }
 

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "score.hpp"
+
+namespace tofmap::bench {
+
+/// PCL's filters on range images: ShadowPoints with normals from integral images,
+/// StatisticalOutlierRemoval, RadiusOutlierRemoval and FastBilateralFilter. Parameters are in the
+/// names. The time includes the way to clouds and back.
+std::vector<Filter> pcl_filters();
+
+}  // namespace tofmap::bench
