@@ -88,7 +88,8 @@ int run_evaluate(const EvaluateArguments& arguments) {
   if (!quiet) std::printf("report: %s\n", (out.final_path() / "report.json").c_str());
   if (!results.empty() && (down_to_map || options.pictures.frames > 0)) {
     add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
-      write_method_pictures(folder, source, methods, options.pipeline.unwrap, options.pictures);
+      write_method_pictures(folder, source, methods, options.pipeline.unwrap,
+                            options.pipeline.filters, options.pictures);
       if (down_to_map) write_comparison(folder, results, options.pictures);
     });
   }

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <map>
 
 #include <nlohmann/json.hpp>
 
@@ -54,6 +55,21 @@ Json trajectory_json(const MethodResult& result) {
   return json;
 }
 
+/// Shares of the pixels that unwrapping left, by filter and in all.
+Json filters_json(const MethodResult& result) {
+  double valid = 0;
+  double kept = 0;
+  std::map<std::string, double> removed;
+  for (const FrameRecord& frame : result.map->frames) {
+    valid += frame.valid_pixels;
+    kept += frame.kept_pixels;
+    for (const FilterCount& count : frame.filters) removed[count.name] += count.removed;
+  }
+  Json json = {{"removed_percent", number(100 * (valid - kept) / valid)}};
+  for (const auto& [name, pixels] : removed) json[name + "_percent"] = number(100 * pixels / valid);
+  return json;
+}
+
 Json map_json(const MethodResult& result) {
   Json json = {{"points", result.map->surface.size()}};
   if (result.surface) {
@@ -77,6 +93,7 @@ constexpr std::array columns{
     Column{"unwrapping", "wrong_wrap_percent", "wrong", "wraps %", "%.3f"},
     Column{"unwrapping", "range_rmse_m", "range", "RMSE m", "%.3f"},
     Column{"unwrapping", "milliseconds_per_frame", "unwrap", "ms/frame", "%.1f"},
+    Column{"filters", "removed_percent", "filters", "remove %", "%.1f"},
     Column{"trajectory", "registered_frames", "frames", "placed", "%.0f"},
     Column{"trajectory", "ate_rmse_m", "ATE", "RMSE m", "%.4f"},
     Column{"trajectory", "rpe_rmse_m_per_m", "RPE", "m per m", "%.4f"},
@@ -99,6 +116,7 @@ std::string cell(const Json& report, const Column& column, const std::string& me
 void add_to_report(Json& report, const MethodResult& result) {
   report["unwrapping"][result.name] = unwrapping_json(result);
   if (!result.map) return;
+  report["filters"][result.name] = filters_json(result);
   report["trajectory"][result.name] = trajectory_json(result);
   report["map"][result.name] = map_json(result);
 }

@@ -88,6 +88,17 @@ std::string method_title(const std::string& method, const RangeImage& image,
   return title;
 }
 
+/// What filters removed of what a method gave them.
+FilteredRanges filtered_ranges(const std::string& method, const RangeImage& before,
+                               const RangeImage& after) {
+  const int valid = before.count_valid();
+  const double removed = valid > 0 ? 100.0 * (valid - after.count_valid()) / valid : 0;
+  char title[80];
+  std::snprintf(title, sizeof title, "%s: filters remove %.1f %%",
+                method == "none" ? "without unwrapping" : method.c_str(), removed);
+  return {title, before.range_m, after.reason};
+}
+
 }  // namespace
 
 std::vector<OptionField<PictureOptions>> PictureOptions::fields() {
@@ -112,7 +123,8 @@ void write_frame_pictures(const std::filesystem::path& folder, const SequenceRea
 
 void write_method_pictures(const std::filesystem::path& folder, const SequenceReader& source,
                            const std::vector<std::string>& methods, UnwrapOptions unwrap,
-                           const PictureOptions& options) {
+                           const FilterOptions& filters, const PictureOptions& options) {
+  const PixelRays rays = pixel_rays(source.sensor().camera);
   const double wavelength_m = source.sensor().modulation.wavelength_a_m();
   for (const int index : spread_indices(*source.frame_count(), options.frames)) {
     const SourcedFrame frame = source.read(index);
@@ -127,6 +139,16 @@ void write_method_pictures(const std::filesystem::path& folder, const SequenceRe
     const auto& file = source.files()[static_cast<std::size_t>(index)];
     write_picture(folder / (file.phase_a.stem().string() + "_methods.png"),
                   method_picture(ranges, truth_m.value_or(ImageF()), wavelength_m));
+    std::vector<FilteredRanges> filtered;
+    for (const std::string& method : {std::string("none"), methods.back()}) {
+      unwrap.method = method;
+      const RangeImage image = tofmap::unwrap(*frame.frame, source.sensor(), unwrap).image;
+      filtered.push_back(filtered_ranges(
+          method, image,
+          apply_filters(image, *frame.frame, source.sensor().modulation, rays, filters).image));
+    }
+    write_picture(folder / (file.phase_a.stem().string() + "_filters.png"),
+                  filter_picture(filtered));
   }
 }
 

@@ -11,6 +11,7 @@
 #include <tofmap/cloud/cloud_file.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/core/trajectory.hpp>
+#include <tofmap/filters/filter_chain.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap::app {
@@ -28,10 +29,11 @@ struct PictureOptions {
 void write_frame_pictures(const std::filesystem::path& folder, const SequenceReader& source,
                           const UnwrapOptions& unwrap, const PictureOptions& options);
 
-/// Writes what every method makes of a few frames, as `<frame>_methods.png`.
+/// Writes what every method makes of a few frames, as `<frame>_methods.png`, and what filters
+/// remove of it without unwrapping and after it, by the last method, as `<frame>_filters.png`.
 void write_method_pictures(const std::filesystem::path& folder, const SequenceReader& source,
                            const std::vector<std::string>& methods, UnwrapOptions unwrap,
-                           const PictureOptions& options);
+                           const FilterOptions& filters, const PictureOptions& options);
 
 /// Writes the map from above and from inside, as map_above.png and map_inside.png.
 void write_map_pictures(const std::filesystem::path& folder, const MapCloud& map,

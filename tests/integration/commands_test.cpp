@@ -274,7 +274,8 @@ TEST_F(Commands, EvaluateDrawsFramesByEveryMethod) {
                              "evaluation.down_to=unwrapping", "--set", "pictures.frames=1"})
                 .status,
             0);
-  EXPECT_THAT(names_in(out_ / "pictures"), ElementsAre(HasSubstr("_methods.png")));
+  EXPECT_THAT(names_in(out_ / "pictures"),
+              ElementsAre(HasSubstr("_filters.png"), HasSubstr("_methods.png")));
 }
 
 TEST_F(Commands, EvaluateRefusesMethodsThatThereAreNot) {

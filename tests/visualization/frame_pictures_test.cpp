@@ -64,6 +64,20 @@ TEST(MethodPicture, ShowsWhichPixelsAreWrapsOff) {
   EXPECT_EQ(count(method_picture({near}, ImageF(), 5)), 0);
 }
 
+TEST(FilterPicture, ShowsWhatIsRemovedByItsReason) {
+  FilteredRanges image{"a filter", ImageF::Constant(10, 20, 7), ImageU8::Zero(10, 20)};
+  image.range_m(0, 0) = NAN;
+  image.reason(0, 0) = static_cast<std::uint8_t>(InvalidReason::no_return);
+  const int square = (530 / 20) * (530 / 20);
+  const Rgb edge{214, 39, 40};
+  EXPECT_EQ(count(filter_picture({image}), edge), 0) << "the legend names what occurs alone";
+  image.reason.row(4).setConstant(static_cast<std::uint8_t>(InvalidReason::jump_edge));
+  const Picture picture = filter_picture({image});
+  EXPECT_NEAR(count(picture, edge), 20 * square, square);
+  EXPECT_NEAR(count(picture, ColorScale(0, 7, "range, m")(7)), 179 * square, square);
+  EXPECT_GE(count(picture, colors::invalid), square) << "what had no range before is not removed";
+}
+
 TEST(JumpPicture, MixesColorsByProbability) {
   std::array<ImageF, 3> x;
   for (ImageF& plane : x) plane = ImageF::Zero(10, 19);

@@ -46,6 +46,22 @@ Rgb wrap_error_color(float range_m, float truth_m, double wavelength_m) {
   return wraps < 0 ? wrap_errors::too_near : wraps > 0 ? wrap_errors::too_far : wrap_errors::none;
 }
 
+/// Colours that stand out of those of ranges, from dark blue to light yellow.
+Rgb reason_color(InvalidReason reason) {
+  switch (reason) {
+    case InvalidReason::jump_edge:
+      return {214, 39, 40};
+    case InvalidReason::low_amplitude:
+      return {0, 0, 0};
+    case InvalidReason::low_confidence:
+      return {255, 255, 255};
+    case InvalidReason::isolated_wrap:
+      return {204, 121, 167};
+    default:
+      return {230, 120, 0};
+  }
+}
+
 Picture jump_panel(const std::array<ImageF, 3>& planes) {
   return image_picture(planes[0].rows(), planes[0].cols(), [&](int v, int u) {
     return jump_color(planes[0](v, u), planes[1](v, u), planes[2](v, u));
@@ -136,6 +152,35 @@ Picture method_picture(const std::vector<MethodRanges>& methods, const ImageF& t
     columns.push_back(stacked(panels, gap_px));
   }
   columns.push_back(color_bar(scale, columns.back().height_px / 2));
+  return with_margin(beside(columns, gap_px), gap_px);
+}
+
+Picture filter_picture(const std::vector<FilteredRanges>& images) {
+  double limit_m = 1;
+  for (const FilteredRanges& image : images) {
+    limit_m = std::max(limit_m, round_limit_m(image.range_m));
+  }
+  const ColorScale scale(0, limit_m, "range, m");
+  std::set<InvalidReason> occurring;
+  std::vector<Picture> columns;
+  for (const FilteredRanges& image : images) {
+    const Picture panel =
+        image_picture(image.range_m.rows(), image.range_m.cols(), [&](int v, int u) {
+          const auto reason = static_cast<InvalidReason>(image.reason(v, u));
+          if (std::isnan(image.range_m(v, u))) return colors::invalid;
+          if (reason == InvalidReason::none) return scale(image.range_m(v, u));
+          occurring.insert(reason);
+          return reason_color(reason);
+        });
+    columns.push_back(titled(panel, image.title));
+  }
+  std::vector<LegendEntry> entries;
+  for (const InvalidReason reason : occurring) {
+    entries.push_back({reason_color(reason), reason_name(reason)});
+  }
+  entries.push_back({colors::invalid, "no range"});
+  columns.push_back(
+      stacked({color_bar(scale, columns.front().height_px / 2), color_key(entries)}, gap_px));
   return with_margin(beside(columns, gap_px), gap_px);
 }
 

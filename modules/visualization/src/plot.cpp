@@ -102,7 +102,7 @@ Picture plot_picture(const Plot& plot, int width_px, int height_px) {
   set_axis(*chart->GetAxis(vtkAxis::LEFT), plot.y_label,
            limit_or(plot.y_limit, plot, &PlotLine::y));
   chart->GetLegend()->SetLabelSize(14);
-  chart->GetLegend()->SetHorizontalAlignment(vtkChartLegend::LEFT);
+  chart->GetLegend()->SetInline(false);  // beside the lines, not over them
   vtkNew<vtkContextActor> actor;
   actor->GetScene()->AddItem(chart);
   vtkNew<vtkRenderer> renderer;

@@ -34,6 +34,17 @@ struct MethodRanges {
 Picture method_picture(const std::vector<MethodRanges>& methods, const ImageF& truth_m,
                        double wavelength_m);
 
+/// Ranges before filters, and what they removed.
+struct FilteredRanges {
+  std::string title;
+  ImageF range_m;  ///< before, radial, NaN invalid
+  ImageU8 reason;  ///< after: InvalidReason as a number
+};
+
+/// Filtered images side by side on one colour scale; removed pixels have the colour of the reason,
+/// which is in the legend if it occurs.
+Picture filter_picture(const std::vector<FilteredRanges>& images);
+
 /// The probabilities of jump nodes, as in figure 7 of the paper: a row a stage, the nodes in x
 /// direction left and those in y direction right. Planes are of configurations −1, 0, +1.
 struct JumpStage {
