@@ -16,11 +16,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json times_json(const StageTimes& times) {
-  return {{"unwrap", times.unwrap_ms},
-          {"filter", times.filter_ms},
-          {"cloud", times.cloud_ms},
-          {"register", times.register_ms},
-          {"map", times.map_ms}};
+  return {{"unwrap", times.unwrap_ms},     {"filter", times.filter_ms}, {"cloud", times.cloud_ms},
+          {"register", times.register_ms}, {"map", times.map_ms},       {"loops", times.loop_ms}};
 }
 
 Json tracking_json(const TrackingResult& tracking) {
@@ -34,6 +31,18 @@ Json tracking_json(const TrackingResult& tracking) {
           {"rmse_m", registration.rmse_m},
           {"residual_scale", registration.residual_scale},
           {"degenerate_directions", registration.degenerate_directions}};
+}
+
+Json loops_json(const RoomMap& map) {
+  Json loops = Json::array();
+  for (const Loop& loop : map.loops) {
+    loops.push_back({{"from", loop.from_frame},
+                     {"to", loop.to_frame},
+                     {"error_m", loop.error_m},
+                     {"deviations", loop.deviations},
+                     {"is_used", loop.is_used}});
+  }
+  return loops;
 }
 
 /// Mean over the frames that were read.
@@ -89,6 +98,7 @@ Json summary_json(const RoomMap& map) {
   mean.cloud_ms = mean_of(map, [](const FrameRecord& r) { return r.times.cloud_ms; });
   mean.register_ms = mean_of(map, [](const FrameRecord& r) { return r.times.register_ms; });
   mean.map_ms = mean_of(map, [](const FrameRecord& r) { return r.times.map_ms; });
+  mean.loop_ms = mean_of(map, [](const FrameRecord& r) { return r.times.loop_ms; });
   int degenerate = 0;
   for (const FrameRecord& record : map.frames) {
     degenerate += record.tracking.registration.degenerate_directions > 0 ? 1 : 0;
@@ -98,6 +108,7 @@ Json summary_json(const RoomMap& map) {
           {"registered", map.trajectory.size()},
           {"keyframes", map.keyframes.size()},
           {"frames_with_degenerate_directions", degenerate},
+          {"loops", loops_json(map)},
           {"map_points", map.surface.size()},
           {"interrupted", map.interrupted},
           {"milliseconds_per_frame", mean.total_ms()},

@@ -4,6 +4,7 @@
 #include "support/box_room.hpp"
 
 #include <memory>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -35,7 +36,7 @@ TEST(Odometry, FollowsASmoothMotion) {
     EXPECT_LT(error.translation().norm(), 2e-3) << "frame " << frame;
   }
   // 2.2 cm and 0.6° a frame: a new keyframe every 0.25 m.
-  EXPECT_GE(odometry.keyframe_trajectory().size(), 2U);
+  EXPECT_GE(odometry.keyframe_count(), 2);
 }
 
 TEST(Odometry, SkipsAFrameWithoutSurfaceAndGoesOn) {
@@ -56,7 +57,23 @@ TEST(Odometry, StandsStillOnIdenticalFrames) {
     ASSERT_TRUE(result.placed());
     EXPECT_LT(result.world_from_camera.translation().norm(), 1e-6);
   }
-  EXPECT_EQ(odometry.keyframe_trajectory().size(), 1U);
+  EXPECT_EQ(odometry.keyframe_count(), 1);
+}
+
+TEST(Odometry, MovesWithItsKeyframes) {
+  Odometry odometry(test::small_camera(), {}, {});
+  for (int frame = 0; frame < 15; ++frame) odometry.track(frame, frame / 15.0, view(frame));
+  const Pose elsewhere = test::moved_by({0, 0.3, 0}, {1, 2, 3});
+  std::vector<Pose> corrected;
+  for (const Keyframe& keyframe : odometry.recent_keyframes()) {
+    ASSERT_EQ(keyframe.id, static_cast<int>(corrected.size()));
+    corrected.push_back(elsewhere * keyframe.world_from_camera);
+  }
+  odometry.correct(corrected);
+  const TrackingResult next = odometry.track(15, 15 / 15.0, view(15));
+  ASSERT_TRUE(next.placed());
+  const Pose error = (elsewhere * camera_at(15)).inverse() * next.world_from_camera;
+  EXPECT_LT(error.translation().norm(), 2e-3);
 }
 
 TEST(Odometry, DoesNotBelieveALeap) {

@@ -60,5 +60,24 @@ TEST(SurfaceMap, RefusesVoxelsTooSmallForItsExtent) {
   EXPECT_THROW(map.integrate(cloud, Pose::Identity()), UsageError);
 }
 
+TEST(SurfaceMap, AddsAPartWhereItsFrameIs) {
+  SurfaceMap part({.voxel_m = 0.1, .min_observations = 1});
+  SurfaceCloud cloud;
+  cloud.push_back(point_at(1.01F, 0.01F));
+  cloud.push_back(point_at(1.06F, 0.02F));
+  part.integrate(cloud, Pose::Identity());
+  Pose world_from_part = Pose::Identity();
+  world_from_part.translation() = Eigen::Vector3d(0, 0, 5);
+  SurfaceMap whole({.voxel_m = 0.1, .min_observations = 4});
+  whole.add(part, world_from_part);
+  EXPECT_TRUE(whole.extract().empty()) << "two observations";
+  whole.add(part, world_from_part);
+  const MapCloud points = whole.extract();
+  ASSERT_EQ(points.size(), 1U);
+  EXPECT_NEAR(points[0].z, 5 + (4 * 1.01 + 1 * 1.06) / 5, 1e-5);
+  EXPECT_EQ(points[0].observations, 4U);
+  EXPECT_NEAR(points[0].normal_z, -1, 1e-6);
+}
+
 }  // namespace
 }  // namespace tofmap

@@ -81,7 +81,11 @@ TrackingResult Odometry::track(int frame_index, double timestamp_s,
     return result;
   }
   const MotionPrior prior = predict(timestamp_s);
-  const auto targets = choose_targets(*cloud, prior.world_from_camera);
+  std::vector<RegistrationTarget> targets;
+  for (const Keyframe* keyframe : choose_targets(*cloud, prior.world_from_camera)) {
+    targets.push_back({keyframe->cloud.get(), keyframe->world_from_camera});
+    result.targets.push_back(keyframe->id);
+  }
   result.registration = register_to_targets(*cloud, targets, camera_, prior, registration_);
   if (!succeeded(result.registration.status)) {
     result.status = TrackingStatus::lost;
@@ -113,11 +117,11 @@ MotionPrior Odometry::predict(double timestamp_s) const {
   return prior;
 }
 
-std::vector<RegistrationTarget> Odometry::choose_targets(const SurfaceCloud& cloud,
-                                                         const Pose& expected) const {
+std::vector<const Keyframe*> Odometry::choose_targets(const SurfaceCloud& cloud,
+                                                      const Pose& expected) const {
   struct Candidate {
     double overlap;
-    RegistrationTarget target;
+    const Keyframe* keyframe;
   };
   std::vector<Candidate> candidates;
   for (const Keyframe& keyframe : keyframes_) {
@@ -126,17 +130,29 @@ std::vector<RegistrationTarget> Odometry::choose_targets(const SurfaceCloud& clo
     // The newest is taken at any rate: a frame may overlap nothing else.
     const bool is_newest = &keyframe == &keyframes_.back();
     if (overlap >= options_.min_target_overlap || is_newest)
-      candidates.push_back({overlap, target});
+      candidates.push_back({overlap, &keyframe});
   }
   // Stable from the newest on, so that equal overlap prefers the recent.
   std::ranges::reverse(candidates);
   std::ranges::stable_sort(candidates, std::ranges::greater(), &Candidate::overlap);
-  std::vector<RegistrationTarget> targets;
+  std::vector<const Keyframe*> targets;
   for (const Candidate& candidate : candidates) {
     if (static_cast<int>(targets.size()) == options_.targets) break;
-    targets.push_back(candidate.target);
+    targets.push_back(candidate.keyframe);
   }
   return targets;
+}
+
+void Odometry::correct(std::span<const Pose> world_from_keyframe) {
+  if (keyframes_.empty()) return;
+  const Pose before = keyframes_.back().world_from_camera;
+  for (Keyframe& keyframe : keyframes_) {
+    keyframe.world_from_camera = world_from_keyframe[static_cast<std::size_t>(keyframe.id)];
+  }
+  const Pose change = keyframes_.back().world_from_camera * before.inverse();
+  for (std::optional<StampedPose>* pose : {&last_, &before_last_}) {
+    if (*pose) (*pose)->world_from_camera = change * (*pose)->world_from_camera;
+  }
 }
 
 bool Odometry::wants_keyframe(const Pose& pose) const {
@@ -154,8 +170,8 @@ void Odometry::accept(int frame_index, double timestamp_s,
   frames_since_placed_ = 0;
   if (!wants_keyframe(result.world_from_camera)) return;
   result.is_keyframe = true;
-  keyframes_.push_back({frame_index, timestamp_s, result.world_from_camera, cloud});
-  keyframe_trajectory_.push_back(*last_);
+  keyframes_.push_back(
+      {keyframe_count_++, frame_index, timestamp_s, result.world_from_camera, cloud});
   if (static_cast<int>(keyframes_.size()) > options_.recent_keyframes) keyframes_.pop_front();
 }
 

@@ -64,6 +64,19 @@ void SurfaceMap::integrate(const SurfaceCloud& cloud, const Pose& world_from_cam
   }
 }
 
+void SurfaceMap::add(const SurfaceMap& part, const Pose& world_from_part) {
+  for (const auto& [place, voxel] : part.voxels_) {
+    if (!(voxel.weight > 0)) continue;
+    const Eigen::Vector3d in_world = world_from_part * (voxel.weighted_point_m / voxel.weight);
+    Voxel& own = voxels_[key(in_world)];
+    own.weighted_point_m += voxel.weight * in_world;
+    own.weighted_normal += world_from_part.linear() * voxel.weighted_normal;
+    own.weight += voxel.weight;
+    own.confidence += voxel.confidence;
+    own.observations += voxel.observations;
+  }
+}
+
 MapCloud SurfaceMap::extract() const {
   std::vector<std::int64_t> keys;
   for (const auto& [key, voxel] : voxels_) {

@@ -17,11 +17,17 @@ namespace {
 /// Runs a step and adds its duration, in milliseconds, to `spent_ms`.
 template <class Step>
 auto timed(double& spent_ms, const Step& step) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
-  auto result = step();
-  spent_ms += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-  return result;
+  /// Adds up when it goes, so that steps may return nothing.
+  struct Timer {
+    double& spent_ms;
+    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+    ~Timer() {
+      const auto end = std::chrono::steady_clock::now();
+      spent_ms += std::chrono::duration<double, std::milli>(end - start).count();
+    }
+  };
+  const Timer timer{spent_ms};
+  return step();
 }
 
 /// Up to `count` frames from the source, fewer at its end.
@@ -72,18 +78,14 @@ FrameRecord prepared_record(const PreparedFrame& frame) {
 }
 
 /// Places one frame and, if that succeeds, adds it to the map.
-FrameRecord place(const PreparedFrame& frame, Odometry& odometry, SurfaceMap& surface,
-                  Trajectory& trajectory) {
+FrameRecord place(const PreparedFrame& frame, RoomMapper& mapper) {
   FrameRecord record = prepared_record(frame);
   record.tracking = timed(record.times.register_ms, [&] {
-    return odometry.track(frame.index, frame.timestamp_s, frame.cloud);
+    return mapper.track(frame.index, frame.timestamp_s, frame.cloud);
   });
   if (!record.tracking.placed()) return record;
-  trajectory.push_back({frame.timestamp_s, record.tracking.world_from_camera});
-  timed(record.times.map_ms, [&] {
-    surface.integrate(*frame.cloud, record.tracking.world_from_camera);
-    return surface.size();
-  });
+  timed(record.times.map_ms, [&] { mapper.integrate(*frame.cloud); });
+  timed(record.times.loop_ms, [&] { mapper.close_loops(); });
   return record;
 }
 
@@ -95,6 +97,7 @@ void bind_options(OptionTable& table, PipelineOptions& options) {
   table.bind("cloud", options.cloud);
   table.bind("registration", options.registration);
   table.bind("odometry", options.odometry);
+  table.bind("loops", options.loops);
   table.bind("map", options.map);
 }
 
@@ -123,8 +126,8 @@ PreparedFrame prepare_frame(const DualFrequencyFrame& frame, Unwrapper& unwrappe
 RoomMap map_room(FrameSource& source, const PipelineOptions& options, const MapHooks& hooks) {
   const SensorModel& sensor = source.sensor();
   const PixelRays rays = pixel_rays(sensor.camera);
-  Odometry odometry(sensor.camera, options.odometry, options.registration);
-  SurfaceMap surface(options.map);
+  RoomMapper mapper(sensor.camera, options.odometry, options.registration, options.loops,
+                    options.map);
   auto unwrappers = one_a_thread(Unwrapper(sensor, options.unwrap));
   RoomMap map;
 
@@ -138,12 +141,14 @@ RoomMap map_room(FrameSource& source, const PipelineOptions& options, const MapH
     const auto prepared = prepare_all(frames, unwrappers, sensor, rays, options);
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (prepared[i] && hooks.on_frame) hooks.on_frame(*prepared[i]);
-      map.frames.push_back(prepared[i] ? place(*prepared[i], odometry, surface, map.trajectory)
-                                       : damaged_record(frames[i]));
+      map.frames.push_back(prepared[i] ? place(*prepared[i], mapper) : damaged_record(frames[i]));
     }
   }
-  map.keyframes = odometry.keyframe_trajectory();
-  map.surface = surface.extract();
+  mapper.finish();
+  map.trajectory = mapper.trajectory();
+  map.keyframes = mapper.keyframe_trajectory();
+  map.surface = mapper.surface();
+  map.loops = mapper.loops();
   return map;
 }
 

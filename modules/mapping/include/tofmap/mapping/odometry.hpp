@@ -5,23 +5,17 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <tofmap/cloud/surface_cloud.hpp>
 #include <tofmap/core/camera.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/core/trajectory.hpp>
+#include <tofmap/mapping/keyframe.hpp>
 #include <tofmap/registration/projective_icp.hpp>
 
 namespace tofmap {
-
-/// A frame that later frames are registered against.
-struct Keyframe {
-  int frame_index = 0;
-  double timestamp_s = 0;
-  Pose world_from_camera = Pose::Identity();
-  std::shared_ptr<const SurfaceCloud> cloud;  ///< in the camera's frame
-};
 
 struct OdometryOptions {
   double keyframe_step_m = 0.25;
@@ -50,6 +44,7 @@ struct TrackingResult {
   TrackingStatus status = TrackingStatus::lost;
   Pose world_from_camera = Pose::Identity();  ///< meaningful only if `placed`
   bool is_keyframe = false;
+  std::vector<int> targets;  ///< ids of the keyframes it was registered against
   RegistrationResult registration;
 
   bool placed() const {
@@ -72,13 +67,17 @@ class Odometry {
   /// The keyframes that are still held, oldest first.
   const std::deque<Keyframe>& recent_keyframes() const { return keyframes_; }
 
-  /// Where every keyframe was placed, over the whole run.
-  const Trajectory& keyframe_trajectory() const { return keyframe_trajectory_; }
+  /// Keyframes over the whole run.
+  int keyframe_count() const { return keyframe_count_; }
+
+  /// Moves keyframes, by their ids, to where they are now believed to be, and the camera with the
+  /// newest of them.
+  void correct(std::span<const Pose> world_from_keyframe);
 
  private:
   MotionPrior predict(double timestamp_s) const;
-  std::vector<RegistrationTarget> choose_targets(const SurfaceCloud& cloud,
-                                                 const Pose& expected) const;
+  std::vector<const Keyframe*> choose_targets(const SurfaceCloud& cloud,
+                                              const Pose& expected) const;
   bool wants_keyframe(const Pose& pose) const;
   void accept(int frame_index, double timestamp_s, const std::shared_ptr<const SurfaceCloud>& cloud,
               TrackingResult& result);
@@ -87,7 +86,7 @@ class Odometry {
   OdometryOptions options_;
   RegistrationOptions registration_;
   std::deque<Keyframe> keyframes_;
-  Trajectory keyframe_trajectory_;
+  int keyframe_count_ = 0;
   std::optional<StampedPose> last_;
   std::optional<StampedPose> before_last_;
   int frames_since_placed_ = 0;

@@ -35,6 +35,10 @@ class SurfaceMap {
   /// standard deviation along the normal exceeds max_sigma_m are left out.
   void integrate(const SurfaceCloud& cloud, const Pose& world_from_camera);
 
+  /// Adds what another map of the same voxels holds, which is in a frame of its own. Its points
+  /// keep their weight and their observations.
+  void add(const SurfaceMap& part, const Pose& world_from_part);
+
   /// Voxels seen so far.
   std::size_t size() const { return voxels_.size(); }
 

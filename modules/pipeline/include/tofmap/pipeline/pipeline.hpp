@@ -12,8 +12,7 @@
 #include <tofmap/cloud/surface_cloud.hpp>
 #include <tofmap/core/trajectory.hpp>
 #include <tofmap/filters/filter_chain.hpp>
-#include <tofmap/mapping/odometry.hpp>
-#include <tofmap/mapping/surface_map.hpp>
+#include <tofmap/mapping/room_mapper.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap {
@@ -25,6 +24,7 @@ struct PipelineOptions {
   CloudOptions cloud;
   RegistrationOptions registration;
   OdometryOptions odometry;
+  LoopOptions loops;
   SurfaceMapOptions map;
 };
 
@@ -38,8 +38,11 @@ struct StageTimes {
   double cloud_ms = 0;
   double register_ms = 0;
   double map_ms = 0;
+  double loop_ms = 0;
 
-  double total_ms() const { return unwrap_ms + filter_ms + cloud_ms + register_ms + map_ms; }
+  double total_ms() const {
+    return unwrap_ms + filter_ms + cloud_ms + register_ms + map_ms + loop_ms;
+  }
 };
 
 /// A frame on its way, up to the point where it needs the frames before it.
@@ -78,6 +81,7 @@ struct RoomMap {
   Trajectory trajectory;  ///< every frame that was placed
   Trajectory keyframes;
   MapCloud surface;
+  std::vector<Loop> loops;          ///< places recognised
   std::vector<FrameRecord> frames;  ///< all, in order
   bool interrupted = false;
 

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <tofmap/mapping/loop_closure.hpp>
+#include <tofmap/mapping/odometry.hpp>
+#include <tofmap/mapping/surface_map.hpp>
+
+namespace tofmap {
+
+/// A place that was recognised.
+struct Loop {
+  int from_frame = 0;     ///< index of the earlier frame
+  int to_frame = 0;       ///< index of the later one
+  double error_m = 0;     ///< by how much the path was off when the loop was found
+  double deviations = 0;  ///< how far the edge is off in the end, in standard deviations
+  bool is_used = false;   ///< false: it disagrees with all others, and has lost its say
+};
+
+/// Follows the camera, recognises places, and keeps path and map consistent.
+///
+/// Every frame is placed by odometry and belongs to the newest keyframe, and its surface to that
+/// keyframe's part of the map. Where a keyframe sees what one long before it saw, both are tied by
+/// an edge, and the poses of all keyframes are fitted to the edges of odometry and loops. Parts and
+/// frames move with their keyframes, so nothing is integrated anew.
+class RoomMapper {
+ public:
+  RoomMapper(const CameraModel& camera, const OdometryOptions& odometry,
+             const RegistrationOptions& registration, const LoopOptions& loops,
+             const SurfaceMapOptions& surface);
+
+  /// Finds out where a frame was taken. Frames come in the order of time. If the frame was placed,
+  /// integrate() and close_loops() are to follow.
+  TrackingResult track(int frame_index, double timestamp_s,
+                       const std::shared_ptr<const SurfaceCloud>& cloud);
+
+  /// Adds the surface of the frame that was placed last.
+  void integrate(const SurfaceCloud& cloud);
+
+  /// If that frame is a keyframe, looks whether its place was seen before, and now and then fits
+  /// the poses to all edges.
+  void close_loops();
+
+  /// Fits the poses to edges that were not fitted yet; to be called after the last frame.
+  void finish();
+
+  Trajectory trajectory() const;  ///< every frame that was placed, as it is believed now
+  Trajectory keyframe_trajectory() const;
+  MapCloud surface() const;
+  const std::vector<Loop>& loops() const { return loops_; }
+
+ private:
+  struct PlacedFrame {
+    double timestamp_s;
+    int keyframe;
+    Pose keyframe_from_camera;
+  };
+
+  void add_keyframe(const TrackingResult& result);
+  void fit();
+
+  CameraModel camera_;
+  RegistrationOptions registration_;
+  LoopOptions loop_options_;
+  SurfaceMapOptions surface_options_;
+  Odometry odometry_;
+  std::vector<Keyframe> keyframes_;
+  std::vector<SurfaceMap> parts_;  ///< of each keyframe, in its camera's frame
+  std::vector<double> path_m_;     ///< along the path, at each keyframe
+  std::vector<PlacedFrame> frames_;
+  std::vector<PoseEdge> edges_;
+  std::vector<Loop> loops_;  ///< in the order of their edges
+  int unfitted_loops_ = 0;
+  int last_fit_ = 0;  ///< keyframe
+  int searched_ = 0;  ///< keyframes for which loops were looked for
+};
+
+}  // namespace tofmap
