@@ -4,190 +4,362 @@
 #include "plane_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
-#include <Eigen/Cholesky>
+#include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
 namespace {
 
-/// Weighted line fit along one image axis on one side of a pixel.
-struct SideSlope {
-  float slope = 0;     ///< of q per tangent
-  float variance = 0;  ///< of the slope
-  float chi2 = 0;      ///< mean squared normalised residual
-  bool usable = false;
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+/// Pixels of a row, from one on.
+struct Pixels {
+  const float* q;
+  const float* variance;
+  const float* x;
+  const float* y;
+
+  Pixels at(std::ptrdiff_t offset) const {
+    return {q + offset, variance + offset, x + offset, y + offset};
+  }
 };
 
-/// Slope of the line from the pixel through up to `radius` neighbours in direction
-/// (row_step, col_step), forced through the pixel itself.
-SideSlope side_slope(const InverseDepthImage& image, int row, int col, int row_step, int col_step,
-                     int radius) {
-  const ImageF& tangent = col_step != 0 ? image.tangent_x : image.tangent_y;
-  const float q0 = image.q(row, col);
-  float sum_xx = 0;
-  float sum_xq = 0;
-  float sum_qq = 0;
-  int count = 0;
-  for (int k = 1; k <= radius; ++k) {
-    const int r = row + k * row_step;
-    const int c = col + k * col_step;
-    if (r < 0 || c < 0 || r >= image.q.rows() || c >= image.q.cols()) break;
-    const float q = image.q(r, c);
-    if (!std::isfinite(q)) break;
-    const float weight = 1 / (image.variance(r, c) + image.variance(row, col));
-    const float x = tangent(r, c) - tangent(row, col);
-    const float d = q - q0;
-    sum_xx += weight * x * x;
-    sum_xq += weight * x * d;
-    sum_qq += weight * d * d;
-    ++count;
+/// Values of all pixels of a row.
+template <std::size_t Count>
+class RowValues {
+ public:
+  explicit RowValues(std::size_t cols) {
+    for (auto& values : values_) values.resize(cols);
   }
-  SideSlope side;
-  if (count == 0) return side;
-  side.usable = true;
-  side.slope = sum_xq / sum_xx;
-  side.variance = 1 / sum_xx;
-  side.chi2 = count > 1 ? std::max(0.0F, sum_qq - sum_xq * side.slope) / (count - 1) : 1;
-  return side;
-}
-
-/// Start slope along an axis: both sides where they agree, else the side that is straighter
-/// (the other one crosses an edge), in case of doubt the flatter.
-SideSlope start_slope(const SideSlope& back, const SideSlope& front) {
-  if (!back.usable) return front;
-  if (!front.usable) return back;
-  const float difference = back.slope - front.slope;
-  const float variance = back.variance + front.variance;
-  if (difference * difference < 4 * variance) {
-    SideSlope both = back;
-    const float share = front.variance / variance;  // weights by inverse variance
-    both.slope = share * back.slope + (1 - share) * front.slope;
-    both.variance = back.variance * share;
-    return both;
+  void set_zero() {
+    for (auto& values : values_) std::ranges::fill(values, 0.0F);
   }
-  const auto badness = [](const SideSlope& side) {
-    return std::max(side.chi2, 1.0F) * std::abs(side.slope);
-  };
-  return badness(back) <= badness(front) ? back : front;
-}
+  float* operator[](std::size_t i) { return values_[i].data(); }
 
-struct Moments {
-  Eigen::Matrix3f information = Eigen::Matrix3f::Zero();
-  Eigen::Vector3f moment = Eigen::Vector3f::Zero();
-  float sum_qq = 0;
-  int count = 0;
+ private:
+  std::array<std::vector<float>, Count> values_;
 };
 
-/// Sums over the window's pixels whose q agrees with the plane (offset + a x + b y) within the
-/// gate.
-template <class Gate>
-Moments accumulate(const InverseDepthImage& image, int row, int col, int radius, const Gate& in) {
-  const int rows = static_cast<int>(image.q.rows());
-  const int cols = static_cast<int>(image.q.cols());
-  const float x0 = image.tangent_x(row, col);
-  const float y0 = image.tangent_y(row, col);
-  const float q_start = image.q(row, col);
-  float s = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0, sq = 0, sxq = 0, syq = 0, sqq = 0;
-  int count = 0;
-  for (int r = std::max(0, row - radius); r <= std::min(rows - 1, row + radius); ++r) {
-    for (int c = std::max(0, col - radius); c <= std::min(cols - 1, col + radius); ++c) {
-      const float d = image.q(r, c) - q_start;  // NaN fails the gate
-      const float variance = image.variance(r, c);
-      const float x = image.tangent_x(r, c) - x0;
-      const float y = image.tangent_y(r, c) - y0;
-      if (!in(d, x, y, variance)) continue;
-      const float weight = 1 / variance;
-      s += weight;
-      sx += weight * x;
-      sy += weight * y;
-      sxx += weight * x * x;
-      sxy += weight * x * y;
-      syy += weight * y * y;
-      sq += weight * d;
-      sxq += weight * x * d;
-      syq += weight * y * d;
-      sqq += weight * d * d;
-      ++count;
-    }
+/// Sums of a line through each pixel on one side of it.
+struct LineSums {
+  float* xx;
+  float* xq;
+  float* qq;
+  float* count;    ///< of neighbours, up to the first without a value
+  float* is_open;  ///< 1 as long as none was without
+};
+
+/// Adds the next neighbour on that side. `along` are its tangents on the axis of the line.
+TOFMAP_VECTOR_CLONES void add_to_line(int pixels, const Pixels& own_, const Pixels& next_,
+                                      const float* own_along, const float* next_along,
+                                      const LineSums& sums_) {
+  const Pixels own = own_;
+  const Pixels next = next_;
+  const LineSums sums = sums_;
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    const float d = next.q[i] - own.q[i];
+    const bool is_usable = sums.is_open[i] > 0 && d == d;
+    const float x = next_along[i] - own_along[i];
+    const float weight = is_usable ? 1 / (next.variance[i] + own.variance[i]) : 0.0F;
+    const float usable_d = is_usable ? d : 0.0F;
+    sums.xx[i] += weight * x * x;
+    sums.xq[i] += weight * x * usable_d;
+    sums.qq[i] += weight * usable_d * usable_d;
+    sums.count[i] += is_usable ? 1.0F : 0.0F;
+    sums.is_open[i] = is_usable ? 1.0F : 0.0F;
   }
-  Moments moments;
-  moments.information << s, sx, sy, sx, sxx, sxy, sy, sxy, syy;
-  moments.moment << sq, sxq, syq;
-  moments.sum_qq = sqq;
-  moments.count = count;
-  return moments;
 }
 
-InverseDepthPlane solve(const Moments& moments, float q_start) {
-  InverseDepthPlane plane;
-  // Tangents are small numbers: scaled to unit diagonal the system is well conditioned.
-  const Eigen::Vector3f scale = moments.information.diagonal().cwiseSqrt().cwiseInverse();
-  if (moments.count < 3 || !scale.allFinite()) return plane;
-  const Eigen::Matrix3f scaled = scale.asDiagonal() * moments.information * scale.asDiagonal();
-  const Eigen::LDLT<Eigen::Matrix3f> decomposed(scaled);
-  // Neighbours on one line span no plane.
-  if (decomposed.vectorD().minCoeff() < 1e-3F) return plane;
-  const Eigen::Vector3f solution =
-      scale.asDiagonal() * decomposed.solve(scale.cwiseProduct(moments.moment));
-  const Eigen::Matrix3f inverse = decomposed.solve(Eigen::Matrix3f::Identity());
-  plane.neighbours = moments.count;
-  plane.q0 = q_start + solution[0];
-  plane.a = solution[1];
-  plane.b = solution[2];
-  plane.covariance = scale.asDiagonal() * inverse * scale.asDiagonal();
-  // Where neighbours scatter more than predicted, the prediction is too good to be true.
-  const float chi2 = moments.sum_qq - solution.dot(moments.moment);
-  const float excess = chi2 / std::max(1, moments.count - 3);
-  plane.covariance *= std::max(1.0F, excess);
-  return plane;
+/// The slope of a line and its variance.
+struct Slopes {
+  float* slope;
+  float* variance;
+};
+
+/// A line of one side.
+struct Side {
+  float slope;
+  float variance;
+  float badness;  ///< scatter about the line, and steepness
+  bool is_usable;
+
+  [[gnu::always_inline]] Side(const LineSums& sums, int i)
+      : slope(0), variance(0), badness(0), is_usable(sums.count[i] > 0) {
+    const float inverse = is_usable ? 1 / sums.xx[i] : 0.0F;
+    slope = sums.xq[i] * inverse;
+    variance = inverse;
+    const float others = sums.count[i] - 1;
+    const float rest = sums.qq[i] - sums.xq[i] * slope;
+    const float scatter = others > 0 ? rest / others : 1.0F;
+    badness = (scatter > 1 ? scatter : 1.0F) * (slope < 0 ? -slope : slope);
+  }
+};
+
+/// Slopes along an axis: of both sides where they agree, else of the side that is straighter (the
+/// other one crosses an edge), in case of doubt the flatter.
+TOFMAP_VECTOR_CLONES void choose_slopes(int pixels, const LineSums& back_, const LineSums& front_,
+                                        const Slopes& out_) {
+  const LineSums back_sums = back_;
+  const LineSums front_sums = front_;
+  const Slopes out = out_;
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    const Side back(back_sums, i);
+    const Side front(front_sums, i);
+    const float difference = back.slope - front.slope;
+    const float sum = back.variance + front.variance;
+    const float share = sum > 0 ? front.variance / sum : 0.0F;  // weights by inverse variance
+    const bool agree = difference * difference < 4 * sum;
+    const bool take_back = !front.is_usable || (back.is_usable && back.badness <= front.badness);
+    const float better_slope = take_back ? back.slope : front.slope;
+    const float better_variance = take_back ? back.variance : front.variance;
+    const bool take_both = back.is_usable && front.is_usable && agree;
+    out.slope[i] = take_both ? share * back.slope + (1 - share) * front.slope : better_slope;
+    out.variance[i] = take_both ? back.variance * share : better_variance;
+  }
+}
+
+/// Planes that neighbours must be near to, by `slack` more than their own variance: of a start
+/// value, and of slopes.
+struct Planes {
+  float* offset;  ///< of q at the pixel from the pixel's own
+  float* a;
+  float* b;
+  float* slack;
+  float* slack_a;
+  float* slack_b;
+};
+
+/// Weighted sums over neighbours.
+struct Sums {
+  float* count;
+  float* s;
+  float* sx;
+  float* sy;
+  float* sxx;
+  float* sxy;
+  float* syy;
+  float* sq;
+  float* sxq;
+  float* syq;
+  float* sqq;
+};
+
+/// Adds one neighbour of each pixel, if it is near the pixel's plane.
+TOFMAP_VECTOR_CLONES void add_neighbour(int pixels, const Pixels& own_, const Pixels& other_,
+                                        const Planes& planes_, float gate2, const Sums& sums_) {
+  const Pixels own = own_;
+  const Pixels other = other_;
+  const Planes planes = planes_;
+  const Sums sums = sums_;
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    const float x = other.x[i] - own.x[i];
+    const float y = other.y[i] - own.y[i];
+    const float d = other.q[i] - own.q[i];  // NaN is near nothing
+    const float variance = other.variance[i];
+    const float error = d - planes.offset[i] - planes.a[i] * x - planes.b[i] * y;
+    const float tolerated = gate2 * (variance + planes.slack[i] + planes.slack_a[i] * x * x +
+                                     planes.slack_b[i] * y * y);
+    const bool is_near = error * error < tolerated;
+    const float weight = is_near ? 1 / variance : 0.0F;
+    const float near_d = is_near ? d : 0.0F;
+    const float wx = weight * x;
+    const float wy = weight * y;
+    const float wd = weight * near_d;
+    sums.count[i] += is_near ? 1.0F : 0.0F;
+    sums.s[i] += weight;
+    sums.sx[i] += wx;
+    sums.sy[i] += wy;
+    sums.sxx[i] += wx * x;
+    sums.sxy[i] += wx * y;
+    sums.syy[i] += wy * y;
+    sums.sq[i] += wd;
+    sums.sxq[i] += wd * x;
+    sums.syq[i] += wd * y;
+    sums.sqq[i] += wd * near_d;
+  }
+}
+
+/// What a fit finds beside the plane.
+struct Fits {
+  float* neighbours;  ///< 0: the neighbours span no plane
+  float* q0_variance;
+  float* a_variance;
+  float* b_variance;
+};
+
+/// Solves the normal equations of each pixel, scaled to a unit diagonal, by the decomposition
+/// L D Lᵀ; tangents are small numbers. Neighbours whose mean squared tangents on an axis are below
+/// `least_spread2` are on one line.
+TOFMAP_VECTOR_CLONES void solve(int pixels, const Sums& sums_, float least_spread2,
+                                const Planes& planes_, const Fits& fits_) {
+  constexpr float least_pivot = 1e-3F;  // neighbours on one line span no plane
+  const Sums sums = sums_;
+  const Planes planes = planes_;
+  const Fits fits = fits_;
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    const float count = sums.count[i];
+    const float least = least_spread2 * sums.s[i];
+    const bool spans_axes = count >= 3 && sums.sxx[i] > least && sums.syy[i] > least;
+    const float scale0 = spans_axes ? 1 / __builtin_sqrtf(sums.s[i]) : 0.0F;
+    const float scale1 = spans_axes ? 1 / __builtin_sqrtf(sums.sxx[i]) : 0.0F;
+    const float scale2 = spans_axes ? 1 / __builtin_sqrtf(sums.syy[i]) : 0.0F;
+    const float m01 = scale0 * scale1 * sums.sx[i];
+    const float m02 = scale0 * scale2 * sums.sy[i];
+    const float m12 = scale1 * scale2 * sums.sxy[i];
+    const float d1 = 1 - m01 * m01;
+    const float l21 = (m12 - m01 * m02) / (d1 > least_pivot ? d1 : 1.0F);
+    const float d2 = 1 - m02 * m02 - l21 * l21 * d1;
+    const bool spans_plane = spans_axes && d1 > least_pivot && d2 > least_pivot;
+    const float safe_d1 = spans_plane ? d1 : 1.0F;
+    const float safe_d2 = spans_plane ? d2 : 1.0F;
+    // L z = m, D L^T u = z
+    const float z0 = scale0 * sums.sq[i];
+    const float z1 = scale1 * sums.sxq[i] - m01 * z0;
+    const float z2 = scale2 * sums.syq[i] - m02 * z0 - l21 * z1;
+    const float u2 = z2 / safe_d2;
+    const float u1 = z1 / safe_d1 - l21 * u2;
+    const float u0 = z0 - m01 * u1 - m02 * u2;
+    // The diagonal of the inverse: L⁻¹ has −m01, m01 l21 − m02 and −l21 below its diagonal.
+    const float k20 = m01 * l21 - m02;
+    const float inverse0 = 1 + m01 * m01 / safe_d1 + k20 * k20 / safe_d2;
+    const float inverse1 = 1 / safe_d1 + l21 * l21 / safe_d2;
+    const float inverse2 = 1 / safe_d2;
+    const float offset = scale0 * u0;
+    const float a = scale1 * u1;
+    const float b = scale2 * u2;
+    // Where neighbours scatter more than predicted, the prediction is too good to be true.
+    const float chi2 = sums.sqq[i] - offset * sums.sq[i] - a * sums.sxq[i] - b * sums.syq[i];
+    const float others = count - 3;
+    const float scatter = chi2 / (others > 1 ? others : 1.0F);
+    const float excess = scatter > 1 ? scatter : 1.0F;
+    planes.offset[i] = offset;
+    planes.a[i] = a;
+    planes.b[i] = b;
+    planes.slack[i] = 0;
+    planes.slack_a[i] = 0;
+    planes.slack_b[i] = 0;
+    fits.neighbours[i] = spans_plane ? count : 0.0F;
+    fits.q0_variance[i] = excess * scale0 * scale0 * inverse0;
+    fits.a_variance[i] = excess * scale1 * scale1 * inverse1;
+    fits.b_variance[i] = excess * scale2 * scale2 * inverse2;
+  }
+}
+
+/// Buffers of one row.
+struct Workspace {
+  RowValues<5> back;
+  RowValues<5> front;
+  RowValues<6> planes;
+  RowValues<11> sums;
+  std::vector<float> neighbours;
+  std::vector<float> fewest;  ///< neighbours of any fit so far
+
+  explicit Workspace(std::size_t cols)
+      : back(cols), front(cols), planes(cols), sums(cols), neighbours(cols), fewest(cols) {}
+};
+
+LineSums empty_line(RowValues<5>& values, std::size_t cols) {
+  values.set_zero();
+  std::fill_n(values[4], cols, 1.0F);
+  return {values[0], values[1], values[2], values[3], values[4]};
 }
 
 }  // namespace
 
-InverseDepthImage inverse_depth_image(const RangeImage& image, const PixelRays& rays) {
-  InverseDepthImage out;
-  out.q = 1 / (image.range_m * rays.z);
-  // q = 1 / (r z_ray), so dq / dr = −q / r.
-  out.variance = (image.sigma_m * out.q / image.range_m).square();
-  out.tangent_x = rays.x / rays.z;
-  out.tangent_y = rays.y / rays.z;
-  return out;
+PlaneFits::PlaneFits(const RangeImage& image, const PixelRays& rays, const CloudOptions& options)
+    : rows_(static_cast<int>(image.rows())),
+      cols_(static_cast<int>(image.cols())),
+      margin_(options.window_radius_px),
+      stride_(cols_ + 2 * margin_),
+      gate2_(static_cast<float>(options.gate_sigmas * options.gate_sigmas)),
+      min_neighbours_(options.min_neighbours),
+      q_(static_cast<std::size_t>((rows_ + 2 * margin_) * stride_), nan),
+      variance_(q_.size(), 1.0F),
+      tangent_x_(q_.size(), 0.0F),
+      tangent_y_(q_.size(), 0.0F) {
+  for (int row = 0; row < rows_; ++row) {
+    for (int col = 0; col < cols_; ++col) {
+      const std::size_t at = place(row, col);
+      const float ray_z = rays.z(row, col);
+      tangent_x_[at] = rays.x(row, col) / ray_z;
+      tangent_y_[at] = rays.y(row, col) / ray_z;
+      if (!image.valid(row, col)) continue;
+      const float range_m = image.range_m(row, col);
+      const float q = 1 / (range_m * ray_z);
+      // dq / dr = −q / r.
+      const float sigma = image.sigma_m(row, col) * q / range_m;
+      q_[at] = q;
+      variance_[at] = sigma * sigma;
+    }
+  }
+  if (rows_ == 0 || cols_ < 2) return;
+  // Of a hundred neighbours one is beside the line.
+  const float pitch = tangent_x(rows_ / 2, cols_ / 2) - tangent_x(rows_ / 2, cols_ / 2 - 1);
+  least_spread2_ = 0.01F * pitch * pitch;
 }
 
-InverseDepthPlane fit_plane(const InverseDepthImage& image, int row, int col,
-                            const CloudOptions& options) {
-  const int radius = options.window_radius_px;
-  const float gate2 = static_cast<float>(options.gate_sigmas * options.gate_sigmas);
-  const float q_start = image.q(row, col);
-  const float variance_start = image.variance(row, col);
+void PlaneFits::fit(int row, PlaneRow& out) const {
+  const auto cols = static_cast<std::size_t>(cols_);
+  thread_local Workspace work(cols);
+  if (work.neighbours.size() != cols) work = Workspace(cols);
+  const std::size_t first = place(row, 0);
+  const Pixels own{q_.data() + first, variance_.data() + first, tangent_x_.data() + first,
+                   tangent_y_.data() + first};
+  const Planes planes{work.planes[0], work.planes[1], work.planes[2],
+                      work.planes[3], work.planes[4], work.planes[5]};
+  const Sums sums{work.sums[0], work.sums[1], work.sums[2], work.sums[3],
+                  work.sums[4], work.sums[5], work.sums[6], work.sums[7],
+                  work.sums[8], work.sums[9], work.sums[10]};
 
-  const SideSlope sx = start_slope(side_slope(image, row, col, 0, -1, radius),
-                                   side_slope(image, row, col, 0, 1, radius));
-  const SideSlope sy = start_slope(side_slope(image, row, col, -1, 0, radius),
-                                   side_slope(image, row, col, 1, 0, radius));
-  const auto near_start = [&](float d, float x, float y, float variance) {
-    const float error = d - sx.slope * x - sy.slope * y;
-    return error * error <
-           gate2 * (variance + variance_start + sx.variance * x * x + sy.variance * y * y);
+  const auto find_slopes = [&](std::ptrdiff_t step, const float* Pixels::*along,
+                               const Slopes& slopes) {
+    const LineSums back = empty_line(work.back, cols);
+    const LineSums front = empty_line(work.front, cols);
+    for (int k = 1; k <= margin_; ++k) {
+      const Pixels before = own.at(-k * step);
+      const Pixels after = own.at(k * step);
+      add_to_line(cols_, own, before, own.*along, before.*along, back);
+      add_to_line(cols_, own, after, own.*along, after.*along, front);
+    }
+    choose_slopes(cols_, back, front, slopes);
   };
-  Moments moments = accumulate(image, row, col, radius, near_start);
-  InverseDepthPlane plane = solve(moments, q_start);
+  work.planes.set_zero();
+  find_slopes(1, &Pixels::x, {planes.a, planes.slack_a});
+  find_slopes(stride_, &Pixels::y, {planes.b, planes.slack_b});
+  std::copy_n(own.variance, cols, planes.slack);
 
-  constexpr int refinements = 2;
-  for (int i = 0; i < refinements && plane.neighbours >= options.min_neighbours; ++i) {
-    const float offset = plane.q0 - q_start;
-    const auto near_plane = [&](float d, float x, float y, float variance) {
-      const float error = d - offset - plane.a * x - plane.b * y;
-      return error * error < gate2 * variance;
-    };
-    moments = accumulate(image, row, col, radius, near_plane);
-    plane = solve(moments, q_start);
+  constexpr int fits = 3;
+  std::ranges::fill(work.fewest, std::numeric_limits<float>::max());
+  for (int i = 0; i < fits; ++i) {
+    work.sums.set_zero();
+    for (int down = -margin_; down <= margin_; ++down) {
+      for (int right = -margin_; right <= margin_; ++right) {
+        add_neighbour(cols_, own, own.at(down * stride_ + right), planes, gate2_, sums);
+      }
+    }
+    solve(cols_, sums, least_spread2_, planes,
+          {work.neighbours.data(), out.q0_variance.data(), out.a_variance.data(),
+           out.b_variance.data()});
+    std::ranges::transform(work.fewest, work.neighbours, work.fewest.begin(),
+                           [](float one, float other) { return std::min(one, other); });
   }
-  // The pixel must lie on its own plane: else it is a flying one among a surface's.
-  const float own = plane.q0 - q_start;
-  if (own * own > gate2 * variance_start) plane.neighbours = 0;
-  return plane;
+  for (std::size_t col = 0; col < cols; ++col) {
+    const float offset = planes.offset[col];
+    // The pixel must lie on its own plane: else it is a flying one among a surface's.
+    const bool is_on_it = offset * offset <= gate2_ * own.variance[col];
+    const bool has_plane = work.fewest[col] >= static_cast<float>(min_neighbours_) && is_on_it;
+    out.neighbours[col] = has_plane ? static_cast<int>(work.neighbours[col]) : 0;
+    out.q0[col] = own.q[col] + offset;
+    out.a[col] = planes.a[col];
+    out.b[col] = planes.b[col];
+  }
 }
 
 }  // namespace tofmap

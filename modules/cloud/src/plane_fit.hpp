@@ -2,34 +2,66 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
 
 #include <tofmap/cloud/surface_cloud.hpp>
 
 namespace tofmap {
 
-/// What the plane fits of one image share: planes of inverse depth q = 1/z, of its variance,
-/// and of the pixels' tangents (x/z, y/z). Invalid pixels have a NaN q.
-struct InverseDepthImage {
-  ImageF q;
-  ImageF variance;
-  ImageF tangent_x;
-  ImageF tangent_y;
+/// Planes q = q0 + a (x − x0) + b (y − y0) of inverse depth q = 1/z over tangents x/z and y/z,
+/// through the surfaces at the pixels (x0, y0) of a row.
+struct PlaneRow {
+  std::vector<int> neighbours;  ///< pixels that take part; 0: there is no plane
+  std::vector<float> q0;
+  std::vector<float> a;
+  std::vector<float> b;
+  std::vector<float> q0_variance;
+  std::vector<float> a_variance;
+  std::vector<float> b_variance;
+
+  explicit PlaneRow(std::size_t cols)
+      : neighbours(cols),
+        q0(cols),
+        a(cols),
+        b(cols),
+        q0_variance(cols),
+        a_variance(cols),
+        b_variance(cols) {}
 };
 
-InverseDepthImage inverse_depth_image(const RangeImage& image, const PixelRays& rays);
+/// Fits planes to the neighbours of pixels that lie on their own surface, a row at a time: the
+/// window's pixels one after the other, for all pixels of the row together.
+///
+/// A first plane comes from lines along both axes, on the side that is straight where one crosses
+/// an edge; neighbours near it are fitted, and again those near that fit, twice.
+class PlaneFits {
+ public:
+  PlaneFits(const RangeImage& image, const PixelRays& rays, const CloudOptions& options);
 
-/// The plane q = q0 + a (x − x0) + b (y − y0) through the surface at a pixel (x0, y0).
-struct InverseDepthPlane {
-  int neighbours = 0;  ///< pixels that take part; below the minimum: no plane
-  float q0 = 0;
-  float a = 0;
-  float b = 0;
-  Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();  ///< of (q0, a, b)
+  /// Planes with fewer than the options' neighbours, and those that their own pixel does not lie
+  /// on, are none. Rows may be fitted by several threads.
+  void fit(int row, PlaneRow& out) const;
+
+  float tangent_x(int row, int col) const { return tangent_x_[place(row, col)]; }
+  float tangent_y(int row, int col) const { return tangent_y_[place(row, col)]; }
+
+ private:
+  std::size_t place(int row, int col) const {
+    return static_cast<std::size_t>((row + margin_) * stride_ + margin_ + col);
+  }
+
+  int rows_;
+  int cols_;
+  int margin_;  ///< around the planes, without values: half the window
+  int stride_;
+  float gate2_;
+  int min_neighbours_;
+  float least_spread2_ = 0;      ///< of tangents that do not lie on one line
+  std::vector<float> q_;         ///< NaN where invalid
+  std::vector<float> variance_;  ///< of q
+  std::vector<float> tangent_x_;
+  std::vector<float> tangent_y_;
 };
-
-/// Fits the plane at a valid pixel to the neighbours on its own surface.
-InverseDepthPlane fit_plane(const InverseDepthImage& image, int row, int col,
-                            const CloudOptions& options);
 
 }  // namespace tofmap

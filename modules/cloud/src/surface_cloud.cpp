@@ -44,36 +44,34 @@ void check_sizes(const RangeImage& image, const PixelRays& rays) {
 }
 
 /// Standard deviation of the plane's normal, radians: the larger of its two tilts.
-float normal_sigma_rad(const InverseDepthPlane& plane, float incidence_cos) {
+float normal_sigma_rad(const PlaneRow& planes, std::size_t col, float incidence_cos) {
   // A tilt by an angle changes the slope of q by angle · q / cos² of the incidence, to first order.
-  const float slope_sigma = std::sqrt(std::max(plane.covariance(1, 1), plane.covariance(2, 2)));
-  return slope_sigma / plane.q0 * incidence_cos * incidence_cos;
+  const float slope_sigma = std::sqrt(std::max(planes.a_variance[col], planes.b_variance[col]));
+  return slope_sigma / planes.q0[col] * incidence_cos * incidence_cos;
 }
 
-SurfacePoint surface_point(const InverseDepthImage& inverse, const RangeImage& image,
+SurfacePoint surface_point(const PlaneFits& fits, const PlaneRow& planes, const RangeImage& image,
                            const PixelRays& rays, int row, int col, const CloudOptions& options) {
   SurfacePoint raw = point_on_ray(rays, row, col, image.range_m(row, col));
   raw.sigma_m = image.sigma_m(row, col);
   raw.confidence = image.confidence(row, col);
-  if (!image.valid(row, col)) return raw;
+  const auto i = static_cast<std::size_t>(col);
+  if (!image.valid(row, col) || planes.neighbours[i] == 0 || !(planes.q0[i] > 0)) return raw;
 
-  const InverseDepthPlane plane = fit_plane(inverse, row, col, options);
-  if (plane.neighbours < options.min_neighbours || !(plane.q0 > 0)) return raw;
   // q = a (x − x0) + b (y − y0) + q0 = (a, b, q0 − a x0 − b y0) · (x, y, 1) is the plane's
   // normal, pointing away from the camera, over its distance from the origin.
-  const float x0 = inverse.tangent_x(row, col);
-  const float y0 = inverse.tangent_y(row, col);
-  const Eigen::Vector3f away =
-      Eigen::Vector3f(plane.a, plane.b, plane.q0 - plane.a * x0 - plane.b * y0).normalized();
+  const float along_z = planes.q0[i] - planes.a[i] * fits.tangent_x(row, col) -
+                        planes.b[i] * fits.tangent_y(row, col);
+  const Eigen::Vector3f away = Eigen::Vector3f(planes.a[i], planes.b[i], along_z).normalized();
   const float ray_z = rays.z(row, col);
   const float incidence_cos = away.dot(Eigen::Vector3f(rays.x(row, col), rays.y(row, col), ray_z));
-  const float tilt_rad = normal_sigma_rad(plane, incidence_cos);
-  if (tilt_rad > options.max_normal_sigma_rad) return raw;
+  const float tilt_rad = normal_sigma_rad(planes, i, incidence_cos);
+  if (!(tilt_rad <= options.max_normal_sigma_rad)) return raw;
 
-  const float range_m = 1 / (plane.q0 * ray_z);
+  const float range_m = 1 / (planes.q0[i] * ray_z);
   SurfacePoint point = point_on_ray(rays, row, col, range_m);
   point.getNormalVector3fMap() = -away;
-  point.sigma_m = std::sqrt(plane.covariance(0, 0)) * range_m / plane.q0;
+  point.sigma_m = std::sqrt(planes.q0_variance[i]) * range_m / planes.q0[i];
   point.normal_sigma_rad = tilt_rad;
   point.confidence = raw.confidence;
   return point;
@@ -97,14 +95,20 @@ std::vector<OptionField<CloudOptions>> CloudOptions::fields() {
 SurfaceCloud surface_cloud(const RangeImage& image, const PixelRays& rays,
                            const CloudOptions& options) {
   check_sizes(image, rays);
-  const InverseDepthImage inverse = inverse_depth_image(image, rays);
+  const PlaneFits fits(image, rays, options);
   SurfaceCloud cloud = empty_cloud(image);
   const int rows = static_cast<int>(image.rows());
   const int cols = static_cast<int>(image.cols());
-#pragma omp parallel for schedule(dynamic, 4)
-  for (int row = 0; row < rows; ++row) {
-    for (int col = 0; col < cols; ++col) {
-      cloud.points[row * cols + col] = surface_point(inverse, image, rays, row, col, options);
+#pragma omp parallel
+  {
+    PlaneRow planes(static_cast<std::size_t>(cols));
+#pragma omp for schedule(dynamic, 4)
+    for (int row = 0; row < rows; ++row) {
+      fits.fit(row, planes);
+      for (int col = 0; col < cols; ++col) {
+        cloud.points[row * cols + col] =
+            surface_point(fits, planes, image, rays, row, col, options);
+      }
     }
   }
   return cloud;
