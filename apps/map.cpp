@@ -16,6 +16,7 @@
 
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/core/error.hpp>
+#include <tofmap/mapping/mesh_extraction.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
 
 namespace tofmap::app {
@@ -42,8 +43,10 @@ void check_result(const RoomMap& map) {
   }
 }
 
-void write_result(const OutputFolder& out, const RoomMap& map, const std::string& options_yaml) {
+void write_result(const OutputFolder& out, const RoomMap& map, double voxel_m,
+                  const std::string& options_yaml) {
   write_map(out.path() / "map.ply", map.surface);
+  write_mesh(out.path() / "mesh.ply", extract_mesh(map.surface, voxel_m));
   write_trajectory(out.path() / "trajectory.txt", map.trajectory);
   write_trajectory(out.path() / "keyframes.txt", map.keyframes);
   nlohmann::ordered_json report;
@@ -57,7 +60,7 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
   std::printf("%zu of %zu frames registered, %zu keyframes, %zu map points\n",
               map.trajectory.size(), map.frames.size(), map.keyframes.size(), map.surface.size());
   if (map.damaged() > 0) std::printf("%d frames were damaged, see report.json\n", map.damaged());
-  std::printf("map: %s, pictures beside it\n", (folder / "map.ply").c_str());
+  std::printf("map: %s, mesh and pictures beside it\n", (folder / "map.ply").c_str());
 }
 
 int run_map(const MapArguments& arguments) {
@@ -78,7 +81,7 @@ int run_map(const MapArguments& arguments) {
     map = map_room(source, options.pipeline, hooks);
   }
   check_result(map);
-  write_result(out, map, table.to_yaml(false));
+  write_result(out, map, options.pipeline.map.voxel_m, table.to_yaml(false));
   out.commit();
   if (!arguments.common.quiet) print_summary(map, out.final_path());
   add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {

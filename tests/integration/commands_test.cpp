@@ -163,7 +163,7 @@ TEST_F(Commands, ResultIsTheSameForAnyNumberOfThreads) {
 TEST_F(Commands, MapWritesMapPathAndReport) {
   const Finished finished = run("map");
   ASSERT_EQ(finished.status, 0) << finished.err;
-  EXPECT_THAT(names_in(out_), IsSupersetOf({"keyframes.txt", "map.ply", "options.yaml",
+  EXPECT_THAT(names_in(out_), IsSupersetOf({"keyframes.txt", "map.ply", "mesh.ply", "options.yaml",
                                             "report.json", "trajectory.txt"}));
   EXPECT_THAT(read_text(out_ / "map.ply").substr(0, 4), "ply\n");
   const auto report = read_json(out_ / "report.json");

@@ -3,17 +3,13 @@
 
 #include "tofmap/mapping/surface_map.hpp"
 
+#include "grid_key.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include <tofmap/core/error.hpp>
-
 namespace tofmap {
 namespace {
-
-/// Grid coordinates of 21 bits an axis: at voxels of 1 cm they span 21 km.
-constexpr int axis_bits = 21;
-constexpr std::int64_t axis_half = std::int64_t{1} << (axis_bits - 1);
 
 /// Averaging cannot lower a point's error below this: nearly exact points would drown all others.
 constexpr double min_sigma_m = 0.001;
@@ -34,16 +30,12 @@ std::vector<OptionField<SurfaceMapOptions>> SurfaceMapOptions::fields() {
 SurfaceMap::SurfaceMap(const SurfaceMapOptions& options) : options_(options) {}
 
 std::int64_t SurfaceMap::key(const Eigen::Vector3d& point_m) const {
-  std::int64_t packed = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto cell = static_cast<std::int64_t>(std::floor(point_m[axis] / options_.voxel_m));
-    if (cell < -axis_half || cell >= axis_half) {
-      throw UsageError("map.voxel_m: " + std::to_string(options_.voxel_m) +
-                       " m is too small for a map of this extent; choose larger voxels");
-    }
-    packed = (packed << axis_bits) | (cell + axis_half);
-  }
-  return packed;
+  // Places that no integer holds are out of the grid as well.
+  const Eigen::Array3d place = (point_m.array() / options_.voxel_m)
+                                   .floor()
+                                   .max(-2.0 * grid_axis_half)
+                                   .min(2.0 * grid_axis_half);
+  return grid_key(place.cast<int>().matrix());
 }
 
 void SurfaceMap::integrate(const SurfaceCloud& cloud, const Pose& world_from_camera) {
