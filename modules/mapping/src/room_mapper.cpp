@@ -3,6 +3,8 @@
 
 #include "tofmap/mapping/room_mapper.hpp"
 
+#include "tofmap/mapping/seen_through.hpp"
+
 #include <cmath>
 
 namespace tofmap {
@@ -83,7 +85,9 @@ MapCloud RoomMapper::surface() const {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     whole.add(parts_[i], keyframes_[i].world_from_camera);
   }
-  return whole.extract();
+  const MapCloud map = whole.extract();
+  if (!surface_options_.drop_seen_through) return map;
+  return without_seen_through(map, keyframes_, camera_, surface_options_.voxel_m);
 }
 
 void RoomMapper::add_keyframe(const TrackingResult& result) {

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/mapping/seen_through.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace tofmap {
+namespace {
+
+/// A keyframe, and what is needed to tell fast what it cannot see.
+class View {
+ public:
+  View(const Keyframe& keyframe, const CameraModel& camera, double margin_m)
+      : camera_from_world_(keyframe.world_from_camera.inverse()),
+        cloud_(*keyframe.cloud),
+        camera_(camera),
+        margin_m_(margin_m) {
+    for (const SurfacePoint& point : cloud_.points) {
+      if (point.has_normal()) farthest_m_ = std::max(farthest_m_, point.z);
+    }
+  }
+
+  enum class Verdict { nothing, agrees, sees_through };
+
+  Verdict judge(const Eigen::Vector3d& world_m) const {
+    const Eigen::Vector3d point_m = camera_from_world_ * world_m;
+    if (point_m.z() <= 0 || point_m.z() > farthest_m_ + margin_m_) return Verdict::nothing;
+    const std::optional<Eigen::Vector2d> pixel = project(camera_, point_m);
+    if (!pixel) return Verdict::nothing;
+    const double u = std::round(pixel->x());
+    const double v = std::round(pixel->y());
+    if (!(u >= 1 && v >= 1 && u + 1 < cloud_.width && v + 1 < cloud_.height)) {
+      return Verdict::nothing;
+    }
+    const int col = static_cast<int>(u);
+    const int row = static_cast<int>(v);
+    const Eigen::Vector3f at_m = point_m.cast<float>();
+    const std::optional<float> before = share_before(row, col, at_m);
+    if (!before) return Verdict::nothing;
+    if (std::abs(*before) <= 1) return Verdict::agrees;
+    if (*before < 0) return Verdict::nothing;  // behind what the keyframe sees
+    // At the outline of an object a small error of the pose shows its background.
+    for (int r = row - 1; r <= row + 1; ++r) {
+      for (int c = col - 1; c <= col + 1; ++c) {
+        const std::optional<float> beside = share_before(r, c, at_m);
+        if (!beside || *beside <= 1) return Verdict::nothing;
+      }
+    }
+    return Verdict::sees_through;
+  }
+
+ private:
+  /// How far a point is before the surface at a pixel, as a share of what is tolerated; negative if
+  /// it is behind. Nothing if there is no surface.
+  std::optional<float> share_before(int row, int col, const Eigen::Vector3f& point_m) const {
+    constexpr float sigmas = 3;
+    const SurfacePoint& surface = cloud_.at(col, row);
+    if (!surface.has_normal()) return std::nullopt;
+    const Eigen::Vector3f normal = surface.getNormalVector3fMap();
+    const Eigen::Vector3f at_m = surface.getVector3fMap();
+    const float sigma_m = surface.sigma_m * std::abs(normal.dot(at_m.normalized()));
+    const float tolerated_m = static_cast<float>(margin_m_) + sigmas * sigma_m;
+    return normal.dot(point_m - at_m) / tolerated_m;
+  }
+
+  Pose camera_from_world_;
+  const SurfaceCloud& cloud_;
+  const CameraModel& camera_;
+  double margin_m_;
+  float farthest_m_ = 0;
+};
+
+bool is_seen_through(const MapPoint& point, const std::vector<View>& views) {
+  constexpr int least = 2;
+  int seen_through = 0;
+  int agreeing = 0;
+  for (const View& view : views) {
+    const View::Verdict verdict = view.judge(point.getVector3fMap().cast<double>());
+    seen_through += verdict == View::Verdict::sees_through ? 1 : 0;
+    agreeing += verdict == View::Verdict::agrees ? 1 : 0;
+  }
+  return seen_through >= least && seen_through > agreeing;
+}
+
+}  // namespace
+
+MapCloud without_seen_through(const MapCloud& map, std::span<const Keyframe> keyframes,
+                              const CameraModel& camera, double margin_m) {
+  std::vector<View> views;
+  for (const Keyframe& keyframe : keyframes) views.emplace_back(keyframe, camera, margin_m);
+  std::vector<char> goes(map.size());
+  const auto count = static_cast<std::ptrdiff_t>(map.size());
+#pragma omp parallel for schedule(dynamic, 256)
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    goes[static_cast<std::size_t>(i)] =
+        is_seen_through(map[static_cast<std::size_t>(i)], views) ? 1 : 0;
+  }
+  MapCloud kept;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    if (goes[i] == 0) kept.push_back(map[i]);
+  }
+  return kept;
+}
+
+}  // namespace tofmap

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "support/box_room.hpp"
+
+#include <memory>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <tofmap/mapping/seen_through.hpp>
+
+namespace tofmap {
+namespace {
+
+using Eigen::Vector3d;
+using test::moved_by;
+using test::small_camera;
+
+constexpr double margin_m = 0.04;
+
+/// Keyframes that look at the far wall of a box, z = 3.5, from slightly different places.
+class SeenThrough : public testing::Test {
+ protected:
+  SeenThrough() {
+    for (int i = 0; i < 3; ++i) {
+      const Pose pose = moved_by({0, 0.05 * i, 0}, {0.1 * i, 0, 0});
+      keyframes_.push_back({.id = i,
+                            .world_from_camera = pose,
+                            .cloud = std::make_shared<const SurfaceCloud>(test::box_cloud(
+                                small_camera(), {-1.5, -1, -2.5}, {2, 1.2, 3.5}, pose))});
+    }
+  }
+
+  bool keeps(const Vector3d& point_m) const {
+    MapPoint point{};
+    point.getVector3fMap() = point_m.cast<float>();
+    point.normal_z = -1;
+    MapCloud map;
+    map.push_back(point);
+    return !without_seen_through(map, keyframes_, small_camera(), margin_m).empty();
+  }
+
+  std::vector<Keyframe> keyframes_;
+};
+
+TEST_F(SeenThrough, DropsWhatStandsBeforeTheSurface) {
+  EXPECT_FALSE(keeps({0.1, 0.1, 2}));
+  EXPECT_FALSE(keeps({0.1, 0.1, 3.3}));
+}
+
+TEST_F(SeenThrough, KeepsTheSurfaceAndWhatIsWithinTheMargin) {
+  EXPECT_TRUE(keeps({0.1, 0.1, 3.5}));
+  EXPECT_TRUE(keeps({0.1, 0.1, 3.47}));
+}
+
+TEST_F(SeenThrough, KeepsWhatIsHiddenOrOutOfView) {
+  EXPECT_TRUE(keeps({0.1, 0.1, 4}));
+  EXPECT_TRUE(keeps({0.1, 0.1, -2}));
+  EXPECT_TRUE(keeps({100, 0, 2}));
+}
+
+TEST_F(SeenThrough, TakesTwoKeyframesToDrop) {
+  keyframes_.resize(1);
+  EXPECT_TRUE(keeps({0.1, 0.1, 2}));
+}
+
+TEST_F(SeenThrough, LetsKeyframesThatAgreeOutvoteOthers) {
+  // An object at 2 m that three keyframes see, and that two others saw before it came.
+  for (int i = 3; i < 6; ++i) {
+    keyframes_.push_back({.id = i,
+                          .world_from_camera = Pose::Identity(),
+                          .cloud = std::make_shared<const SurfaceCloud>(test::box_cloud(
+                              small_camera(), {-9, -9, -9}, {9, 9, 2}, Pose::Identity()))});
+  }
+  EXPECT_TRUE(keeps({0.1, 0.1, 2}));
+  keyframes_.resize(5);
+  EXPECT_FALSE(keeps({0.1, 0.1, 2}));
+}
+
+TEST_F(SeenThrough, SaysNothingWhereAKeyframeHasNoSurface) {
+  for (Keyframe& keyframe : keyframes_) {
+    SurfaceCloud nothing = *keyframe.cloud;
+    for (SurfacePoint& point : nothing.points) point.normal_z = NAN;
+    keyframe.cloud = std::make_shared<const SurfaceCloud>(nothing);
+  }
+  EXPECT_TRUE(keeps({0.1, 0.1, 2}));
+}
+
+}  // namespace
+}  // namespace tofmap
