@@ -59,11 +59,6 @@ std::vector<Overlap> best_overlaps(const Keyframe& keyframe, std::span<const Key
   return overlaps;
 }
 
-bool is_verified(const RegistrationResult& result, const LoopOptions& options) {
-  return result.status == RegistrationStatus::converged && result.overlap >= options.min_overlap &&
-         result.inlier_share >= options.min_inlier_share && result.degenerate_directions == 0;
-}
-
 }  // namespace
 
 std::vector<OptionField<LoopOptions>> LoopOptions::fields() {
@@ -82,6 +77,11 @@ std::vector<OptionField<LoopOptions>> LoopOptions::fields() {
       {"kernel_width", &O::kernel_width, 0.5, 100, "",
        "loops farther off than this, in standard deviations, lose their say"},
   };
+}
+
+bool is_verified(const RegistrationResult& result, const LoopOptions& options) {
+  return result.status == RegistrationStatus::converged && result.overlap >= options.min_overlap &&
+         result.inlier_share >= options.min_inlier_share && result.degenerate_directions == 0;
 }
 
 PoseEdge edge_of(const Keyframe& from, int to, const RegistrationResult& registration) {

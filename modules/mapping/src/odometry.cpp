@@ -59,6 +59,8 @@ const char* status_name(TrackingStatus status) {
       return "lost";
     case TrackingStatus::implausible:
       return "implausible";
+    case TrackingStatus::relocalised:
+      return "relocalised";
   }
   return "unknown";
 }
@@ -141,6 +143,13 @@ std::vector<const Keyframe*> Odometry::choose_targets(const SurfaceCloud& cloud,
     targets.push_back(candidate.keyframe);
   }
   return targets;
+}
+
+void Odometry::restart(const StampedPose& pose, std::span<const Keyframe> keyframes) {
+  keyframes_.assign(keyframes.begin(), keyframes.end());
+  last_ = pose;
+  before_last_.reset();
+  frames_since_placed_ = 0;
 }
 
 void Odometry::correct(std::span<const Pose> world_from_keyframe) {

@@ -5,6 +5,7 @@
 
 #include "tofmap/mapping/seen_through.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tofmap {
@@ -12,6 +13,12 @@ namespace {
 
 /// Loops are mostly found in a row: they are fitted together, once in so many keyframes.
 constexpr int keyframes_between_fits = 10;
+
+/// One frame that fails may be a bad one.
+constexpr int frames_until_lost = 3;
+
+/// On each side of the keyframe that a lost camera is found by.
+constexpr int keyframes_around = 7;
 
 }  // namespace
 
@@ -26,18 +33,43 @@ RoomMapper::RoomMapper(const CameraModel& camera, const OdometryOptions& odometr
 
 TrackingResult RoomMapper::track(int frame_index, double timestamp_s,
                                  const std::shared_ptr<const SurfaceCloud>& cloud) {
-  const TrackingResult result = odometry_.track(frame_index, timestamp_s, cloud);
+  // A camera that has been lost for some time may be anywhere, and many places look alike from near
+  // where it was last seen.
+  const bool is_lost = lost_frames_ >= frames_until_lost;
+  const TrackingResult result =
+      is_lost ? relocalised(timestamp_s, *cloud) : odometry_.track(frame_index, timestamp_s, cloud);
+  if (!frames_.empty()) lost_frames_ = result.placed() ? 0 : lost_frames_ + 1;
   if (!result.placed()) return result;
   if (result.is_keyframe) add_keyframe(result);
-  const Keyframe& keyframe = keyframes_.back();
+  const Keyframe& keyframe = keyframes_[static_cast<std::size_t>(current_)];
   frames_.push_back(
       {timestamp_s, keyframe.id, keyframe.world_from_camera.inverse() * result.world_from_camera});
   return result;
 }
 
+TrackingResult RoomMapper::relocalised(double timestamp_s, const SurfaceCloud& cloud) {
+  TrackingResult result;
+  const auto found =
+      relocalise(cloud, keyframes_, descriptors_, camera_, loop_options_, registration_);
+  if (!found) return result;
+  result.status = TrackingStatus::relocalised;
+  result.world_from_camera = found->registration.world_from_camera;
+  result.registration = found->registration;
+  current_ = found->keyframe;
+  // Those around it in time; it comes last.
+  std::vector<Keyframe> around;
+  const int last = std::min(static_cast<int>(keyframes_.size()) - 1, current_ + keyframes_around);
+  for (int id = std::max(0, current_ - keyframes_around); id <= last; ++id) {
+    if (id != current_) around.push_back(keyframes_[static_cast<std::size_t>(id)]);
+  }
+  around.push_back(keyframes_[static_cast<std::size_t>(current_)]);
+  odometry_.restart({timestamp_s, result.world_from_camera}, around);
+  return result;
+}
+
 void RoomMapper::integrate(const SurfaceCloud& cloud) {
   if (frames_.empty()) return;
-  parts_.back().integrate(cloud, frames_.back().keyframe_from_camera);
+  parts_[static_cast<std::size_t>(current_)].integrate(cloud, frames_.back().keyframe_from_camera);
 }
 
 void RoomMapper::close_loops() {
@@ -106,7 +138,9 @@ void RoomMapper::add_keyframe(const TrackingResult& result) {
     edge.covariance *= shares;
     edges_.push_back(edge);
   }
+  current_ = keyframe.id;
   keyframes_.push_back(keyframe);
+  descriptors_.emplace_back(*keyframe.cloud);
   path_m_.push_back(path_m);
   parts_.emplace_back(surface_options_);
 }

@@ -39,13 +39,16 @@ struct LoopCandidate {
 /// Candidates are keyframes at least `min_gap` before it, whose cameras stand within `radius_m` and
 /// look within `max_turn_rad` of the same direction; the three that overlap most are registered
 /// against together, from the pose as it is believed and with a prior as wide as drift allows:
-/// `drift_share` of the path between (`path_m`, metres along the path at each keyframe, by id). A
-/// loop is verified if registration converges with `min_overlap` and `min_inlier_share`, and leaves
-/// no direction to the prior. Only keyframes before it in `keyframes`, which are in order of their
-/// ids, are looked at.
+/// `drift_share` of the path between (`path_m`, metres along the path at each keyframe, by id). The
+/// loop is there if that is_verified(). Only keyframes before it in `keyframes`, which are in order
+/// of their ids, are looked at.
 LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyframes,
                         std::span<const double> path_m, const CameraModel& camera,
                         const LoopOptions& options, const RegistrationOptions& registration);
+
+/// Whether a registration far from where the path came from can be believed: it converged with
+/// `min_overlap` and `min_inlier_share`, and leaves no direction to the prior.
+bool is_verified(const RegistrationResult& result, const LoopOptions& options);
 
 /// The edge that a registration against `from` measures, with what registration cannot know of its
 /// own errors added to its covariance.

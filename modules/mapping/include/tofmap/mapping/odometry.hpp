@@ -36,6 +36,7 @@ enum class TrackingStatus {
   no_surface,   ///< the frame has too few points with normals
   lost,         ///< registration failed
   implausible,  ///< registration ended farther from the expected pose than motion allows
+  relocalised,  ///< lost before, and found again by a keyframe
 };
 
 const char* status_name(TrackingStatus status);
@@ -48,7 +49,8 @@ struct TrackingResult {
   RegistrationResult registration;
 
   bool placed() const {
-    return status == TrackingStatus::first || status == TrackingStatus::tracked;
+    return status == TrackingStatus::first || status == TrackingStatus::tracked ||
+           status == TrackingStatus::relocalised;
   }
 };
 
@@ -69,6 +71,10 @@ class Odometry {
 
   /// Keyframes over the whole run.
   int keyframe_count() const { return keyframe_count_; }
+
+  /// Goes on from a frame that was placed otherwise, among these keyframes instead of the recent
+  /// ones; the last of them is the nearest. They must not be empty.
+  void restart(const StampedPose& pose, std::span<const Keyframe> keyframes);
 
   /// Moves keyframes, by their ids, to where they are now believed to be, and the camera with the
   /// newest of them.

@@ -7,6 +7,7 @@
 
 #include <tofmap/mapping/loop_closure.hpp>
 #include <tofmap/mapping/odometry.hpp>
+#include <tofmap/mapping/relocalisation.hpp>
 #include <tofmap/mapping/surface_map.hpp>
 
 namespace tofmap {
@@ -26,6 +27,9 @@ struct Loop {
 /// keyframe's part of the map. Where a keyframe sees what one long before it saw, both are tied by
 /// an edge, and the poses of all keyframes are fitted to the edges of odometry and loops. Parts and
 /// frames move with their keyframes, so nothing is integrated anew.
+///
+/// A camera that has been lost for a few frames is looked for among all keyframes. Frames in
+/// between are not placed.
 class RoomMapper {
  public:
   RoomMapper(const CameraModel& camera, const OdometryOptions& odometry,
@@ -59,6 +63,7 @@ class RoomMapper {
     Pose keyframe_from_camera;
   };
 
+  TrackingResult relocalised(double timestamp_s, const SurfaceCloud& cloud);
   void add_keyframe(const TrackingResult& result);
   void fit();
 
@@ -68,14 +73,17 @@ class RoomMapper {
   SurfaceMapOptions surface_options_;
   Odometry odometry_;
   std::vector<Keyframe> keyframes_;
-  std::vector<SurfaceMap> parts_;  ///< of each keyframe, in its camera's frame
-  std::vector<double> path_m_;     ///< along the path, at each keyframe
+  std::vector<PlaceDescriptor> descriptors_;  ///< of each keyframe
+  std::vector<SurfaceMap> parts_;             ///< of each keyframe, in its camera's frame
+  std::vector<double> path_m_;                ///< along the path, at each keyframe
   std::vector<PlacedFrame> frames_;
   std::vector<PoseEdge> edges_;
   std::vector<Loop> loops_;  ///< in the order of their edges
   int unfitted_loops_ = 0;
-  int last_fit_ = 0;  ///< keyframe
-  int searched_ = 0;  ///< keyframes for which loops were looked for
+  int last_fit_ = 0;     ///< keyframe
+  int current_ = 0;      ///< keyframe that frames belong to
+  int lost_frames_ = 0;  ///< since the last that was placed
+  int searched_ = 0;     ///< keyframes for which loops were looked for
 };
 
 }  // namespace tofmap
