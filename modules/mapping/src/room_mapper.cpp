@@ -17,6 +17,9 @@ constexpr int keyframes_between_fits = 10;
 /// One frame that fails may be a bad one.
 constexpr int frames_until_lost = 3;
 
+/// After so many frames motion does not tell any more where the camera may be.
+constexpr int frames_until_given_up = 15;
+
 /// On each side of the keyframe that a lost camera is found by.
 constexpr int keyframes_around = 7;
 
@@ -33,11 +36,7 @@ RoomMapper::RoomMapper(const CameraModel& camera, const OdometryOptions& odometr
 
 TrackingResult RoomMapper::track(int frame_index, double timestamp_s,
                                  const std::shared_ptr<const SurfaceCloud>& cloud) {
-  // A camera that has been lost for some time may be anywhere, and many places look alike from near
-  // where it was last seen.
-  const bool is_lost = lost_frames_ >= frames_until_lost;
-  const TrackingResult result =
-      is_lost ? relocalised(timestamp_s, *cloud) : odometry_.track(frame_index, timestamp_s, cloud);
+  const TrackingResult result = find_camera(frame_index, timestamp_s, cloud);
   if (!frames_.empty()) lost_frames_ = result.placed() ? 0 : lost_frames_ + 1;
   if (!result.placed()) return result;
   if (result.is_keyframe) add_keyframe(result);
@@ -45,6 +44,17 @@ TrackingResult RoomMapper::track(int frame_index, double timestamp_s,
   frames_.push_back(
       {timestamp_s, keyframe.id, keyframe.world_from_camera.inverse() * result.world_from_camera});
   return result;
+}
+
+TrackingResult RoomMapper::find_camera(int frame_index, double timestamp_s,
+                                       const std::shared_ptr<const SurfaceCloud>& cloud) {
+  // A camera that has been lost for some time may be anywhere, and many places look alike from near
+  // where it was last seen: so all of them are looked at first.
+  if (lost_frames_ >= frames_until_lost) {
+    const TrackingResult found = relocalised(timestamp_s, *cloud);
+    if (found.placed() || lost_frames_ >= frames_until_given_up) return found;
+  }
+  return odometry_.track(frame_index, timestamp_s, cloud);
 }
 
 TrackingResult RoomMapper::relocalised(double timestamp_s, const SurfaceCloud& cloud) {

@@ -32,12 +32,12 @@ struct FusionOptions {
 /// point of the ray whose depth in the other camera is that of the other image there, between four
 /// pixels without a step, by two steps of the secant method. Where that range agrees with the
 /// pixel's own within `max_sigmas` of the noise of both and `tolerance_m` (of poses), it is
-/// averaged in, weighted by confidence and noise and the less the farther it is off; sigma_m becomes
-/// that of the mean.
+/// averaged in, weighted by confidence and noise and the less the farther it is off; sigma_m
+/// becomes that of the mean.
 ///
 /// A pixel that more views see through than agree with, at least two, is none of a surface that
-/// stays: it is dropped as `seen_through` (flying pixels, what moves, wrong wraps). No pixel becomes
-/// valid. `FusionOptions::views` is for the caller, who chooses the views.
+/// stays: it is dropped as `seen_through` (flying pixels, what moves, wrong wraps). No pixel
+/// becomes valid. `FusionOptions::views` is for the caller, who chooses the views.
 ///
 /// Throws UsageError if images and camera differ in size.
 RangeImage fuse_views(const PosedView& view, std::span<const PosedView> others,

@@ -28,8 +28,8 @@ struct Loop {
 /// an edge, and the poses of all keyframes are fitted to the edges of odometry and loops. Parts and
 /// frames move with their keyframes, so nothing is integrated anew.
 ///
-/// A camera that has been lost for a few frames is looked for among all keyframes. Frames in
-/// between are not placed.
+/// A camera that has been lost for a few frames is looked for among all keyframes; after a second
+/// or so only there. Frames in between are not placed.
 class RoomMapper {
  public:
   RoomMapper(const CameraModel& camera, const OdometryOptions& odometry,
@@ -63,6 +63,8 @@ class RoomMapper {
     Pose keyframe_from_camera;
   };
 
+  TrackingResult find_camera(int frame_index, double timestamp_s,
+                             const std::shared_ptr<const SurfaceCloud>& cloud);
   TrackingResult relocalised(double timestamp_s, const SurfaceCloud& cloud);
   void add_keyframe(const TrackingResult& result);
   void fit();
