@@ -49,6 +49,7 @@ void add_simulate_command(CLI::App& program, Outcome& outcome);
 void add_info_command(CLI::App& program, Outcome& outcome);
 void add_unwrap_command(CLI::App& program, Outcome& outcome);
 void add_map_command(CLI::App& program, Outcome& outcome);
+void add_register_command(CLI::App& program, Outcome& outcome);
 void add_evaluate_command(CLI::App& program, Outcome& outcome);
 void add_view_command(CLI::App& program, Outcome& outcome);
 void add_config_command(CLI::App& program, Outcome& outcome);

@@ -3,8 +3,6 @@
 
 #include "frame_fusion.hpp"
 
-#include "frame_report.hpp"
-
 #include <algorithm>
 
 #include <tofmap/pipeline/side_by_side.hpp>
@@ -19,8 +17,7 @@ FrameFusion::FrameFusion(const CameraModel& camera, const PixelRays& rays, Traje
 
 void FrameFusion::add(UnwrappedFrame frame) {
   std::optional<Pose> pose;
-  if (frame.damage.empty()) pose = pose_at(poses_, frame.timestamp_s, max_pose_gap_s);
-  posed_ += pose ? 1 : 0;
+  if (frame.damage.empty()) pose = pose_at(poses_, frame.timestamp_s);
   held_.push_back({std::move(frame), pose});
 }
 
@@ -40,11 +37,12 @@ std::vector<UnwrappedFrame> FrameFusion::take(bool at_the_end) {
   return frames;
 }
 
-UnwrappedFrame FrameFusion::fused(std::size_t place) const {
+UnwrappedFrame FrameFusion::fused(std::size_t place) {
   const auto views = static_cast<std::size_t>(options_.views);
+  if (views == 0) return std::move(held_[place].frame);  // no other frame needs it
   const Held& own = held_[place];
   UnwrappedFrame out = own.frame;
-  if (!own.world_from_camera || views == 0) return out;
+  if (!own.world_from_camera) return out;
   std::vector<PosedView> others;
   const std::size_t end = std::min(held_.size(), place + views + 1);
   for (std::size_t i = place > views ? place - views : 0; i < end; ++i) {

@@ -26,16 +26,13 @@ class FrameFusion {
   /// are left `at_the_end`.
   std::vector<UnwrappedFrame> take(bool at_the_end);
 
-  /// Frames so far that have a pose.
-  int posed() const { return posed_; }
-
  private:
   struct Held {
     UnwrappedFrame frame;
     std::optional<Pose> world_from_camera;
   };
 
-  UnwrappedFrame fused(std::size_t place) const;
+  UnwrappedFrame fused(std::size_t place);
 
   CameraModel camera_;
   const PixelRays& rays_;
@@ -43,7 +40,6 @@ class FrameFusion {
   FusionOptions options_;
   std::deque<Held> held_;  ///< up to `options_.views` that were taken, and all that were not
   std::size_t taken_ = 0;
-  int posed_ = 0;
 };
 
 }  // namespace tofmap::app

@@ -12,9 +12,6 @@ namespace tofmap::app {
 /// {"index", "timestamp", "damage"} of a frame that could not be read.
 nlohmann::ordered_json damaged_json(const SourcedFrame& frame);
 
-/// A pose that far from a frame in time is none of it: half a frame of a slow camera.
-inline constexpr double max_pose_gap_s = 0.02;
-
 /// Adds "removed" and "corrected", pixels by filter. A filter that is named twice counts once.
 void add_filter_counts(nlohmann::ordered_json& frame, const std::vector<FilterCount>& counts);
 

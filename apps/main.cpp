@@ -33,6 +33,7 @@ int run(int argc, char** argv) {
   add_info_command(program, outcome);
   add_unwrap_command(program, outcome);
   add_map_command(program, outcome);
+  add_register_command(program, outcome);
   add_evaluate_command(program, outcome);
   add_view_command(program, outcome);
   add_config_command(program, outcome);

@@ -4,6 +4,7 @@
 #include "command.hpp"
 #include "frame_report.hpp"
 #include "interruption.hpp"
+#include "map_state.hpp"
 #include "options.hpp"
 #include "output_folder.hpp"
 #include "progress.hpp"
@@ -26,6 +27,8 @@ struct MapArguments {
   std::filesystem::path sequence;
   std::filesystem::path out;
   std::string method;
+  bool resume = false;
+  bool pcd = false;
   CommonArguments common;
 };
 
@@ -43,9 +46,10 @@ void check_result(const RoomMap& map) {
   }
 }
 
-void write_result(const OutputFolder& out, const RoomMap& map, double voxel_m,
+void write_result(const OutputFolder& out, const RoomMap& map, double voxel_m, bool with_pcd,
                   const std::string& options_yaml) {
   write_map(out.path() / "map.ply", map.surface);
+  if (with_pcd) write_map(out.path() / "map.pcd", map.surface);
   write_mesh(out.path() / "mesh.ply", extract_mesh(map.surface, voxel_m));
   write_trajectory(out.path() / "trajectory.txt", map.trajectory);
   write_trajectory(out.path() / "keyframes.txt", map.keyframes);
@@ -61,6 +65,18 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
               map.trajectory.size(), map.frames.size(), map.keyframes.size(), map.surface.size());
   if (map.damaged() > 0) std::printf("%d frames were damaged, see report.json\n", map.damaged());
   std::printf("map: %s, mesh and pictures beside it\n", (folder / "map.ply").c_str());
+  if (map.interrupted) std::printf("interrupted; --resume goes on from here\n");
+}
+
+/// Until the recording ends, or the user ends it.
+void follow_camera(MapRun& run, FrameSource& source, bool quiet) {
+  Progress progress("mapping frame", source.frame_count(), quiet);
+  MapHooks hooks;
+  hooks.keep_going = [&](int done) {
+    progress.show(done);
+    return !is_interrupted();
+  };
+  run.advance(source, hooks);
 }
 
 int run_map(const MapArguments& arguments) {
@@ -70,18 +86,15 @@ int run_map(const MapArguments& arguments) {
 
   SequenceReader source(arguments.sequence);
   OutputFolder out(arguments.out);
-  RoomMap map;
-  {
-    Progress progress("mapping frame", source.frame_count(), arguments.common.quiet);
-    MapHooks hooks;
-    hooks.keep_going = [&](int done) {
-      progress.show(done);
-      return !is_interrupted();
-    };
-    map = map_room(source, options.pipeline, hooks);
+  MapRun run(source.sensor(), options.pipeline);
+  if (arguments.resume) take_up_map(arguments.out, run, source, options.pipeline);
+  follow_camera(run, source, arguments.common.quiet);
+  if (run.is_interrupted()) {
+    write_map_state(out.path(), run, source.sensor(), options.pipeline);
   }
+  const RoomMap map = run.finish();
   check_result(map);
-  write_result(out, map, options.pipeline.map.voxel_m, table.to_yaml(false));
+  write_result(out, map, options.pipeline.map.voxel_m, arguments.pcd, table.to_yaml(false));
   out.commit();
   if (!arguments.common.quiet) print_summary(map, out.final_path());
   add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
@@ -100,6 +113,9 @@ void add_map_command(CLI::App& program, Outcome& outcome) {
   app->add_option("SEQ", arguments->sequence, "folder of the recording")->required();
   app->add_option("--out", arguments->out, "folder for the result")->required();
   app->add_option("--method", arguments->method, "how to unwrap: " + unwrap_method_names(", "));
+  app->add_flag("--resume", arguments->resume,
+                "go on where an interrupted run with this --out ended");
+  app->add_flag("--pcd", arguments->pcd, "write map.pcd, too");
   arguments->common.add_to(*app);
   app->callback([arguments, &outcome] { outcome.status = run_map(*arguments); });
 }

@@ -54,8 +54,7 @@ Truth read_truth(const SequenceReader& source) {
   const PixelRays rays = pixel_rays(source.sensor().camera);
   constexpr int every = 3;  // neighbouring frames see the same surface
   for (int i = 0; i < *source.frame_count(); i += every) {
-    const auto pose = pose_at(truth.poses, source.files()[static_cast<std::size_t>(i)].timestamp_s,
-                              max_pose_gap_s);
+    const auto pose = pose_at(truth.poses, source.files()[static_cast<std::size_t>(i)].timestamp_s);
     const auto ranges = source.range_truth(i);
     if (pose && ranges) truth.surface.add(*ranges, rays, *pose);
   }

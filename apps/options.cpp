@@ -20,14 +20,12 @@ OptionTable option_table(const std::string& command, ProgramOptions& options) {
   const auto is_any_of = [&](std::initializer_list<std::string_view> names) {
     return command.empty() || std::ranges::find(names, command) != names.end();
   };
-  if (!is_any_of({"simulate", "info", "unwrap", "map", "evaluate", "view"})) {
+  if (!is_any_of({"simulate", "info", "unwrap", "map", "register", "evaluate", "view"})) {
     throw UsageError("'" + command +
                      "' is no command with options; there are: simulate, info, unwrap, map, "
-                     "evaluate, view");
+                     "register, evaluate, view");
   }
-  // Of unwrap the ranges are the result. Maps are made of planes fitted to them, which is the
-  // better smoothing, and noise that neighbours share already would look like shape.
-  if (command == "unwrap") options.pipeline.filters.chain += " smooth";
+  if (command == "unwrap") options.pipeline.filters.chain = smoothing_chain();
   OptionTable table;
   table.bind("", options.run);
   if (is_any_of({"simulate"})) table.bind("simulator", options.simulator);
@@ -38,6 +36,7 @@ OptionTable option_table(const std::string& command, ProgramOptions& options) {
     table.bind("filters", options.pipeline.filters);
   }
   if (is_any_of({"unwrap"})) table.bind("fusion", options.fusion);
+  if (is_any_of({"register"})) table.bind("register", options.cloud_registration);
   if (is_any_of({"evaluate"})) table.bind("evaluation", options.evaluation);
   if (is_any_of({"unwrap", "map", "evaluate"})) table.bind("pictures", options.pictures);
   return table;

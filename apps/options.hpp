@@ -10,6 +10,7 @@
 #include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/filters/view_fusion.hpp>
+#include <tofmap/pipeline/cloud_registration.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
 
 namespace tofmap::app {
@@ -27,6 +28,7 @@ struct ProgramOptions {
   SimulatorOptions simulator;
   PipelineOptions pipeline;
   FusionOptions fusion;
+  CloudRegistrationOptions cloud_registration;
   EvaluationOptions evaluation;
   PictureOptions pictures;
 };

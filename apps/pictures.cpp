@@ -130,23 +130,26 @@ void write_method_pictures(const std::filesystem::path& folder, const SequenceRe
     const SourcedFrame frame = source.read(index);
     if (!frame.frame) continue;
     const std::optional<ImageF> truth_m = source.range_truth(index);
-    std::vector<MethodRanges> ranges;
-    for (const std::string& method : methods) {
+    const auto unwrapped_by = [&](const std::string& method) {
       unwrap.method = method;
-      const RangeImage image = tofmap::unwrap(*frame.frame, source.sensor(), unwrap).image;
-      ranges.push_back({method_title(method, image, truth_m, wavelength_m), image.range_m});
+      return tofmap::unwrap(*frame.frame, source.sensor(), unwrap).image;
+    };
+    const auto filtered_by = [&](const std::string& method, const RangeImage& image) {
+      return filtered_ranges(
+          method, image,
+          apply_filters(image, *frame.frame, source.sensor().modulation, rays, filters).image);
+    };
+    std::vector<MethodRanges> ranges;
+    RangeImage last;
+    for (const std::string& method : methods) {
+      last = unwrapped_by(method);
+      ranges.push_back({method_title(method, last, truth_m, wavelength_m), last.range_m});
     }
     const auto& file = source.files()[static_cast<std::size_t>(index)];
     write_picture(folder / (file.phase_a.stem().string() + "_methods.png"),
                   method_picture(ranges, truth_m.value_or(ImageF()), wavelength_m));
-    std::vector<FilteredRanges> filtered;
-    for (const std::string& method : {std::string("none"), methods.back()}) {
-      unwrap.method = method;
-      const RangeImage image = tofmap::unwrap(*frame.frame, source.sensor(), unwrap).image;
-      filtered.push_back(filtered_ranges(
-          method, image,
-          apply_filters(image, *frame.frame, source.sensor().modulation, rays, filters).image));
-    }
+    const std::vector<FilteredRanges> filtered{filtered_by("none", unwrapped_by("none")),
+                                               filtered_by(methods.back(), last)};
     write_picture(folder / (file.phase_a.stem().string() + "_filters.png"),
                   filter_picture(filtered));
   }

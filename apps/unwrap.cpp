@@ -48,7 +48,7 @@ void limit_to_image_format(UnwrapOptions& options, const SensorModel& sensor) {
 Trajectory poses_of(const SequenceReader& source, const std::filesystem::path& file) {
   Trajectory poses = read_trajectory(file);
   const bool fits = std::ranges::any_of(source.files(), [&](const SequenceFrameFiles& frame) {
-    return pose_at(poses, frame.timestamp_s, max_pose_gap_s).has_value();
+    return pose_at(poses, frame.timestamp_s).has_value();
   });
   if (fits) return poses;
   throw InputError(file.string() + ": has no pose within " + std::to_string(max_pose_gap_s) +

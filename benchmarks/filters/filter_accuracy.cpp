@@ -52,7 +52,7 @@ std::vector<Filter> all_filters() {
     options.chain = name;
     all.push_back(chain(name, options));
   }
-  options.chain = FilterOptions{}.chain + " smooth";
+  options.chain = smoothing_chain();
   all.push_back(chain(chain_of_unwrap, options));
   std::ranges::copy(pcl_filters(), std::back_inserter(all));
   return all;
@@ -74,8 +74,7 @@ struct NamedScore {
 void print_scores(const std::string& title, const std::vector<NamedScore>& scores) {
   std::printf(
       "\n| %s | flying found, %% | removed are mixed, %% | right lost, %% | beyond 5 m | to 60° | "
-      "to "
-      "70° | to 80° | to 90° | RMSE, cm | over that before | median | ms |\n"
+      "to 70° | to 80° | to 90° | RMSE, cm | over that before | median | ms |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
       title.c_str());
   for (const auto& [name, score] : scores) {

@@ -9,15 +9,14 @@
 #include <numbers>
 
 #include <tofmap/acquisition/pixel_label.hpp>
+#include <tofmap/core/median.hpp>
 
 namespace tofmap::bench {
 namespace {
 
-double median(std::vector<float> values) {
-  if (values.empty()) return std::nan("");
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
+/// Of a copy; NaN if there are none.
+double median_of(std::vector<float> values) {
+  return values.empty() ? std::nan("") : median(values);
 }
 
 /// Counts a pixel that sees one surface and has the right wrap count.
@@ -77,7 +76,7 @@ double Score::rmse_m() const { return std::sqrt(squared_after_m2 / one_surface_k
 
 double Score::rms_share() const { return std::sqrt(squared_after_m2 / squared_before_m2); }
 
-double Score::median_share() const { return median(after_m) / median(before_m); }
+double Score::median_share() const { return median_of(after_m) / median_of(before_m); }
 
 Score score_filter(const Filter& filter, const Case& example) {
   Score score;

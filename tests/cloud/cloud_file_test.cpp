@@ -37,6 +37,17 @@ TEST(MapFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(map[1].observations, 8U);
 }
 
+TEST(MapFile, MayBePcd) {
+  const test::TemporaryFolder folder;
+  write_map(folder.path() / "map.pcd", two_points());
+  const MapCloud map = read_map(folder.path() / "map.pcd");
+  ASSERT_EQ(map.size(), 2U);
+  EXPECT_EQ(map[1].normal_z, -1);
+  EXPECT_EQ(map[1].observations, 8U);
+  write_map(folder.path() / "empty.pcd", {});
+  EXPECT_TRUE(read_map(folder.path() / "empty.pcd").empty());
+}
+
 TEST(MapFile, WithoutPointsIsAWholeFile) {
   const test::TemporaryFolder folder;
   write_map(folder.path() / "map.ply", {});

@@ -3,8 +3,6 @@
 
 #include "range_images.hpp"
 
-#include <numbers>
-
 #include <gtest/gtest.h>
 
 #include <tofmap/core/error.hpp>
@@ -56,7 +54,7 @@ TEST(OutlierFilter, DoesNotPunishNoiseThatIsExpected) {
 }
 
 TEST(OutlierFilter, KeepsSlantedSurfaces) {
-  const RangeImage image = slanted_plane(3, 45 * std::numbers::pi / 180);
+  const RangeImage image = slanted_plane(3, 45 * test::rad_per_deg);
   EXPECT_EQ(kept(image), image.count_valid());
 }
 

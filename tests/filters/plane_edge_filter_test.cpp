@@ -4,7 +4,6 @@
 #include "range_images.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -17,10 +16,10 @@ namespace {
 
 using test::camera;
 using test::plane;
+using test::rad_per_deg;
 using test::slanted_plane;
 using test::with_noise;
 
-constexpr double rad_per_deg = std::numbers::pi / 180;
 constexpr int pixels = 20 * 16;
 
 RangeImage off_planes_dropped(const RangeImage& image) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <tofmap/core/camera.hpp>
@@ -11,6 +12,8 @@
 #include <tofmap/core/range_image.hpp>
 
 namespace tofmap::test {
+
+inline constexpr double rad_per_deg = std::numbers::pi / 180;
 
 inline CameraModel camera() {
   return {.width_px = 20,

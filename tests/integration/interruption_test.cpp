@@ -6,6 +6,7 @@
 #include <chrono>
 #include <csignal>
 #include <fstream>
+#include <sstream>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -76,15 +77,94 @@ TEST_F(Interruption, KeepsTheFramesThatAreFinished) {
   }
 }
 
-TEST_F(Interruption, OfAMapKeepsTheMapSoFar) {
-  RunningProgram program({"map", sequence_.string(), "--out", out_.string()});
-  for (int i = 0; i < 3000 && partial_folder().empty(); ++i) std::this_thread::sleep_for(10ms);
-  std::this_thread::sleep_for(300ms);  // some frames; none would do as well
-  program.send(SIGINT);
-  const Finished finished = program.wait();
-  EXPECT_EQ(finished.status, 130) << finished.err;
+/// A map whose run was interrupted, of a recording that goes on for some frames more.
+class InterruptedMap : public Interruption {
+ protected:
+  static constexpr std::size_t frames_left = 6;
+
+  void SetUp() override {
+    Interruption::SetUp();
+    RunningProgram program(map_arguments(out_));
+    for (int i = 0; i < 3000 && partial_folder().empty(); ++i) std::this_thread::sleep_for(10ms);
+    std::this_thread::sleep_for(300ms);  // some frames; none would do as well
+    program.send(SIGINT);
+    finished_ = program.wait();
+    shorten_recording(read_json(out_ / "report.json")["frames"].size() + frames_left);
+  }
+
+  std::vector<std::string> map_arguments(const fs::path& out,
+                                         const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments{"map",   sequence_.string(), "--out", out.string(),
+                                       "--set", "pictures.frames=0"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  Finished resume(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = map_arguments(out_, more);
+    arguments.push_back("--resume");
+    return run_program(arguments);
+  }
+
+  void shorten_recording(std::size_t count) const {
+    std::istringstream list(read_text(sequence_ / "frames.txt"));
+    std::ofstream shorter(sequence_ / "frames.txt");
+    std::string line;
+    for (std::size_t i = 0; i < count && std::getline(list, line); ++i) shorter << line << '\n';
+  }
+
+  Finished finished_;
+};
+
+TEST_F(InterruptedMap, KeepsTheMapSoFar) {
+  EXPECT_EQ(finished_.status, 130) << finished_.err;
+  EXPECT_THAT(finished_.out, testing::HasSubstr("--resume"));
   EXPECT_EQ(read_json(out_ / "report.json")["summary"]["interrupted"], true);
   EXPECT_TRUE(fs::exists(out_ / "map.ply"));
+}
+
+TEST_F(InterruptedMap, GoesOnToTheSameResult) {
+  const Finished resumed = resume();
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_FALSE(fs::exists(out_ / "state.bin"));
+  const fs::path at_once = folder_.path() / "at_once";
+  ASSERT_EQ(run_program(map_arguments(at_once)).status, 0);
+  for (const std::string name : {"map.ply", "mesh.ply", "trajectory.txt", "keyframes.txt"}) {
+    EXPECT_TRUE(read_text(out_ / name) == read_text(at_once / name)) << name;
+  }
+  EXPECT_EQ(read_json(out_ / "report.json")["frames"].size(),
+            read_json(at_once / "report.json")["frames"].size());
+}
+
+TEST_F(InterruptedMap, DoesNotGoOnWithOtherOptions) {
+  const Finished resumed = resume({"--set", "map.voxel_m=0.05"});
+  EXPECT_EQ(resumed.status, 2);
+  EXPECT_THAT(resumed.err, testing::HasSubstr("voxel_m: 0.05"));
+  EXPECT_TRUE(fs::exists(out_ / "state.bin")) << "what there was is lost";
+}
+
+TEST_F(InterruptedMap, DoesNotGoOnWithAnotherRecording) {
+  shorten_recording(1);
+  const Finished resumed = resume();
+  EXPECT_EQ(resumed.status, 3);
+  EXPECT_THAT(resumed.err, testing::HasSubstr("another recording"));
+}
+
+TEST_F(InterruptedMap, DoesNotGoOnFromADamagedState) {
+  const std::string state = read_text(out_ / "state.bin");
+  for (const std::size_t size : {std::size_t{10}, state.size() / 2, state.size() - 1}) {
+    std::ofstream(out_ / "state.bin", std::ios::binary) << state.substr(0, size);
+    const Finished resumed = resume();
+    EXPECT_EQ(resumed.status, 3) << size;
+    EXPECT_THAT(resumed.err, testing::HasSubstr("start anew without --resume"));
+  }
+}
+
+TEST_F(InterruptedMap, ThatIsFinishedOrNotBegunIsNoneToGoOnWith) {
+  ASSERT_EQ(resume().status, 0);
+  EXPECT_EQ(resume().status, 3) << "there is nothing left to do";
+  fs::remove_all(out_);
+  EXPECT_EQ(resume().status, 0) << "the first run of a script that always says --resume";
 }
 
 TEST_F(Interruption, ByKillLeavesNoResultAndAnotherRunWorks) {

@@ -70,7 +70,7 @@ class LostCamera : public testing::Test {
 
   /// Follows the camera, covers it, and leaves it with few keyframes at hand, so that odometry
   /// cannot find places long ago by itself.
-  LostCamera() : mapper_(room_.camera(), {.recent_keyframes = 2}, {}, {}, {}) {
+  LostCamera() : mapper_(room_.camera(), {.keyframes_around = 2}, {}, {}, {}) {
     for (int i = 0; i < frames; ++i) {
       EXPECT_TRUE(mapper_.track(i, i / 15.0, room_.view(first + i)).placed()) << i;
     }

@@ -3,6 +3,8 @@
 
 // Composition: what holds of the whole, whatever its stages do.
 
+#include <sstream>
+
 #include <gtest/gtest.h>
 #include <omp.h>
 
@@ -128,6 +130,43 @@ TEST(MapRoom, EndsEarlyWithWhatItHasWhenToldTo) {
   EXPECT_EQ(map.frames.size(), 2);
   EXPECT_EQ(map.trajectory.size(), 2);
   EXPECT_FALSE(map.surface.empty());
+}
+
+TEST(MapRun, GoesOnToTheSameBitsAfterItWasPutAside) {
+  SimulatorOptions options;
+  options.width_px = 88;
+  options.height_px = 72;
+  options.frames = 24;
+  const Scene scene = make_scene("room");
+  Simulator at_once_source(scene, options);
+  const RoomMap at_once = map_room(at_once_source, {});
+
+  Simulator source(scene, options);
+  std::stringstream aside;
+  {
+    MapRun run(source.sensor(), {});
+    MapHooks hooks;
+    hooks.keep_going = [](int done) { return done < 10; };
+    run.advance(source, hooks);
+    EXPECT_TRUE(run.is_interrupted());
+    run.save(aside);
+  }
+  MapRun run(source.sensor(), {});
+  run.load(aside);
+  run.advance(source);
+  const RoomMap resumed = run.finish();
+
+  EXPECT_FALSE(resumed.interrupted);
+  ASSERT_EQ(resumed.frames.size(), at_once.frames.size());
+  EXPECT_EQ(resumed.frames[3].tracking.registration.covariance,
+            at_once.frames[3].tracking.registration.covariance);
+  ASSERT_EQ(resumed.trajectory.size(), at_once.trajectory.size());
+  EXPECT_EQ(resumed.trajectory.back().world_from_camera.matrix(),
+            at_once.trajectory.back().world_from_camera.matrix());
+  ASSERT_EQ(resumed.surface.size(), at_once.surface.size());
+  for (std::size_t i = 0; i < at_once.surface.size(); ++i) {
+    ASSERT_EQ(resumed.surface[i].getVector3fMap(), at_once.surface[i].getVector3fMap());
+  }
 }
 
 TEST(MapRoom, ShowsEveryReadableFrameInOrder) {

@@ -121,6 +121,8 @@ SequenceReader::SequenceReader(std::filesystem::path folder) : folder_(std::move
   files_ = read_frame_list(folder_ / "frames.txt");
 }
 
+void SequenceReader::start_at(int index) { next_index_ = index; }
+
 std::optional<SourcedFrame> SequenceReader::next() {
   if (next_index_ >= static_cast<int>(files_.size())) return std::nullopt;
   return read(next_index_++);

@@ -130,6 +130,8 @@ std::vector<OptionField<FilterOptions>> FilterOptions::fields() {
   };
 }
 
+std::string smoothing_chain() { return FilterOptions{}.chain + " smooth"; }
+
 std::string filter_names(const std::string& separator) {
   return joined(std::views::transform(all_filters, &NamedFilter::name), separator);
 }

@@ -12,6 +12,7 @@
 #include <limits>
 #include <vector>
 
+#include <tofmap/core/median.hpp>
 #include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
@@ -120,13 +121,6 @@ class RowSpacing {
   std::array<std::vector<float>, most_nearest> smallest_;  ///< ascending
 };
 
-/// Of values that are there; reorders them.
-float median(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 }  // namespace
 
 RangeImage drop_outliers(const RangeImage& image, const PixelRays& rays, double max_deviations) {
@@ -147,8 +141,8 @@ RangeImage drop_outliers(const RangeImage& image, const PixelRays& rays, double 
   if (!values.empty()) {
     const float middle = median(values);
     for (float& value : values) value = std::abs(value - middle);
-    constexpr float sigma_of_median_deviation = 1.4826F;  // of a normal distribution
-    const float deviation = std::max(least_deviation, sigma_of_median_deviation * median(values));
+    const auto sigmas = static_cast<float>(sigma_of_median_deviation);
+    const float deviation = std::max(least_deviation, sigmas * median(values));
     most = middle + static_cast<float>(max_deviations) * deviation;
   }
   RangeImage out = image;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include <Eigen/Core>
 
@@ -14,13 +15,14 @@ namespace tofmap {
 inline constexpr int grid_axis_bits = 21;
 inline constexpr std::int64_t grid_axis_half = std::int64_t{1} << (grid_axis_bits - 1);
 
-/// One number for a place in a grid; their order is that of x, then y, then z. Throws UsageError if
-/// the place is too far out.
-inline std::int64_t grid_key(const Eigen::Vector3i& place) {
+/// One number for a place in a grid; their order is that of x, then y, then z. Throws UsageError
+/// that names the voxels' size if the place is too far out.
+inline std::int64_t grid_key(const Eigen::Vector3i& place, double voxel_m) {
   std::int64_t packed = 0;
   for (int axis = 0; axis < 3; ++axis) {
     if (place[axis] < -grid_axis_half || place[axis] >= grid_axis_half) {
-      throw UsageError("map.voxel_m is too small for a map of this extent; choose larger voxels");
+      throw UsageError("map.voxel_m: " + std::to_string(voxel_m) +
+                       " m is too small for a map of this extent; choose larger voxels");
     }
     packed = (packed << grid_axis_bits) | (place[axis] + grid_axis_half);
   }

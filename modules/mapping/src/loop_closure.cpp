@@ -49,9 +49,8 @@ std::vector<Overlap> best_overlaps(const Keyframe& keyframe, std::span<const Key
   for (const Keyframe& other : keyframes) {
     if (other.id + options.min_gap > keyframe.id) break;
     if (!looks_the_same_way(keyframe.world_from_camera, other.world_from_camera, options)) continue;
-    const double share =
-        overlap_share(*keyframe.cloud, keyframe.world_from_camera,
-                      {other.cloud.get(), other.world_from_camera}, camera, coarse);
+    const double share = overlap_share(*keyframe.cloud, keyframe.world_from_camera,
+                                       target_of(other), camera, coarse);
     if (share >= options.min_overlap) overlaps.push_back({&other, share});
   }
   std::ranges::stable_sort(overlaps, std::ranges::greater(), &Overlap::share);
@@ -109,7 +108,7 @@ LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyf
   candidate.from = best.id;
   std::vector<RegistrationTarget> targets;
   for (const Overlap& overlap : overlaps) {
-    targets.push_back({overlap.keyframe->cloud.get(), overlap.keyframe->world_from_camera});
+    targets.push_back(target_of(*overlap.keyframe));
   }
   const double path_between_m =
       path_m[static_cast<std::size_t>(keyframe.id)] - path_m[static_cast<std::size_t>(best.id)];

@@ -65,7 +65,7 @@ class DistanceGrid {
   }
 
   const Corner* find(const Vector3i& place) const {
-    const auto found = corners_.find(grid_key(place));
+    const auto found = corners_.find(grid_key(place, voxel_m_));
     return found == corners_.end() ? nullptr : &found->second;
   }
 
@@ -96,7 +96,7 @@ class DistanceGrid {
   }
 
   void add_to(const Vector3i& place, float weight, float distance_m, const Vector3f& normal) {
-    Corner& corner = corners_[grid_key(place)];
+    Corner& corner = corners_[grid_key(place, voxel_m_)];
     if (corner.normal_sum.dot(normal) < 0) return;
     corner.distance_sum += weight * distance_m;
     corner.weight += weight;
@@ -142,7 +142,8 @@ class SurfaceCells {
   }
 
   vtkIdType id_of(const Vector3i& place, const Corner& corner) {
-    const auto [known, is_new] = ids_.try_emplace(grid_key(place), points_->GetNumberOfPoints());
+    const auto [known, is_new] =
+        ids_.try_emplace(grid_key(place, grid_.voxel_m()), points_->GetNumberOfPoints());
     if (is_new) {
       const Vector3f at_m = place.cast<float>() * grid_.voxel_m();
       points_->InsertNextPoint(at_m.x(), at_m.y(), at_m.z());

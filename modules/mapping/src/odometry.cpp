@@ -30,11 +30,13 @@ std::vector<OptionField<OdometryOptions>> OdometryOptions::fields() {
   using O = OdometryOptions;
   return {
       {"keyframe_step_m", &O::keyframe_step_m, 0.01, 10, "m",
-       "a frame this far from all recent keyframes becomes one"},
+       "a frame this far from all keyframes around becomes one; twice as far from those of an "
+       "earlier visit"},
       {"keyframe_turn_rad", &O::keyframe_turn_rad, 0.01, 3.2, "rad",
-       "a frame turned this far from all recent keyframes becomes one"},
-      {"recent_keyframes", &O::recent_keyframes, 1, 1000, "",
-       "how many keyframes are kept to register against"},
+       "a frame turned this far from all keyframes around becomes one; twice as far from those of "
+       "an earlier visit"},
+      {"keyframes_around", &O::keyframes_around, 1, 1000, "",
+       "how many keyframes are looked at to register against"},
       {"targets", &O::targets, 1, 16, "", "how many of them, those that overlap most, are used"},
       {"min_target_overlap", &O::min_target_overlap, 0, 1, "",
        "share of the frame a keyframe must see to be used"},
@@ -69,26 +71,26 @@ Odometry::Odometry(const CameraModel& camera, const OdometryOptions& options,
                    const RegistrationOptions& registration)
     : camera_(camera), options_(options), registration_(registration) {}
 
-TrackingResult Odometry::track(int frame_index, double timestamp_s,
-                               const std::shared_ptr<const SurfaceCloud>& cloud) {
+TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
+                               std::span<const Keyframe* const> around) {
   TrackingResult result;
   ++frames_since_placed_;
-  if (!has_surface(*cloud, registration_.min_correspondences)) {
+  if (!has_surface(cloud, registration_.min_correspondences)) {
     result.status = TrackingStatus::no_surface;
     return result;
   }
   if (!last_) {
     result.status = TrackingStatus::first;
-    accept(frame_index, timestamp_s, cloud, result);
+    accept({timestamp_s, result.world_from_camera});
     return result;
   }
   const MotionPrior prior = predict(timestamp_s);
   std::vector<RegistrationTarget> targets;
-  for (const Keyframe* keyframe : choose_targets(*cloud, prior.world_from_camera)) {
-    targets.push_back({keyframe->cloud.get(), keyframe->world_from_camera});
+  for (const Keyframe* keyframe : choose_targets(cloud, prior.world_from_camera, around)) {
+    targets.push_back(target_of(*keyframe));
     result.targets.push_back(keyframe->id);
   }
-  result.registration = register_to_targets(*cloud, targets, camera_, prior, registration_);
+  result.registration = register_to_targets(cloud, targets, camera_, prior, registration_);
   if (!succeeded(result.registration.status)) {
     result.status = TrackingStatus::lost;
   } else if (deviation(prior, result.registration.world_from_camera) >
@@ -97,7 +99,7 @@ TrackingResult Odometry::track(int frame_index, double timestamp_s,
   } else {
     result.status = TrackingStatus::tracked;
     result.world_from_camera = result.registration.world_from_camera;
-    accept(frame_index, timestamp_s, cloud, result);
+    accept({timestamp_s, result.world_from_camera});
   }
   return result;
 }
@@ -119,22 +121,25 @@ MotionPrior Odometry::predict(double timestamp_s) const {
   return prior;
 }
 
-std::vector<const Keyframe*> Odometry::choose_targets(const SurfaceCloud& cloud,
-                                                      const Pose& expected) const {
+std::vector<const Keyframe*> Odometry::choose_targets(
+    const SurfaceCloud& cloud, const Pose& expected,
+    std::span<const Keyframe* const> around) const {
   struct Candidate {
     double overlap;
     const Keyframe* keyframe;
   };
-  std::vector<Candidate> candidates;
-  for (const Keyframe& keyframe : keyframes_) {
-    const RegistrationTarget target{keyframe.cloud.get(), keyframe.world_from_camera};
-    const double overlap = overlap_share(cloud, expected, target, camera_, registration_);
-    // The newest is taken at any rate: a frame may overlap nothing else.
-    const bool is_newest = &keyframe == &keyframes_.back();
-    if (overlap >= options_.min_target_overlap || is_newest)
-      candidates.push_back({overlap, &keyframe});
+  std::vector<Candidate> candidates(around.size());
+  const int count = static_cast<int>(around.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int i = 0; i < count; ++i) {
+    candidates[i] = {overlap_share(cloud, expected, target_of(*around[i]), camera_, registration_),
+                     around[i]};
   }
-  // Stable from the newest on, so that equal overlap prefers the recent.
+  // The last is taken at any rate: a frame may overlap nothing else.
+  std::erase_if(candidates, [&](const Candidate& candidate) {
+    return candidate.overlap < options_.min_target_overlap && candidate.keyframe != around.back();
+  });
+  // Stable from the last on, so that equal overlap prefers the recent.
   std::ranges::reverse(candidates);
   std::ranges::stable_sort(candidates, std::ranges::greater(), &Candidate::overlap);
   std::vector<const Keyframe*> targets;
@@ -145,43 +150,22 @@ std::vector<const Keyframe*> Odometry::choose_targets(const SurfaceCloud& cloud,
   return targets;
 }
 
-void Odometry::restart(const StampedPose& pose, std::span<const Keyframe> keyframes) {
-  keyframes_.assign(keyframes.begin(), keyframes.end());
+void Odometry::restart(const StampedPose& pose) {
   last_ = pose;
   before_last_.reset();
   frames_since_placed_ = 0;
 }
 
-void Odometry::correct(std::span<const Pose> world_from_keyframe) {
-  if (keyframes_.empty()) return;
-  const Pose before = keyframes_.back().world_from_camera;
-  for (Keyframe& keyframe : keyframes_) {
-    keyframe.world_from_camera = world_from_keyframe[static_cast<std::size_t>(keyframe.id)];
-  }
-  const Pose change = keyframes_.back().world_from_camera * before.inverse();
+void Odometry::move(const Pose& new_from_old_world) {
   for (std::optional<StampedPose>* pose : {&last_, &before_last_}) {
-    if (*pose) (*pose)->world_from_camera = change * (*pose)->world_from_camera;
+    if (*pose) (*pose)->world_from_camera = new_from_old_world * (*pose)->world_from_camera;
   }
 }
 
-bool Odometry::wants_keyframe(const Pose& pose) const {
-  return std::ranges::none_of(keyframes_, [&](const Keyframe& keyframe) {
-    const Pose& other = keyframe.world_from_camera;
-    return (pose.translation() - other.translation()).norm() < options_.keyframe_step_m &&
-           rotation_angle_rad(pose, other) < options_.keyframe_turn_rad;
-  });
-}
-
-void Odometry::accept(int frame_index, double timestamp_s,
-                      const std::shared_ptr<const SurfaceCloud>& cloud, TrackingResult& result) {
+void Odometry::accept(const StampedPose& pose) {
   before_last_ = last_;
-  last_ = StampedPose{timestamp_s, result.world_from_camera};
+  last_ = pose;
   frames_since_placed_ = 0;
-  if (!wants_keyframe(result.world_from_camera)) return;
-  result.is_keyframe = true;
-  keyframes_.push_back(
-      {keyframe_count_++, frame_index, timestamp_s, result.world_from_camera, cloud});
-  if (static_cast<int>(keyframes_.size()) > options_.recent_keyframes) keyframes_.pop_front();
 }
 
 }  // namespace tofmap

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <vector>
 
+#include <tofmap/core/median.hpp>
+
 namespace tofmap {
 namespace {
 
@@ -24,8 +26,7 @@ std::vector<RegistrationTarget> targets_around(int id, std::span<const Keyframe>
   std::vector<RegistrationTarget> targets;
   const int last = std::min(static_cast<int>(keyframes.size()) - 1, id + 1);
   for (int i = std::max(0, id - 1); i <= last; ++i) {
-    const Keyframe& keyframe = keyframes[static_cast<std::size_t>(i)];
-    targets.push_back({keyframe.cloud.get(), keyframe.world_from_camera});
+    targets.push_back(target_of(keyframes[static_cast<std::size_t>(i)]));
   }
   return targets;
 }
@@ -78,9 +79,7 @@ PlaceDescriptor::PlaceDescriptor(const SurfaceCloud& cloud) {
     }
     const std::size_t pixels = (last_row - first_row) * (last_col - first_col);
     if (ranges.empty() || 2 * ranges.size() < pixels) continue;
-    const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
-    std::ranges::nth_element(ranges, middle);
-    log_range_[part] = std::log(*middle);
+    log_range_[part] = std::log(median(ranges));
   }
 }
 

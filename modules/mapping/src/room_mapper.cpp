@@ -20,8 +20,19 @@ constexpr int frames_until_lost = 3;
 /// After so many frames motion does not tell any more where the camera may be.
 constexpr int frames_until_given_up = 15;
 
-/// On each side of the keyframe that a lost camera is found by.
-constexpr int keyframes_around = 7;
+/// Keyframes that many before the newest are of an earlier visit: fewer new ones are wanted there.
+constexpr int recent_keyframes = 15;
+constexpr double steps_on_earlier_visits = 2;
+
+/// Keyframes within so many steps of one share its part of the map: they hardly move against each
+/// other any more.
+constexpr double steps_within_part = 4;
+
+/// How far apart two cameras are, in the steps at which keyframes are taken.
+double steps_between(const Pose& a, const Pose& b, const OdometryOptions& options) {
+  return std::max((a.translation() - b.translation()).norm() / options.keyframe_step_m,
+                  rotation_angle_rad(a, b) / options.keyframe_turn_rad);
+}
 
 }  // namespace
 
@@ -29,6 +40,7 @@ RoomMapper::RoomMapper(const CameraModel& camera, const OdometryOptions& odometr
                        const RegistrationOptions& registration, const LoopOptions& loops,
                        const SurfaceMapOptions& surface)
     : camera_(camera),
+      odometry_options_(odometry),
       registration_(registration),
       loop_options_(loops),
       surface_options_(surface),
@@ -36,63 +48,73 @@ RoomMapper::RoomMapper(const CameraModel& camera, const OdometryOptions& odometr
 
 TrackingResult RoomMapper::track(int frame_index, double timestamp_s,
                                  const std::shared_ptr<const SurfaceCloud>& cloud) {
-  const TrackingResult result = find_camera(frame_index, timestamp_s, cloud);
+  const std::vector<const Keyframe*> around = keyframes_around();
+  TrackingResult result = find_camera(timestamp_s, *cloud, around);
   if (!frames_.empty()) lost_frames_ = result.placed() ? 0 : lost_frames_ + 1;
   if (!result.placed()) return result;
-  if (result.is_keyframe) add_keyframe(result);
-  const Keyframe& keyframe = keyframes_[static_cast<std::size_t>(current_)];
-  frames_.push_back(
-      {timestamp_s, keyframe.id, keyframe.world_from_camera.inverse() * result.world_from_camera});
+  result.is_keyframe = result.status != TrackingStatus::relocalised &&
+                       wants_keyframe(result.world_from_camera, around);
+  if (result.is_keyframe) {
+    add_keyframe(frame_index, timestamp_s, cloud, around, result);
+  } else if (!result.targets.empty()) {
+    current_ = result.targets.front();
+  }
+  frames_.push_back({timestamp_s, current_,
+                     keyframes_[current_].world_from_camera.inverse() * result.world_from_camera});
   return result;
 }
 
-TrackingResult RoomMapper::find_camera(int frame_index, double timestamp_s,
-                                       const std::shared_ptr<const SurfaceCloud>& cloud) {
+std::vector<const Keyframe*> RoomMapper::keyframes_around() const {
+  if (frames_.empty()) return {};
+  const PlacedFrame& last = frames_.back();
+  const Pose pose = keyframes_[last.keyframe].world_from_camera * last.keyframe_from_camera;
+  return keyframes_.around(last.keyframe, pose, odometry_options_.keyframes_around,
+                           odometry_options_.keyframe_step_m, odometry_options_.keyframe_turn_rad);
+}
+
+TrackingResult RoomMapper::find_camera(double timestamp_s, const SurfaceCloud& cloud,
+                                       std::span<const Keyframe* const> around) {
   // A camera that has been lost for some time may be anywhere, and many places look alike from near
   // where it was last seen: so all of them are looked at first.
   if (lost_frames_ >= frames_until_lost) {
-    const TrackingResult found = relocalised(timestamp_s, *cloud);
+    const TrackingResult found = relocalised(timestamp_s, cloud);
     if (found.placed() || lost_frames_ >= frames_until_given_up) return found;
   }
-  return odometry_.track(frame_index, timestamp_s, cloud);
+  return odometry_.track(timestamp_s, cloud, around);
 }
 
 TrackingResult RoomMapper::relocalised(double timestamp_s, const SurfaceCloud& cloud) {
   TrackingResult result;
   const auto found =
-      relocalise(cloud, keyframes_, descriptors_, camera_, loop_options_, registration_);
+      relocalise(cloud, keyframes_.all(), descriptors_, camera_, loop_options_, registration_);
   if (!found) return result;
   result.status = TrackingStatus::relocalised;
   result.world_from_camera = found->registration.world_from_camera;
   result.registration = found->registration;
-  current_ = found->keyframe;
-  // Those around it in time; it comes last.
-  std::vector<Keyframe> around;
-  const int last = std::min(static_cast<int>(keyframes_.size()) - 1, current_ + keyframes_around);
-  for (int id = std::max(0, current_ - keyframes_around); id <= last; ++id) {
-    if (id != current_) around.push_back(keyframes_[static_cast<std::size_t>(id)]);
-  }
-  around.push_back(keyframes_[static_cast<std::size_t>(current_)]);
-  odometry_.restart({timestamp_s, result.world_from_camera}, around);
+  result.targets = {found->keyframe};
+  odometry_.restart({timestamp_s, result.world_from_camera});
   return result;
 }
 
 void RoomMapper::integrate(const SurfaceCloud& cloud) {
   if (frames_.empty()) return;
-  parts_[static_cast<std::size_t>(current_)].integrate(cloud, frames_.back().keyframe_from_camera);
+  Part& part = parts_[static_cast<std::size_t>(part_of_[static_cast<std::size_t>(current_)])];
+  const Pose anchor_from_keyframe =
+      keyframes_[part.anchor].world_from_camera.inverse() * keyframes_[current_].world_from_camera;
+  part.surface.integrate(cloud, anchor_from_keyframe * frames_.back().keyframe_from_camera);
 }
 
 void RoomMapper::close_loops() {
-  if (!loop_options_.close || searched_ == static_cast<int>(keyframes_.size())) return;
-  searched_ = static_cast<int>(keyframes_.size());
-  const Keyframe& keyframe = keyframes_.back();
+  if (!loop_options_.close || searched_ == keyframes_.size()) return;
+  searched_ = keyframes_.size();
+  const Keyframe& keyframe = keyframes_[keyframes_.size() - 1];
   const LoopCandidate candidate =
-      find_loop(keyframe, keyframes_, path_m_, camera_, loop_options_, registration_);
+      find_loop(keyframe, keyframes_.all(), path_m_, camera_, loop_options_, registration_);
   if (candidate.edge) {
     edges_.push_back(*candidate.edge);
     const Pose& found = candidate.registration.world_from_camera;
     loops_.push_back(
-        {.from_frame = keyframes_[static_cast<std::size_t>(candidate.from)].frame_index,
+        {.from_frame = keyframes_[candidate.from].frame_index,
          .to_frame = keyframe.frame_index,
          .error_m = (found.translation() - keyframe.world_from_camera.translation()).norm()});
     ++unfitted_loops_;
@@ -107,16 +129,15 @@ void RoomMapper::finish() {
 Trajectory RoomMapper::trajectory() const {
   Trajectory trajectory;
   for (const PlacedFrame& frame : frames_) {
-    const Keyframe& keyframe = keyframes_[static_cast<std::size_t>(frame.keyframe)];
-    trajectory.push_back(
-        {frame.timestamp_s, keyframe.world_from_camera * frame.keyframe_from_camera});
+    const Pose& world_from_keyframe = keyframes_[frame.keyframe].world_from_camera;
+    trajectory.push_back({frame.timestamp_s, world_from_keyframe * frame.keyframe_from_camera});
   }
   return trajectory;
 }
 
 Trajectory RoomMapper::keyframe_trajectory() const {
   Trajectory trajectory;
-  for (const Keyframe& keyframe : keyframes_) {
+  for (const Keyframe& keyframe : keyframes_.all()) {
     trajectory.push_back({keyframe.timestamp_s, keyframe.world_from_camera});
   }
   return trajectory;
@@ -124,56 +145,88 @@ Trajectory RoomMapper::keyframe_trajectory() const {
 
 MapCloud RoomMapper::surface() const {
   SurfaceMap whole(surface_options_);
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    whole.add(parts_[i], keyframes_[i].world_from_camera);
+  for (const Part& part : parts_) {
+    whole.add(part.surface, keyframes_[part.anchor].world_from_camera);
   }
   const MapCloud map = whole.extract();
   if (!surface_options_.drop_seen_through) return map;
-  return without_seen_through(map, keyframes_, camera_, surface_options_.voxel_m);
+  return without_seen_through(map, keyframes_.all(), camera_, surface_options_.voxel_m);
 }
 
-void RoomMapper::add_keyframe(const TrackingResult& result) {
-  const Keyframe& keyframe = odometry_.recent_keyframes().back();
+bool RoomMapper::wants_keyframe(const Pose& pose, std::span<const Keyframe* const> around) const {
+  return std::ranges::none_of(around, [&](const Keyframe* keyframe) {
+    const bool is_of_earlier_visit = keyframe->id + recent_keyframes < keyframes_.size();
+    return steps_between(keyframe->world_from_camera, pose, odometry_options_) <
+           (is_of_earlier_visit ? steps_on_earlier_visits : 1);
+  });
+}
+
+void RoomMapper::add_keyframe(int frame_index, double timestamp_s,
+                              const std::shared_ptr<const SurfaceCloud>& cloud,
+                              std::span<const Keyframe* const> around,
+                              const TrackingResult& result) {
+  const int id = keyframes_.size();
   double path_m = 0;
-  if (!keyframes_.empty()) {
-    const Pose& last = keyframes_.back().world_from_camera;
-    path_m =
-        path_m_.back() + (keyframe.world_from_camera.translation() - last.translation()).norm();
+  if (id > 0) {
+    const Pose& last = keyframes_[id - 1].world_from_camera;
+    path_m = path_m_.back() + (result.world_from_camera.translation() - last.translation()).norm();
   }
+  part_of_.push_back(part_for(id, result.world_from_camera, around));
+  keyframes_.add({id, frame_index, timestamp_s, result.world_from_camera, cloud});
   // Targets are registered against together: each edge says its share of what all of them say.
   const auto shares = static_cast<double>(result.targets.size());
   for (const int target : result.targets) {
-    PoseEdge edge =
-        edge_of(keyframes_[static_cast<std::size_t>(target)], keyframe.id, result.registration);
+    PoseEdge edge = edge_of(keyframes_[target], id, result.registration);
     edge.covariance *= shares;
     edges_.push_back(edge);
+    keyframes_.tie(target, id);
   }
-  current_ = keyframe.id;
-  keyframes_.push_back(keyframe);
-  descriptors_.emplace_back(*keyframe.cloud);
+  current_ = id;
+  descriptors_.emplace_back(*cloud);
   path_m_.push_back(path_m);
-  parts_.emplace_back(surface_options_);
+}
+
+/// The part whose anchor is nearest to a new keyframe; a new part with that as its anchor if none
+/// is near.
+int RoomMapper::part_for(int id, const Pose& pose, std::span<const Keyframe* const> around) {
+  int nearest = -1;
+  double least_steps = steps_within_part;
+  for (const Keyframe* keyframe : around) {
+    const int part = part_of_[static_cast<std::size_t>(keyframe->id)];
+    const int anchor = parts_[static_cast<std::size_t>(part)].anchor;
+    const double steps =
+        steps_between(keyframes_[anchor].world_from_camera, pose, odometry_options_);
+    if (steps >= least_steps) continue;
+    nearest = part;
+    least_steps = steps;
+  }
+  if (nearest >= 0) return nearest;
+  parts_.push_back({id, SurfaceMap(surface_options_)});
+  return static_cast<int>(parts_.size()) - 1;
 }
 
 void RoomMapper::fit() {
   std::vector<Pose> poses;
-  for (const Keyframe& keyframe : keyframes_) poses.push_back(keyframe.world_from_camera);
+  for (const Keyframe& keyframe : keyframes_.all()) poses.push_back(keyframe.world_from_camera);
+  const Pose current_before = keyframes_[current_].world_from_camera;
   const PoseGraphResult fitted =
       optimise_pose_graph(std::move(poses), edges_, loop_options_.kernel_width);
-  for (Keyframe& keyframe : keyframes_) {
-    keyframe.world_from_camera = fitted.poses[static_cast<std::size_t>(keyframe.id)];
+  for (int id = 0; id < keyframes_.size(); ++id) {
+    keyframes_.place(id, fitted.poses[static_cast<std::size_t>(id)]);
   }
-  odometry_.correct(fitted.poses);
+  odometry_.move(keyframes_[current_].world_from_camera * current_before.inverse());
   auto loop = loops_.begin();
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     if (!edges_[i].may_be_wrong) continue;
     loop->deviations = fitted.edge_deviations[i];
     // Geman and McClure's weight is a sixteenth there.
     loop->is_used = loop->deviations < std::sqrt(3) * loop_options_.kernel_width;
+    // Now both ends are where the loop says, and frames may be registered against either.
+    if (loop->is_used) keyframes_.tie(edges_[i].from, edges_[i].to);
     ++loop;
   }
   unfitted_loops_ = 0;
-  last_fit_ = keyframes_.back().id;
+  last_fit_ = keyframes_.size() - 1;
 }
 
 }  // namespace tofmap

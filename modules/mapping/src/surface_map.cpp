@@ -14,6 +14,15 @@ namespace {
 /// Averaging cannot lower a point's error below this: nearly exact points would drown all others.
 constexpr double min_sigma_m = 0.001;
 
+template <class Voxels>
+std::vector<std::int64_t> sorted_keys(const Voxels& voxels) {
+  std::vector<std::int64_t> keys;
+  keys.reserve(voxels.size());
+  for (const auto& voxel : voxels) keys.push_back(voxel.first);
+  std::ranges::sort(keys);
+  return keys;
+}
+
 }  // namespace
 
 std::vector<OptionField<SurfaceMapOptions>> SurfaceMapOptions::fields() {
@@ -37,7 +46,7 @@ std::int64_t SurfaceMap::key(const Eigen::Vector3d& point_m) const {
                                    .floor()
                                    .max(-2.0 * grid_axis_half)
                                    .min(2.0 * grid_axis_half);
-  return grid_key(place.cast<int>().matrix());
+  return grid_key(place.cast<int>().matrix(), options_.voxel_m);
 }
 
 void SurfaceMap::integrate(const SurfaceCloud& cloud, const Pose& world_from_camera) {
@@ -59,7 +68,9 @@ void SurfaceMap::integrate(const SurfaceCloud& cloud, const Pose& world_from_cam
 }
 
 void SurfaceMap::add(const SurfaceMap& part, const Pose& world_from_part) {
-  for (const auto& [place, voxel] : part.voxels_) {
+  // In the order of the grid: that of the hash depends on how the part came about.
+  for (const std::int64_t place : sorted_keys(part.voxels_)) {
+    const Voxel& voxel = part.voxels_.at(place);
     if (!(voxel.weight > 0)) continue;
     const Eigen::Vector3d in_world = world_from_part * (voxel.weighted_point_m / voxel.weight);
     Voxel& own = voxels_[key(in_world)];
@@ -72,17 +83,12 @@ void SurfaceMap::add(const SurfaceMap& part, const Pose& world_from_part) {
 }
 
 MapCloud SurfaceMap::extract() const {
-  std::vector<std::int64_t> keys;
-  for (const auto& [key, voxel] : voxels_) {
+  MapCloud map;
+  for (const std::int64_t place : sorted_keys(voxels_)) {
+    const Voxel& voxel = voxels_.at(place);
     const bool has_direction = voxel.weighted_normal.norm() > 0;
     const bool is_seen = static_cast<int>(voxel.observations) >= options_.min_observations;
-    if (has_direction && is_seen) keys.push_back(key);
-  }
-  std::ranges::sort(keys);
-  MapCloud map;
-  map.reserve(keys.size());
-  for (const std::int64_t key : keys) {
-    const Voxel& voxel = voxels_.at(key);
+    if (!has_direction || !is_seen) continue;
     MapPoint point;
     point.getVector3fMap() = (voxel.weighted_point_m / voxel.weight).cast<float>();
     point.data[3] = 1;

@@ -123,33 +123,45 @@ PreparedFrame prepare_frame(const DualFrequencyFrame& frame, Unwrapper& unwrappe
   return out;
 }
 
-RoomMap map_room(FrameSource& source, const PipelineOptions& options, const MapHooks& hooks) {
-  const SensorModel& sensor = source.sensor();
-  const PixelRays rays = pixel_rays(sensor.camera);
-  RoomMapper mapper(sensor.camera, options.odometry, options.registration, options.loops,
-                    options.map);
-  auto unwrappers = one_a_thread(Unwrapper(sensor, options.unwrap));
-  RoomMap map;
+MapRun::MapRun(const SensorModel& sensor, const PipelineOptions& options)
+    : sensor_(sensor),
+      options_(options),
+      rays_(pixel_rays(sensor.camera)),
+      mapper_(sensor.camera, options.odometry, options.registration, options.loops, options.map),
+      unwrappers_(one_a_thread(Unwrapper(sensor, options.unwrap))) {}
 
+void MapRun::advance(FrameSource& source, const MapHooks& hooks) {
   const auto may_go_on = [&] {
-    map.interrupted = hooks.keep_going && !hooks.keep_going(static_cast<int>(map.frames.size()));
-    return !map.interrupted;
+    is_interrupted_ = hooks.keep_going && !hooks.keep_going(static_cast<int>(frames_.size()));
+    return !is_interrupted_;
   };
   while (may_go_on()) {
     const std::vector<SourcedFrame> frames = take(source, omp_get_max_threads());
     if (frames.empty()) break;
-    const auto prepared = prepare_all(frames, unwrappers, sensor, rays, options);
+    const auto prepared = prepare_all(frames, unwrappers_, sensor_, rays_, options_);
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (prepared[i] && hooks.on_frame) hooks.on_frame(*prepared[i]);
-      map.frames.push_back(prepared[i] ? place(*prepared[i], mapper) : damaged_record(frames[i]));
+      frames_.push_back(prepared[i] ? place(*prepared[i], mapper_) : damaged_record(frames[i]));
     }
   }
-  mapper.finish();
-  map.trajectory = mapper.trajectory();
-  map.keyframes = mapper.keyframe_trajectory();
-  map.surface = mapper.surface();
-  map.loops = mapper.loops();
+}
+
+RoomMap MapRun::finish() {
+  mapper_.finish();
+  RoomMap map;
+  map.trajectory = mapper_.trajectory();
+  map.keyframes = mapper_.keyframe_trajectory();
+  map.surface = mapper_.surface();
+  map.loops = mapper_.loops();
+  map.frames = std::move(frames_);
+  map.interrupted = is_interrupted_;
   return map;
+}
+
+RoomMap map_room(FrameSource& source, const PipelineOptions& options, const MapHooks& hooks) {
+  MapRun run(source.sensor(), options);
+  run.advance(source, hooks);
+  return run.finish();
 }
 
 }  // namespace tofmap

@@ -30,6 +30,8 @@ const SurfacePoint* look_up(const SurfaceCloud& target, const CameraModel& camer
   return found.has_normal() ? &found : nullptr;
 }
 
+constexpr int least_points_for_threads = 4000;
+
 struct Gates {
   double max_gap_m;
   double min_normal_cos;
@@ -88,19 +90,24 @@ Correspondences find_correspondences(const std::vector<const SurfacePoint*>& poi
                                      const RegistrationOptions& options) {
   const Gates gates(options);
   const Eigen::Vector3d origin = world_from_source.translation();
-  const int count = static_cast<int>(points.size());
+  std::vector<Pose> targets_from_source;
+  for (const RegistrationTarget& target : targets) {
+    targets_from_source.push_back(target.world_from_camera.inverse() * world_from_source);
+  }
   std::vector<std::optional<Correspondence>> found(points.size() * targets.size());
-  for (std::size_t t = 0; t < targets.size(); ++t) {
+  const int count = static_cast<int>(found.size());
+  // Threads that wait for each other cost more than few points do.
+#pragma omp parallel for schedule(static) if (count > least_points_for_threads)
+  for (int i = 0; i < count; ++i) {
+    const std::size_t t = static_cast<std::size_t>(i) / points.size();
+    const std::size_t p = static_cast<std::size_t>(i) % points.size();
+    auto pair =
+        correspondence(*points[p], targets_from_source[t], *targets[t].cloud, camera, gates);
+    if (!pair) continue;
     const Pose& world_from_target = targets[t].world_from_camera;
-    const Pose target_from_source = world_from_target.inverse() * world_from_source;
-#pragma omp parallel for schedule(static)
-    for (int i = 0; i < count; ++i) {
-      auto pair = correspondence(*points[i], target_from_source, *targets[t].cloud, camera, gates);
-      if (!pair) continue;
-      pair->point_m = world_from_target * pair->point_m - origin;
-      pair->normal = world_from_target.linear() * pair->normal;
-      found[t * points.size() + i] = pair;
-    }
+    pair->point_m = world_from_target * pair->point_m - origin;
+    pair->normal = world_from_target.linear() * pair->normal;
+    found[i] = pair;
   }
   Correspondences out;
   std::vector<bool> is_matched(points.size(), false);

@@ -8,6 +8,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <tofmap/core/median.hpp>
+
 namespace tofmap {
 
 Vector6d residual_jacobian(const Correspondence& pair) {
@@ -22,10 +24,7 @@ double robust_scale(const std::vector<Correspondence>& pairs) {
   std::ranges::transform(pairs, deviations.begin(), [](const Correspondence& pair) {
     return std::abs(pair.residual_m) / std::sqrt(pair.variance_m2);
   });
-  const auto middle = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
-  std::ranges::nth_element(deviations, middle);
-  constexpr double sigma_of_median_deviation = 1.4826;  // of a normal distribution
-  return std::max(1.0, sigma_of_median_deviation * *middle);
+  return std::max(1.0, sigma_of_median_deviation * median(deviations));
 }
 
 double geman_mcclure_weight(double normalised_residual, double width) {

@@ -5,13 +5,16 @@
 
 #include "correspondences.hpp"
 #include "normal_equations.hpp"
+#include "pcl_alignment.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <Eigen/Cholesky>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/median.hpp>
 
 namespace tofmap {
 namespace {
@@ -19,9 +22,13 @@ namespace {
 constexpr double rotation_tolerance_rad = 2e-5;
 constexpr double translation_tolerance_m = 5e-5;
 
-bool is_below_tolerance(const Vector6d& twist) {
-  return twist.head<3>().norm() < rotation_tolerance_rad &&
-         twist.tail<3>().norm() < translation_tolerance_m;
+/// Coarse steps come near; what they leave, fine ones mend.
+constexpr double coarse_tolerance = 20;
+constexpr int coarse_stride = 2;
+
+bool is_below_tolerance(const Vector6d& twist, double tolerances) {
+  return twist.head<3>().norm() < tolerances * rotation_tolerance_rad &&
+         twist.tail<3>().norm() < tolerances * translation_tolerance_m;
 }
 
 /// Rotation about the camera's centre, then translation, both in world axes.
@@ -45,9 +52,7 @@ double median_range_m(const std::vector<const SurfacePoint*>& points) {
   std::vector<float> ranges(points.size());
   std::ranges::transform(points, ranges.begin(),
                          [](const SurfacePoint* point) { return point->getVector3fMap().norm(); });
-  const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
-  std::ranges::nth_element(ranges, middle);
-  return *middle;
+  return median(ranges);
 }
 
 /// The standard deviations of a prior, as those of a twist.
@@ -104,12 +109,12 @@ RegistrationStatus verdict(const RegistrationResult& result, bool has_converged,
   return has_converged ? RegistrationStatus::converged : RegistrationStatus::iteration_limit;
 }
 
-/// Gauss-Newton from the pose of `result`, which it keeps up to date; `last` is the last system
-/// that was solved.
-RegistrationStatus refine(const std::vector<const SurfacePoint*>& points,
-                          std::span<const RegistrationTarget> targets, const CameraModel& camera,
-                          const MotionPrior& prior, const RegistrationOptions& options,
-                          RegistrationResult& result, System& last) {
+/// Gauss-Newton from the pose of `result`, which it keeps up to date, until a step is within so
+/// many tolerances; `last` is the last system that was solved.
+RegistrationStatus descend(const std::vector<const SurfacePoint*>& points,
+                           std::span<const RegistrationTarget> targets, const CameraModel& camera,
+                           const MotionPrior& prior, const RegistrationOptions& options,
+                           double tolerances, RegistrationResult& result, System& last) {
   const double lever_m = median_range_m(points);
   bool has_converged = false;
   while (result.iterations < options.max_iterations && !has_converged) {
@@ -129,10 +134,72 @@ RegistrationStatus refine(const std::vector<const SurfacePoint*>& points,
     result.rmse_m = last.statistics.rmse_m;
     result.residual_scale = last.statistics.scale;
     result.direction_shares = last.seen.shares;
-    has_converged = is_below_tolerance(twist);
+    has_converged = is_below_tolerance(twist, tolerances);
     ++result.iterations;
   }
   return verdict(result, has_converged, options);
+}
+
+/// From coarse to fine: every fourth point brings the pose near, all of them to its place.
+RegistrationStatus refine(const SurfaceCloud& source,
+                          const std::vector<const SurfacePoint*>& points,
+                          std::span<const RegistrationTarget> targets, const CameraModel& camera,
+                          const MotionPrior& prior, const RegistrationOptions& options,
+                          RegistrationResult& result, System& last) {
+  RegistrationOptions coarse = options;
+  coarse.source_stride_px *= coarse_stride;
+  coarse.min_correspondences /= coarse_stride * coarse_stride;
+  const auto fewer_points = select_points(source, coarse.source_stride_px);
+  if (!fewer_points.empty()) {
+    const RegistrationStatus status =
+        descend(fewer_points, targets, camera, prior, coarse, coarse_tolerance, result, last);
+    if (!succeeded(status)) result.world_from_camera = prior.world_from_camera;
+  }
+  result.iterations = 0;  // those that count are the fine ones
+  constexpr double one = 1;
+  return descend(points, targets, camera, prior, options, one, result, last);
+}
+
+/// Points in a frame that is `frame_from_camera` of the camera's.
+std::vector<Eigen::Vector3f> positions(const std::vector<const SurfacePoint*>& points,
+                                       const Pose& frame_from_camera) {
+  const Eigen::Isometry3f pose = frame_from_camera.cast<float>();
+  std::vector<Eigen::Vector3f> out(points.size());
+  std::ranges::transform(points, out.begin(), [&](const SurfacePoint* point) -> Eigen::Vector3f {
+    return pose * point->getVector3fMap();
+  });
+  return out;
+}
+
+/// Moves the pose of `result` to what PCL makes of it, then measures as `descend` does.
+RegistrationStatus refine_with_pcl(const SurfaceCloud&,
+                                   const std::vector<const SurfacePoint*>& points,
+                                   std::span<const RegistrationTarget> targets,
+                                   const CameraModel& camera, const MotionPrior& prior,
+                                   const RegistrationOptions& options, RegistrationResult& result,
+                                   System& last) {
+  // About the expected camera, since PCL counts in floats.
+  const Pose& origin = prior.world_from_camera;
+  std::vector<Eigen::Vector3f> surface;
+  for (const RegistrationTarget& target : targets) {
+    const auto chosen = select_points(*target.cloud, options.source_stride_px);
+    std::ranges::copy(positions(chosen, origin.inverse() * target.world_from_camera),
+                      std::back_inserter(surface));
+  }
+  const PclAlignment found =
+      align_with_pcl(positions(points, Pose::Identity()), surface, Pose::Identity(),
+                     options.max_point_gap_m, options.method == "pcl_gicp", options.max_iterations);
+  result.world_from_camera = origin * found.target_from_source;
+  RegistrationOptions just_measure = options;
+  just_measure.max_iterations = 1;
+  result.iterations = 0;
+  const Pose pose = result.world_from_camera;
+  const RegistrationStatus status =
+      descend(points, targets, camera, prior, just_measure, 1, result, last);
+  result.world_from_camera = pose;
+  return status == RegistrationStatus::iteration_limit && found.converged
+             ? RegistrationStatus::converged
+             : status;
 }
 
 }  // namespace
@@ -140,6 +207,8 @@ RegistrationStatus refine(const std::vector<const SurfacePoint*>& points,
 std::vector<OptionField<RegistrationOptions>> RegistrationOptions::fields() {
   using O = RegistrationOptions;
   return {
+      {"method", &O::method, 0, 0, "", "how frames are registered; PCL's are there to compare with",
+       "projective | pcl_icp | pcl_gicp"},
       {"source_stride_px", &O::source_stride_px, 1, 16, "px",
        "every how manieth pixel of a frame, in both axes, is registered"},
       {"max_iterations", &O::max_iterations, 1, 200, "", "Gauss-Newton steps at the most"},
@@ -194,7 +263,8 @@ RegistrationResult register_to_targets(const SurfaceCloud& source,
   const auto points = select_points(source, options.source_stride_px);
   if (points.empty() || targets.empty()) return result;
   System last;
-  result.status = refine(points, targets, camera, prior, options, result, last);
+  const auto& refine_pose = options.method == "projective" ? refine : refine_with_pcl;
+  result.status = refine_pose(source, points, targets, camera, prior, options, result, last);
   if (result.iterations > 0) result.degenerate_directions = open_directions(last, prior);
   return result;
 }

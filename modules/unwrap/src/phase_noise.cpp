@@ -13,6 +13,7 @@
 #include <numbers>
 #include <vector>
 
+#include <tofmap/core/median.hpp>
 #include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
@@ -116,12 +117,11 @@ Differences sample_differences(const ImageF& phase, const ImageF& amplitude,
 
 /// The scale at which half of the differences lie within their median deviation.
 double scale_by_median(const Differences& differences) {
-  constexpr double sigma_of_median = 1.4826;  // σ of a normal variate / its median absolute value
   std::vector<float> normalised(differences.size());
   for (std::size_t i = 0; i < normalised.size(); ++i) {
     normalised[i] = std::abs(differences.cycles[i]) / differences.relative_sigma[i];
   }
-  return sigma_of_median * median_of_positive(normalised);
+  return sigma_of_median_deviation * median_of_positive(normalised);
 }
 
 /// The scale that explains the mean cosine: E cos 2πd = exp(−2π²σ²) for a normal d, wrapped or not.

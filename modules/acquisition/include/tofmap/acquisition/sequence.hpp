@@ -37,6 +37,9 @@ class SequenceReader final : public FrameSource {
 
   const std::filesystem::path& folder() const { return folder_; }
   const SensorModel& sensor() const override { return sensor_; }
+  /// The frame that next() gives next, by its place in frames.txt.
+  void start_at(int index);
+
   std::optional<SourcedFrame> next() override;
   std::optional<int> frame_count() const override { return static_cast<int>(files_.size()); }
 

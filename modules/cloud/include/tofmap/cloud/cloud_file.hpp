@@ -20,11 +20,12 @@ struct EIGEN_ALIGN16 MapPoint {
 
 using MapCloud = pcl::PointCloud<MapPoint>;
 
-/// Writes a binary PLY with properties x y z nx ny nz confidence observations.
+/// Writes a binary PLY (or PCD, if the file is named so) with properties x y z nx ny nz (PCD:
+/// normal_x …) confidence observations.
 /// Throws InputError that names the file if it cannot be written whole.
 void write_map(const std::filesystem::path& file, const MapCloud& map);
 
-/// Reads a PLY or PCD cloud; normals, confidence and observations that the file does not
+/// Reads a PLY, PCD or VTK cloud; normals, confidence and observations that the file does not
 /// have are NaN, 1 and 1. Throws InputError that names the file if it cannot be read.
 MapCloud read_map(const std::filesystem::path& file);
 

@@ -34,9 +34,13 @@ Pose pose_from_twist(const Eigen::Matrix<double, 6, 1>& twist);
 /// Outside 0 … 1 it extrapolates.
 Pose interpolate(const Pose& a, const Pose& b, double share);
 
+/// A pose that far from a frame in time is none of it: half a frame of a slow camera.
+inline constexpr double max_pose_gap_s = 0.02;
+
 /// The pose at a time: between the last one before and the first one after it if both are within
 /// `max_gap_s`, else the one that is; nothing if neither is. The trajectory is in any order.
-std::optional<Pose> pose_at(const Trajectory& trajectory, double timestamp_s, double max_gap_s);
+std::optional<Pose> pose_at(const Trajectory& trajectory, double timestamp_s,
+                            double max_gap_s = max_pose_gap_s);
 
 /// Reads a trajectory in the form of the TUM RGB-D benchmark: a line a pose, `timestamp tx ty tz
 /// qx qy qz qw`, # starts a comment. Throws InputError that names file and line if a line

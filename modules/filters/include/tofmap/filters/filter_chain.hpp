@@ -31,6 +31,11 @@ struct FilterOptions {
   static std::vector<OptionField<FilterOptions>> fields();
 };
 
+/// The default chain where ranges are the result: smoothed in the end. Maps are made of planes
+/// fitted to them, which is the better smoothing, and noise that neighbours share already would
+/// look like shape.
+std::string smoothing_chain();
+
 /// What one filter of the chain did.
 struct FilterCount {
   std::string name;

@@ -6,6 +6,7 @@
 
 #include <tofmap/cloud/surface_cloud.hpp>
 #include <tofmap/core/trajectory.hpp>
+#include <tofmap/registration/projective_icp.hpp>
 
 namespace tofmap {
 
@@ -17,5 +18,10 @@ struct Keyframe {
   Pose world_from_camera = Pose::Identity();
   std::shared_ptr<const SurfaceCloud> cloud;  ///< in the camera's frame
 };
+
+/// A keyframe as frames are registered against it; it must outlive the target.
+inline RegistrationTarget target_of(const Keyframe& keyframe) {
+  return {keyframe.cloud.get(), keyframe.world_from_camera};
+}
 
 }  // namespace tofmap

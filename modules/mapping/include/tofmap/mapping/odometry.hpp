@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <deque>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,12 +13,16 @@
 #include <tofmap/mapping/keyframe.hpp>
 #include <tofmap/registration/projective_icp.hpp>
 
+namespace boost::serialization {
+class access;
+}
+
 namespace tofmap {
 
 struct OdometryOptions {
   double keyframe_step_m = 0.25;
   double keyframe_turn_rad = 0.21;
-  int recent_keyframes = 15;
+  int keyframes_around = 15;
   int targets = 3;
   double min_target_overlap = 0.15;
   double prior_rotation_sigma_rad = 0.03;
@@ -44,8 +46,8 @@ const char* status_name(TrackingStatus status);
 struct TrackingResult {
   TrackingStatus status = TrackingStatus::lost;
   Pose world_from_camera = Pose::Identity();  ///< meaningful only if `placed`
-  bool is_keyframe = false;
-  std::vector<int> targets;  ///< ids of the keyframes it was registered against
+  bool is_keyframe = false;                   ///< it has become one (RoomMapper decides)
+  std::vector<int> targets;  ///< ids of the keyframes it was registered against, best overlap first
   RegistrationResult registration;
 
   bool placed() const {
@@ -54,45 +56,39 @@ struct TrackingResult {
   }
 };
 
-/// Follows the camera: registers each frame against the best-overlapping of the recent
-/// keyframes, starting from constant velocity. The world is the frame of the first usable
-/// cloud. A frame that cannot be placed changes nothing but the time since the last placed one.
+/// Follows the camera: registers each frame against those keyframes around it that overlap most,
+/// starting from constant velocity. The first frame with a surface is placed at the origin. A frame
+/// that cannot be placed changes nothing but the time since the last placed one.
 class Odometry {
  public:
   Odometry(const CameraModel& camera, const OdometryOptions& options,
            const RegistrationOptions& registration);
 
-  /// Frames come in the order of time.
-  TrackingResult track(int frame_index, double timestamp_s,
-                       const std::shared_ptr<const SurfaceCloud>& cloud);
+  /// Frames come in the order of time. `around` are keyframes that agree with one another; the last
+  /// one is registered against in any case. They may be empty only for the first frame that is
+  /// placed.
+  TrackingResult track(double timestamp_s, const SurfaceCloud& cloud,
+                       std::span<const Keyframe* const> around);
 
-  /// The keyframes that are still held, oldest first.
-  const std::deque<Keyframe>& recent_keyframes() const { return keyframes_; }
+  /// Goes on from a frame that was placed otherwise.
+  void restart(const StampedPose& pose);
 
-  /// Keyframes over the whole run.
-  int keyframe_count() const { return keyframe_count_; }
-
-  /// Goes on from a frame that was placed otherwise, among these keyframes instead of the recent
-  /// ones; the last of them is the nearest. They must not be empty.
-  void restart(const StampedPose& pose, std::span<const Keyframe> keyframes);
-
-  /// Moves keyframes, by their ids, to where they are now believed to be, and the camera with the
-  /// newest of them.
-  void correct(std::span<const Pose> world_from_keyframe);
+  /// Moves the camera along with the keyframes that it is registered against.
+  void move(const Pose& new_from_old_world);
 
  private:
+  friend class boost::serialization::access;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
+
   MotionPrior predict(double timestamp_s) const;
-  std::vector<const Keyframe*> choose_targets(const SurfaceCloud& cloud,
-                                              const Pose& expected) const;
-  bool wants_keyframe(const Pose& pose) const;
-  void accept(int frame_index, double timestamp_s, const std::shared_ptr<const SurfaceCloud>& cloud,
-              TrackingResult& result);
+  std::vector<const Keyframe*> choose_targets(const SurfaceCloud& cloud, const Pose& expected,
+                                              std::span<const Keyframe* const> around) const;
+  void accept(const StampedPose& pose);
 
   CameraModel camera_;
   OdometryOptions options_;
   RegistrationOptions registration_;
-  std::deque<Keyframe> keyframes_;
-  int keyframe_count_ = 0;
   std::optional<StampedPose> last_;
   std::optional<StampedPose> before_last_;
   int frames_since_placed_ = 0;

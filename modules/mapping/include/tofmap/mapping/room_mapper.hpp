@@ -2,13 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <iosfwd>
 #include <memory>
 #include <vector>
 
+#include <tofmap/mapping/keyframe_graph.hpp>
 #include <tofmap/mapping/loop_closure.hpp>
 #include <tofmap/mapping/odometry.hpp>
 #include <tofmap/mapping/relocalisation.hpp>
 #include <tofmap/mapping/surface_map.hpp>
+
+namespace boost::serialization {
+class access;
+}
 
 namespace tofmap {
 
@@ -23,10 +29,13 @@ struct Loop {
 
 /// Follows the camera, recognises places, and keeps path and map consistent.
 ///
-/// Every frame is placed by odometry and belongs to the newest keyframe, and its surface to that
-/// keyframe's part of the map. Where a keyframe sees what one long before it saw, both are tied by
-/// an edge, and the poses of all keyframes are fitted to the edges of odometry and loops. Parts and
-/// frames move with their keyframes, so nothing is integrated anew.
+/// Every frame is placed by odometry against the keyframes around it, which where a place is seen
+/// again are those of the first time. It belongs to the keyframe it overlaps most, and its surface
+/// to the part of the map around that keyframe: so keyframes and map grow with what is seen, not
+/// with time.
+/// Where a keyframe sees what one long before it saw, both are tied by an edge, and the poses of
+/// all keyframes are fitted to the edges of odometry and loops. Parts and frames move with their
+/// keyframes, so nothing is integrated anew.
 ///
 /// A camera that has been lost for a few frames is looked for among all keyframes; after a second
 /// or so only there. Frames in between are not placed.
@@ -56,28 +65,54 @@ class RoomMapper {
   MapCloud surface() const;
   const std::vector<Loop>& loops() const { return loops_; }
 
+  /// Puts all that was found out aside, to go on from there later: a mapper that was made with the
+  /// same options and loads it gives the same results to the bit. Only the build that wrote it can
+  /// read it. Reading throws std::exception if it is damaged.
+  void save(std::ostream& out) const;
+  void load(std::istream& in);
+
  private:
+  friend class boost::serialization::access;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
+
   struct PlacedFrame {
-    double timestamp_s;
-    int keyframe;
-    Pose keyframe_from_camera;
+    double timestamp_s = 0;
+    int keyframe = 0;
+    Pose keyframe_from_camera = Pose::Identity();
+
+    template <class Archive>
+    void serialize(Archive& archive, unsigned version);
   };
 
-  TrackingResult find_camera(int frame_index, double timestamp_s,
-                             const std::shared_ptr<const SurfaceCloud>& cloud);
+  /// What frames saw from near by one keyframe, its anchor, in that one's frame.
+  struct Part {
+    int anchor = 0;
+    SurfaceMap surface;
+  };
+
+  TrackingResult find_camera(double timestamp_s, const SurfaceCloud& cloud,
+                             std::span<const Keyframe* const> around);
   TrackingResult relocalised(double timestamp_s, const SurfaceCloud& cloud);
-  void add_keyframe(const TrackingResult& result);
+  std::vector<const Keyframe*> keyframes_around() const;
+  bool wants_keyframe(const Pose& pose, std::span<const Keyframe* const> around) const;
+  void add_keyframe(int frame_index, double timestamp_s,
+                    const std::shared_ptr<const SurfaceCloud>& cloud,
+                    std::span<const Keyframe* const> around, const TrackingResult& result);
+  int part_for(int id, const Pose& pose, std::span<const Keyframe* const> around);
   void fit();
 
   CameraModel camera_;
+  OdometryOptions odometry_options_;
   RegistrationOptions registration_;
   LoopOptions loop_options_;
   SurfaceMapOptions surface_options_;
   Odometry odometry_;
-  std::vector<Keyframe> keyframes_;
+  KeyframeGraph keyframes_;
   std::vector<PlaceDescriptor> descriptors_;  ///< of each keyframe
-  std::vector<SurfaceMap> parts_;             ///< of each keyframe, in its camera's frame
-  std::vector<double> path_m_;                ///< along the path, at each keyframe
+  std::vector<Part> parts_;
+  std::vector<int> part_of_;    ///< index of the part that a keyframe's frames go to
+  std::vector<double> path_m_;  ///< along the path, at each keyframe
   std::vector<PlacedFrame> frames_;
   std::vector<PoseEdge> edges_;
   std::vector<Loop> loops_;  ///< in the order of their edges

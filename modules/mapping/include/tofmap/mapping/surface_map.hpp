@@ -11,6 +11,10 @@
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/core/trajectory.hpp>
 
+namespace boost::serialization {
+class access;
+}
+
 namespace tofmap {
 
 struct SurfaceMapOptions {
@@ -48,12 +52,19 @@ class SurfaceMap {
   MapCloud extract() const;
 
  private:
+  friend class boost::serialization::access;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
+
   struct Voxel {
     Eigen::Vector3d weighted_point_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d weighted_normal = Eigen::Vector3d::Zero();
     double weight = 0;
     double confidence = 0;
     std::uint32_t observations = 0;
+
+    template <class Archive>
+    void serialize(Archive& archive, unsigned version);
   };
 
   std::int64_t key(const Eigen::Vector3d& point_m) const;

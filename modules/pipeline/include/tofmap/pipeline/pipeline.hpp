@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <iosfwd>
 #include <memory>
 #include <string>
 #include <vector>
@@ -96,9 +97,40 @@ struct MapHooks {
   std::function<void(const PreparedFrame&)> on_frame;
 };
 
-/// Frames in, a map out: the whole job. Frames that are damaged or cannot be placed are
-/// skipped, and said so in their record. Frames are prepared in parallel and registered in
-/// order; the result is the same for any number of threads.
+/// A map on its way, which can be put aside and taken up again.
+class MapRun {
+ public:
+  MapRun(const SensorModel& sensor, const PipelineOptions& options);
+
+  /// Takes frames from the source until its end, or until a hook ends it. Frames that are damaged
+  /// or cannot be placed are skipped, and said so in their record. Frames are prepared in parallel
+  /// and registered in order; the result is the same for any number of threads.
+  void advance(FrameSource& source, const MapHooks& hooks = {});
+
+  /// Frames that were taken so far, in order.
+  const std::vector<FrameRecord>& frames() const { return frames_; }
+  bool is_interrupted() const { return is_interrupted_; }
+
+  /// All that is needed to go on; a run of the same sensor and options that loads it comes to the
+  /// same result, to the bit. Only the build that wrote it can read it. Reading throws
+  /// std::exception if it is damaged.
+  void save(std::ostream& out) const;
+  void load(std::istream& in);
+
+  /// The map of the frames so far. The run is over with that.
+  RoomMap finish();
+
+ private:
+  SensorModel sensor_;
+  PipelineOptions options_;
+  PixelRays rays_;
+  RoomMapper mapper_;
+  std::vector<Unwrapper> unwrappers_;  ///< one a thread
+  std::vector<FrameRecord> frames_;
+  bool is_interrupted_ = false;
+};
+
+/// Frames in, a map out: the whole job.
 RoomMap map_room(FrameSource& source, const PipelineOptions& options, const MapHooks& hooks = {});
 
 }  // namespace tofmap

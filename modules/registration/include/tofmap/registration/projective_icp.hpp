@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include <tofmap/cloud/surface_cloud.hpp>
@@ -26,6 +27,7 @@ struct MotionPrior {
 };
 
 struct RegistrationOptions {
+  std::string method = "projective";
   int source_stride_px = 2;
   int max_iterations = 20;
   double max_point_gap_m = 0.4;
@@ -55,7 +57,7 @@ const char* status_name(RegistrationStatus status);
 struct RegistrationResult {
   RegistrationStatus status = RegistrationStatus::few_correspondences;
   Pose world_from_camera = Pose::Identity();
-  int iterations = 0;
+  int iterations = 0;  ///< with all points
   int correspondences = 0;
   double overlap = 0;         ///< share of the source's points with a correspondence
   double inlier_share = 0;    ///< share of correspondences the kernel keeps at half weight or more
@@ -77,12 +79,16 @@ struct RegistrationResult {
 /// minimising distances from points to the planes they fall on (Chen and Medioni 1991, with
 /// the projective search of Blais and Levine 1995).
 ///
-/// Gauss-Newton in double precision about the camera's centre. Each correspondence is
+/// Gauss-Newton in double precision about the camera's centre, with a quarter of the points at
+/// first. Each correspondence is
 /// weighted by the inverse of its predicted variance (noise of both points along the normal,
 /// plus `systematic_sigma_m`) and by a Geman-McClure kernel whose width is kernel_width times
 /// the robust scale of the residuals. The prior has its say in every direction of motion by its
 /// standard deviations, so it decides where the surfaces say little. `camera` took source and
 /// targets. The result is the same for any number of threads.
+///
+/// With the methods `pcl_icp` and `pcl_gicp` the pose is what PCL's algorithms make of the same
+/// points from the same start, for comparison; all else is measured at that pose.
 RegistrationResult register_to_targets(const SurfaceCloud& source,
                                        std::span<const RegistrationTarget> targets,
                                        const CameraModel& camera, const MotionPrior& prior,

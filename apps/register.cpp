@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "command.hpp"
+#include "interruption.hpp"
+#include "options.hpp"
+#include "output_folder.hpp"
+#include "progress.hpp"
+
+#include <cstdio>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <tofmap/cloud/point_file.hpp>
+#include <tofmap/core/error.hpp>
+#include <tofmap/pipeline/cloud_registration.hpp>
+
+namespace tofmap::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct RegisterArguments {
+  std::vector<std::filesystem::path> clouds;
+  std::filesystem::path out;
+  CommonArguments common;
+};
+
+/// The clouds with what they are called.
+struct Input {
+  std::vector<PointSet> clouds;
+  std::vector<std::string> names;
+};
+
+Input read_clouds(const std::vector<std::filesystem::path>& files) {
+  if (files.size() < 2) throw UsageError("register: takes two clouds at least");
+  Input input;
+  for (const std::filesystem::path& file : files) {
+    input.clouds.push_back(read_points(file));
+    input.names.push_back(file.string());
+  }
+  return input;
+}
+
+/// Row by row, the unit's scale included.
+ordered_json matrix_json(const PlacedCloud& cloud) {
+  ordered_json numbers = ordered_json::array();
+  Eigen::Matrix4d matrix = cloud.common_from_cloud.matrix();
+  matrix.topLeftCorner<3, 3>() *= cloud.unit_m;
+  for (int row = 0; row < 4; ++row) {
+    for (int col = 0; col < 4; ++col) numbers.push_back(matrix(row, col));
+  }
+  return numbers;
+}
+
+ordered_json transforms_json(const Input& input, const CloudRegistration& registration) {
+  ordered_json clouds = ordered_json::array();
+  for (std::size_t i = 0; i < input.names.size(); ++i) {
+    const PlacedCloud& cloud = registration.clouds[i];
+    ordered_json one;
+    one["path"] = input.names[i];
+    one["transform"] = cloud.is_placed ? matrix_json(cloud) : ordered_json(nullptr);
+    one["inlier_share"] = cloud.inlier_share;
+    one["rmse_m"] = cloud.is_placed ? ordered_json(cloud.rmse_m) : ordered_json(nullptr);
+    one["converged"] = cloud.is_placed;
+    one["tied_to"] = ordered_json::array();
+    for (const int other : cloud.tied_to) {
+      one["tied_to"].push_back(input.names[static_cast<std::size_t>(other)]);
+    }
+    if (cloud.unit_m != 1) one["scale"] = cloud.unit_m;
+    if (!cloud.remark.empty()) one["remark"] = cloud.remark;
+    clouds.push_back(one);
+  }
+  return {{"clouds", clouds}};
+}
+
+ordered_json pair_json(const Input& input, const CloudPair& pair) {
+  ordered_json json;
+  json["source"] = input.names[static_cast<std::size_t>(pair.source)];
+  json["target"] = input.names[static_cast<std::size_t>(pair.target)];
+  json["verdict"] = verdict_name(pair.verdict);
+  json["matches"] = pair.matches;
+  json["support"] = pair.support;
+  json["overlap"] = pair.fit.overlap;
+  json["inlier_share"] = pair.fit.inlier_share;
+  json["rmse_m"] = pair.fit.rmse_m;
+  json["seen_through"] = pair.seen_through;
+  json["rival"] = pair.rival;
+  json["direction_share"] = pair.direction_share;
+  json["deviations"] = pair.deviations;
+  json["target_from_source"] = ordered_json::array();
+  for (int row = 0; row < 4; ++row) {
+    for (int col = 0; col < 4; ++col) {
+      json["target_from_source"].push_back(pair.target_from_source.matrix()(row, col));
+    }
+  }
+  return json;
+}
+
+ordered_json report_json(const Input& input, const CloudRegistration& registration) {
+  ordered_json report;
+  report["summary"] = {{"clouds", input.names.size()},
+                       {"placed", registration.placed()},
+                       {"pairs", registration.pairs.size()},
+                       {"voxel_m", registration.voxel_m},
+                       {"interrupted", registration.interrupted}};
+  report["pairs"] = ordered_json::array();
+  for (const CloudPair& pair : registration.pairs) {
+    report["pairs"].push_back(pair_json(input, pair));
+  }
+  return report;
+}
+
+/// The points of placed clouds in the common frame; none of the others.
+std::vector<std::vector<Eigen::Vector3d>> merged(const Input& input,
+                                                 const CloudRegistration& registration) {
+  std::vector<std::vector<Eigen::Vector3d>> out(input.clouds.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const PlacedCloud& cloud = registration.clouds[i];
+    if (!cloud.is_placed) continue;
+    for (const Eigen::Vector3d& point : input.clouds[i].points) {
+      out[i].push_back(cloud.common_from_cloud * (cloud.unit_m * point));
+    }
+  }
+  return out;
+}
+
+/// On stderr, so that they are seen when the output goes elsewhere.
+void print_remarks(const Input& input, const CloudRegistration& registration) {
+  for (std::size_t i = 0; i < input.names.size(); ++i) {
+    const PlacedCloud& cloud = registration.clouds[i];
+    if (cloud.remark.empty()) continue;
+    std::fprintf(stderr, "tofmap: %s: %s%s\n", input.names[i].c_str(),
+                 cloud.is_placed ? "" : "not placed: ", cloud.remark.c_str());
+  }
+}
+
+int run_register(const RegisterArguments& arguments) {
+  ProgramOptions options;
+  const OptionTable table = arguments.common.resolve("register", options);
+  const Input input = read_clouds(arguments.clouds);
+  OutputFolder out(arguments.out);
+  CloudRegistration registration;
+  {
+    std::optional<Progress> progress;
+    registration = register_clouds(
+        input.clouds, input.names, options.cloud_registration, [&](int done, int all) {
+          if (!progress) progress.emplace("registering pair", all, arguments.common.quiet);
+          progress->show(done);
+          return !is_interrupted();
+        });
+  }
+  print_remarks(input, registration);
+  out.write_text("transforms.json", transforms_json(input, registration).dump(1) + "\n");
+  out.write_text("report.json", report_json(input, registration).dump(1) + "\n");
+  out.write_text("options.yaml", table.to_yaml(false));
+  write_labelled_points(out.path() / "merged.ply", merged(input, registration));
+  out.commit();
+  if (!arguments.common.quiet) {
+    std::printf("%d of %zu clouds placed\nmerged: %s, transforms beside it\n",
+                registration.placed(), input.names.size(),
+                (out.final_path() / "merged.ply").c_str());
+  }
+  if (registration.interrupted) return exit_status::interrupted;
+  if (registration.placed() == 0) {
+    throw InputError("no two of the clouds fit; report.json in " + out.final_path().string() +
+                     " says how near they came");
+  }
+  return exit_status::done;
+}
+
+}  // namespace
+
+void add_register_command(CLI::App& program, Outcome& outcome) {
+  auto arguments = std::make_shared<RegisterArguments>();
+  CLI::App* app = program.add_subcommand("register", "place clouds of one scene in a common frame");
+  app->add_option("CLOUD", arguments->clouds, "PLY, PCD or VTK files, in any order")->required();
+  app->add_option("--out", arguments->out, "folder for the result")->required();
+  arguments->common.add_to(*app);
+  app->callback([arguments, &outcome] { outcome.status = run_register(*arguments); });
+}
+
+}  // namespace tofmap::app

@@ -1,0 +1,117 @@
+#!/usr/bin/python3
+# SPDX-FileCopyrightText: 2026 the tofmap authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Trajectory error and time of Open3D's registration beside `tofmap map`, given the same ranges.
+
+    benchmarks/against_open3d.py [BUILD_DIR] SEQ...
+
+Ranges are those of `tofmap unwrap --filters` without smoothing, unwrapped (`joint`) and wrapped
+(`none`). Open3D aligns each frame to the one before it, from constant velocity, on voxels of 5 cm.
+Needs Debian's python3-open3d, python3-numpy, python3-opencv and python3-yaml, and recordings with
+ground truth and an undistorted camera.
+"""
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+import cv2
+import numpy
+import open3d
+import yaml
+
+registration = open3d.pipelines.registration
+VOXEL_M = 0.05
+REACH_M = 0.3
+METHODS = {
+    "point to plane": lambda source, target, start: registration.registration_icp(
+        source, target, REACH_M, start,
+        registration.TransformationEstimationPointToPlane()),
+    "generalised ICP": lambda source, target, start: registration.registration_generalized_icp(
+        source, target, REACH_M, start),
+}
+
+
+def rays(camera):
+    u, v = numpy.meshgrid(numpy.arange(camera["width"]), numpy.arange(camera["height"]))
+    directions = numpy.stack([(u - camera["cx"]) / camera["fx"], (v - camera["cy"]) / camera["fy"],
+                              numpy.ones(u.shape)], axis=-1)
+    return directions / numpy.linalg.norm(directions, axis=-1, keepdims=True)
+
+
+def cloud(file, directions):
+    range_m = cv2.imread(file, cv2.IMREAD_UNCHANGED) / 1000.0
+    points = open3d.geometry.PointCloud()
+    points.points = open3d.utility.Vector3dVector((directions * range_m[..., None])[range_m > 0])
+    points = points.voxel_down_sample(VOXEL_M)
+    points.estimate_normals(open3d.geometry.KDTreeSearchParamKNN(20))
+    points.orient_normals_towards_camera_location()
+    return points
+
+
+def positions(clouds, align):
+    """Camera positions of a chain, and milliseconds a frame."""
+    pose, step, path = numpy.eye(4), numpy.eye(4), [numpy.zeros(3)]
+    start = time.perf_counter()
+    for before, after in zip(clouds, clouds[1:]):
+        step = align(after, before, step).transformation
+        pose = pose @ step
+        path.append(pose[:3, 3])
+    return numpy.array(path), 1000 * (time.perf_counter() - start) / max(1, len(clouds) - 1)
+
+
+def ate_m(path, truth):
+    """Root mean square after the best rigid alignment (Umeyama 1991)."""
+    centred, wanted = path - path.mean(0), truth - truth.mean(0)
+    u, _, vt = numpy.linalg.svd(wanted.T @ centred)
+    flip = numpy.diag([1, 1, numpy.sign(numpy.linalg.det(u @ vt))])
+    return numpy.sqrt(numpy.mean(numpy.sum((wanted - centred @ (u @ flip @ vt).T) ** 2, axis=1)))
+
+
+def truth_at(sequence, times):
+    poses = numpy.loadtxt(f"{sequence}/groundtruth.txt")
+    return numpy.stack([numpy.interp(times, poses[:, 0], poses[:, axis]) for axis in (1, 2, 3)], 1)
+
+
+def our_path(tofmap, sequence, method, folder):
+    subprocess.run([tofmap, "map", sequence, "--out", f"{folder}/map", "--quiet", "--method", method,
+                    "--set", "pictures.frames=0"], check=True)
+    return numpy.loadtxt(f"{folder}/map/trajectory.txt", ndmin=2)
+
+
+def main():
+    build, sequences = sys.argv[1], sys.argv[2:]
+    tofmap = f"{build}/apps/tofmap"
+    print("| ATE, m, unwrapped / wrapped | ours, frames placed | "
+          + " | ".join(f"Open3D, {name} | ms a frame" for name in METHODS) + " |")
+    print("|---|---|" + "---|---|" * len(METHODS))
+    for sequence in sequences:
+        with open(f"{sequence}/sequence.yaml", encoding="utf-8") as file:
+            directions = rays(yaml.safe_load(file)["camera"])
+        ours, theirs = [], {name: [] for name in METHODS}
+        with tempfile.TemporaryDirectory() as folder:
+            for method in ("joint", "none"):
+                path = our_path(tofmap, sequence, method, folder)
+                ours.append((ate_m(path[:, 1:4], truth_at(sequence, path[:, 0])), len(path)))
+                subprocess.run([tofmap, "unwrap", sequence, "--out", f"{folder}/ranges", "--quiet",
+                                "--filters", "--method", method, "--set", "pictures.frames=0",
+                                "--set", "filters.chain=isolated_wrap plane_edge"], check=True)
+                files = sorted(os.listdir(f"{folder}/ranges/range"))
+                clouds = [cloud(f"{folder}/ranges/range/{name}", directions) for name in files]
+                with open(f"{sequence}/frames.txt", encoding="utf-8") as file:
+                    times = [float(line.split()[0]) for line in file
+                             if line.strip() and not line.startswith("#")]
+                truth = truth_at(sequence, times[:len(clouds)])
+                for name, align in METHODS.items():
+                    path, milliseconds = positions(clouds, align)
+                    theirs[name].append((ate_m(path, truth), milliseconds))
+        cells = [f"{ours[0][0]:.4f} / {ours[1][0]:.2f} ({ours[0][1]}, {ours[1][1]})"]
+        for found in theirs.values():
+            cells += [f"{found[0][0]:.3f} / {found[1][0]:.2f}", f"{found[0][1]:.0f}"]
+        print(f"| {os.path.basename(os.path.normpath(sequence))} | " + " | ".join(cells) + " |",
+              flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,79 @@
+#!/usr/bin/python3
+# SPDX-FileCopyrightText: 2026 the tofmap authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a periodic range error does to trajectories, with and without loops.
+
+    benchmarks/range_wiggle.py [BUILD_DIR] SEQ...
+
+Real cameras' correlation is no pure sine: their ranges are off by some centimetres, four times a
+wavelength. That error, a sin(8 pi phase), is added to both images of copies of the recordings, which
+must have ground truth. Needs Debian's python3-numpy and python3-opencv.
+"""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import cv2
+import numpy
+
+ERRORS_M = (0, 0.01, 0.03)
+SPEED_OF_LIGHT_M_S = 299792458.0
+NO_RETURN = 65535
+
+
+def frequencies_hz(sequence):
+    found = {}
+    with open(f"{sequence}/sequence.yaml", encoding="utf-8") as file:
+        for line in file:
+            name, _, value = line.strip().partition(":")
+            if name.startswith("frequency_"):
+                found[name] = float(value)
+    return found["frequency_a_hz"], found["frequency_b_hz"]
+
+
+def with_wiggle(sequence, out, error_m):
+    shutil.copytree(sequence, out, ignore=shutil.ignore_patterns("phase_*", "label_truth"))
+    for folder, frequency in zip(("phase_a", "phase_b"), frequencies_hz(sequence)):
+        os.mkdir(f"{out}/{folder}")
+        error_cycles = error_m * 2 * frequency / SPEED_OF_LIGHT_M_S
+        for name in os.listdir(f"{sequence}/{folder}"):
+            stored = cv2.imread(f"{sequence}/{folder}/{name}", cv2.IMREAD_UNCHANGED)
+            cycles = stored / 65536.0
+            cycles = (cycles + error_cycles * numpy.sin(8 * numpy.pi * cycles)) % 1
+            wiggled = numpy.minimum(numpy.round(65536 * cycles), NO_RETURN - 1)
+            wiggled[stored == NO_RETURN] = NO_RETURN
+            cv2.imwrite(f"{out}/{folder}/{name}", wiggled.astype(numpy.uint16))
+
+
+def errors_mm(tofmap, sequence, out, close_loops):
+    subprocess.run([tofmap, "evaluate", sequence, "--out", out, "--quiet",
+                    "--set", "evaluation.methods=joint", "--set", "pictures.frames=0",
+                    "--set", f"loops.close={close_loops}"], check=True, stdout=subprocess.DEVNULL)
+    with open(f"{out}/report.json", encoding="utf-8") as file:
+        report = json.load(file)
+    return (1000 * report["trajectory"]["joint"]["ate_rmse_m"],
+            1000 * report["map"]["joint"]["accuracy_m"])
+
+
+def main():
+    tofmap, sequences = f"{sys.argv[1]}/apps/tofmap", sys.argv[2:]
+    print("| trajectory / map error, mm, loops open; closed | "
+          + " | ".join(f"{100 * e:g} cm" for e in ERRORS_M) + " |")
+    print("|---|" + "---|" * len(ERRORS_M))
+    for sequence in sequences:
+        cells = []
+        for error_m in ERRORS_M:
+            with tempfile.TemporaryDirectory() as folder:
+                with_wiggle(sequence, f"{folder}/seq", error_m)
+                found = [errors_mm(tofmap, f"{folder}/seq", f"{folder}/out", close)
+                         for close in ("false", "true")]
+            cells.append("; ".join(f"{ate:.1f} / {map_error:.1f}" for ate, map_error in found))
+        print(f"| {os.path.basename(os.path.normpath(sequence))} | " + " | ".join(cells) + " |",
+              flush=True)
+
+
+if __name__ == "__main__":
+    main()

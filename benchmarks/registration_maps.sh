@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 the tofmap authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Trajectory error of recordings with ground truth, registered by our method and by PCL's, against
+# keyframes and frame to frame, with and without unwrapping, as a table in Markdown. Recordings are
+# simulated; more can be named as arguments. BUILD_DIR names the build folder (default: build).
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+tofmap=${BUILD_DIR:-build}/apps/tofmap
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+recordings=()
+for scene in room hall; do
+  "$tofmap" simulate "$scene" --out "$work/$scene" --quiet
+  recordings+=("$work/$scene")
+done
+recordings+=("$@")
+
+# Every frame is a keyframe, and only the last one is registered against.
+chain=(odometry.keyframes_around=1 odometry.keyframe_step_m=0.01 odometry.keyframe_turn_rad=0.01
+       loops.close=false)
+
+errors() {  # SEQ [SETTING…]: those of unwrapped and of wrapped ranges, metres
+  local sequence=$1 settings=()
+  shift
+  for setting in "$@"; do settings+=(--set "$setting"); done
+  "$tofmap" evaluate "$sequence" --out "$work/result" --quiet --set evaluation.methods="joint none" \
+    --set pictures.frames=0 "${settings[@]}" >&2
+  python3 - "$work/result/report.json" <<'PYTHON'
+import json
+import sys
+
+with open(sys.argv[1], encoding="utf-8") as file:
+    trajectory = json.load(file)["trajectory"]
+cells = []
+for method in ("joint", "none"):
+    error = trajectory.get(method, {}).get("ate_rmse_m")
+    cells.append("lost" if error is None else f"{error:.4f}" if error < 0.1 else f"{error:.2f}")
+print(" / ".join(cells), end="")
+PYTHON
+}
+
+line() {  # LABEL [SETTING…]: a line of the table
+  printf '| %s |' "$1"
+  shift
+  for recording in "${recordings[@]}"; do printf ' %s |' "$(errors "$recording" "$@")"; done
+  printf '\n'
+}
+
+printf '| ATE, m, unwrapped / wrapped |'
+for recording in "${recordings[@]}"; do printf ' %s |' "$(basename "$recording")"; done
+printf '\n|---|'
+for _ in "${recordings[@]}"; do printf -- '---|'; done
+printf '\n'
+line "ours, loops closed"
+line "ours, loops open" loops.close=false
+line "ours, frame to frame" "${chain[@]}"
+line "PCL's GICP against keyframes" registration.method=pcl_gicp loops.close=false
+line "PCL's GICP frame to frame" registration.method=pcl_gicp "${chain[@]}"
+line "PCL's ICP against keyframes" registration.method=pcl_icp loops.close=false
+line "PCL's ICP frame to frame" registration.method=pcl_icp "${chain[@]}"

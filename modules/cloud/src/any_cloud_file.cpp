@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "any_cloud_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <fstream>
+
+#include <pcl/console/print.h>
+#include <pcl/io/pcd_io.h>
+#include <pcl/io/ply_io.h>
+#include <pcl/point_types.h>
+#include <vtkDataSetReader.h>
+#include <vtkNew.h>
+#include <vtkObject.h>
+#include <vtkPointSet.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkXMLPolyDataReader.h>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Three doubles a point.
+pcl::PCLPointCloud2 cloud_of(vtkPoints* points) {
+  pcl::PCLPointCloud2 cloud;
+  const vtkIdType count = points == nullptr ? 0 : points->GetNumberOfPoints();
+  for (int axis = 0; axis < 3; ++axis) {
+    pcl::PCLPointField field;
+    field.name = std::string(1, static_cast<char>('x' + axis));
+    field.offset = static_cast<std::uint32_t>(axis * sizeof(double));
+    field.datatype = pcl::PCLPointField::FLOAT64;
+    field.count = 1;
+    cloud.fields.push_back(field);
+  }
+  cloud.point_step = 3 * sizeof(double);
+  cloud.height = 1;
+  cloud.width = static_cast<std::uint32_t>(count);
+  cloud.row_step = cloud.width * cloud.point_step;
+  cloud.data.resize(static_cast<std::size_t>(count) * cloud.point_step);
+  for (vtkIdType i = 0; i < count; ++i) {
+    std::array<double, 3> at{};
+    points->GetPoint(i, at.data());
+    std::memcpy(cloud.data.data() + static_cast<std::size_t>(i) * cloud.point_step, at.data(),
+                cloud.point_step);
+  }
+  return cloud;
+}
+
+template <class Reader>
+pcl::PCLPointCloud2 read_with(const std::filesystem::path& file) {
+  vtkObject::GlobalWarningDisplayOff();  // callers get errors instead
+  vtkNew<Reader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  auto* points = vtkPointSet::SafeDownCast(reader->GetOutput());
+  return cloud_of(points == nullptr ? nullptr : points->GetPoints());
+}
+
+constexpr bool with_camera = false;
+
+bool is_pcd(const std::filesystem::path& file) { return file.extension() == ".pcd"; }
+
+bool write_points(const std::filesystem::path& file, const pcl::PCLPointCloud2& cloud) {
+  constexpr bool binary = true;
+  try {
+    if (is_pcd(file)) return pcl::PCDWriter().writeBinary(file.string(), cloud) == 0;
+    return pcl::PLYWriter().write(file.string(), cloud, Eigen::Vector4f::Zero(),
+                                  Eigen::Quaternionf::Identity(), binary, with_camera) == 0;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+/// PCL's writers refuse a cloud without points, though its header is a whole file.
+bool write_header(const std::filesystem::path& file, const pcl::PCLPointCloud2& cloud) {
+  const Eigen::Vector4f origin = Eigen::Vector4f::Zero();
+  const Eigen::Quaternionf upright = Eigen::Quaternionf::Identity();
+  std::ofstream out(file);
+  if (is_pcd(file)) {
+    out << pcl::PCDWriter().generateHeaderBinary(cloud, origin, upright) << "DATA binary\n";
+  } else {
+    out << pcl::PLYWriter().generateHeaderBinary(cloud, origin, upright, 0, with_camera);
+  }
+  return static_cast<bool>(out.flush());
+}
+
+}  // namespace
+
+QuietPcl::QuietPcl() : level_(pcl::console::getVerbosityLevel()) {
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+}
+
+QuietPcl::~QuietPcl() {
+  pcl::console::setVerbosityLevel(static_cast<pcl::console::VERBOSITY_LEVEL>(level_));
+}
+
+const pcl::PCLPointField* find_field(const pcl::PCLPointCloud2& cloud, const std::string& name) {
+  const auto found = std::ranges::find(cloud.fields, name, &pcl::PCLPointField::name);
+  return found == cloud.fields.end() ? nullptr : &*found;
+}
+
+AnyCloud read_any_cloud(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) {
+    throw InputError(file.string() + ": no such file");
+  }
+  const QuietPcl quiet;
+  const std::string kind = file.extension().string();
+  AnyCloud cloud;
+  Eigen::Vector4f origin = Eigen::Vector4f::Zero();
+  Eigen::Quaternionf orientation = Eigen::Quaternionf::Identity();
+  int version = 0;
+  int status = 0;
+  if (kind == ".ply") {
+    status = pcl::PLYReader().read(file.string(), cloud.data, origin, orientation, version);
+  } else if (kind == ".pcd") {
+    status = pcl::PCDReader().read(file.string(), cloud.data, origin, orientation, version);
+  } else if (kind == ".vtk") {
+    cloud.data = read_with<vtkDataSetReader>(file);
+  } else if (kind == ".vtp") {
+    cloud.data = read_with<vtkXMLPolyDataReader>(file);
+  } else {
+    throw InputError(file.string() +
+                     ": none of .ply, .pcd, .vtk and .vtp; convert it to one of them");
+  }
+  const bool has_points = find_field(cloud.data, "x") != nullptr &&
+                          find_field(cloud.data, "y") != nullptr &&
+                          find_field(cloud.data, "z") != nullptr;
+  if (status < 0 || !has_points) {
+    throw InputError(file.string() + ": no point cloud could be read from it; is it whole?");
+  }
+  cloud.viewpoint = origin.head<3>().cast<double>();
+  return cloud;
+}
+
+void write_any_cloud(const std::filesystem::path& file, const pcl::PCLPointCloud2& cloud,
+                     std::size_t bytes_per_point) {
+  const QuietPcl quiet;
+  const std::size_t points = std::size_t{cloud.width} * cloud.height;
+  const bool written = points == 0 ? write_header(file, cloud) : write_points(file, cloud);
+  // PCL does not notice a full disk: the file then is shorter than its points.
+  std::error_code missing;
+  const auto bytes = std::filesystem::file_size(file, missing);
+  if (!written || missing || bytes < points * bytes_per_point) {
+    throw InputError(file.string() + ": cannot be written whole; is the disk full?");
+  }
+}
+
+}  // namespace tofmap

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/mapping/keyframe_graph.hpp"
+
+#include <algorithm>
+
+namespace tofmap {
+namespace {
+
+/// Errors add up from tie to tie: so many are hardly noticed.
+constexpr int max_ties = 5;
+
+}  // namespace
+
+void KeyframeGraph::add(Keyframe keyframe) {
+  keyframes_.push_back(std::move(keyframe));
+  tied_.emplace_back();
+}
+
+void KeyframeGraph::tie(int a, int b) {
+  for (const auto& [one, other] : {std::pair(a, b), std::pair(b, a)}) {
+    std::vector<int>& ties = tied_[static_cast<std::size_t>(one)];
+    if (std::ranges::find(ties, other) == ties.end()) ties.push_back(other);
+  }
+}
+
+void KeyframeGraph::place(int id, const Pose& world_from_camera) {
+  keyframes_[static_cast<std::size_t>(id)].world_from_camera = world_from_camera;
+}
+
+std::vector<const Keyframe*> KeyframeGraph::around(int id, const Pose& pose, int count,
+                                                   double step_m, double turn_rad) const {
+  const auto steps_away = [&](int other) {
+    const Pose& there = (*this)[other].world_from_camera;
+    return std::max((there.translation() - pose.translation()).norm() / step_m,
+                    rotation_angle_rad(there, pose) / turn_rad);
+  };
+  std::vector<int> ids = within_reach(id);
+  // Of equally near ones the recent are taken.
+  std::ranges::sort(ids, std::ranges::greater());
+  std::ranges::stable_sort(ids, std::ranges::less(), steps_away);
+  if (static_cast<int>(ids.size()) > count - 1) ids.resize(static_cast<std::size_t>(count - 1));
+  std::ranges::sort(ids);
+  ids.push_back(id);
+  std::vector<const Keyframe*> keyframes;
+  for (const int other : ids) keyframes.push_back(&(*this)[other]);
+  return keyframes;
+}
+
+std::vector<int> KeyframeGraph::within_reach(int id) const {
+  std::vector<int> reached{id};
+  std::size_t border = 0;
+  for (int ties = 0; ties < max_ties; ++ties) {
+    const std::size_t end = reached.size();
+    for (; border < end; ++border) {
+      for (const int other : tied_[static_cast<std::size_t>(reached[border])]) {
+        if (std::ranges::find(reached, other) == reached.end()) reached.push_back(other);
+      }
+    }
+  }
+  reached.erase(reached.begin());
+  return reached;
+}
+
+}  // namespace tofmap

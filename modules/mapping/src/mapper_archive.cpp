@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// How a RoomMapper is put aside and taken up again.
+
+#include "tofmap/mapping/archive.hpp"
+#include "tofmap/mapping/room_mapper.hpp"
+
+#include <istream>
+#include <ostream>
+
+#include <boost/archive/binary_iarchive.hpp>
+#include <boost/archive/binary_oarchive.hpp>
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/binary_object.hpp>
+#include <boost/serialization/split_free.hpp>
+#include <boost/serialization/unordered_map.hpp>
+
+#include <tofmap/core/error.hpp>
+
+namespace boost::serialization {
+
+template <class Archive>
+void save(Archive& archive, const tofmap::SurfaceCloud& cloud, unsigned) {
+  archive << cloud.width << cloud.height;
+  archive << make_binary_object(cloud.points.data(),
+                                cloud.points.size() * sizeof(tofmap::SurfacePoint));
+}
+
+template <class Archive>
+void load(Archive& archive, tofmap::SurfaceCloud& cloud, unsigned) {
+  archive >> cloud.width >> cloud.height;
+  cloud.points.resize(std::size_t{cloud.width} * cloud.height);
+  cloud.is_dense = false;
+  archive >>
+      make_binary_object(cloud.points.data(), cloud.points.size() * sizeof(tofmap::SurfacePoint));
+}
+
+template <class Archive>
+void serialize(Archive& archive, tofmap::SurfaceCloud& cloud, unsigned version) {
+  split_free(archive, cloud, version);
+}
+
+template <class Archive>
+void save(Archive& archive, const tofmap::Keyframe& keyframe, unsigned) {
+  archive << keyframe.id << keyframe.frame_index << keyframe.timestamp_s;
+  archive << keyframe.world_from_camera << *keyframe.cloud;
+}
+
+template <class Archive>
+void load(Archive& archive, tofmap::Keyframe& keyframe, unsigned) {
+  archive >> keyframe.id >> keyframe.frame_index >> keyframe.timestamp_s;
+  auto cloud = std::make_shared<tofmap::SurfaceCloud>();
+  archive >> keyframe.world_from_camera >> *cloud;
+  keyframe.cloud = std::move(cloud);
+}
+
+template <class Archive>
+void serialize(Archive& archive, tofmap::Keyframe& keyframe, unsigned version) {
+  split_free(archive, keyframe, version);
+}
+
+template <class Archive>
+void serialize(Archive& archive, tofmap::Loop& loop, unsigned) {
+  archive& loop.from_frame& loop.to_frame& loop.error_m& loop.deviations& loop.is_used;
+}
+
+}  // namespace boost::serialization
+
+namespace tofmap {
+
+template <class Archive>
+void KeyframeGraph::serialize(Archive& archive, unsigned) {
+  archive& keyframes_& tied_;
+}
+
+template <class Archive>
+void Odometry::serialize(Archive& archive, unsigned) {
+  archive& last_& before_last_& frames_since_placed_;
+}
+
+template <class Archive>
+void SurfaceMap::Voxel::serialize(Archive& archive, unsigned) {
+  archive& weighted_point_m& weighted_normal& weight& confidence& observations;
+}
+
+template <class Archive>
+void SurfaceMap::serialize(Archive& archive, unsigned) {
+  archive& voxels_;
+}
+
+template <class Archive>
+void RoomMapper::PlacedFrame::serialize(Archive& archive, unsigned) {
+  archive& timestamp_s& keyframe& keyframe_from_camera;
+}
+
+template <class Archive>
+void RoomMapper::serialize(Archive& archive, unsigned) {
+  archive& odometry_& keyframes_& path_m_& frames_& edges_& loops_;
+  archive& unfitted_loops_& last_fit_& current_& lost_frames_& searched_;
+}
+
+void RoomMapper::save(std::ostream& out) const {
+  boost::archive::binary_oarchive archive(out);
+  archive << *this;
+  const std::size_t parts = parts_.size();
+  archive << parts << part_of_;
+  for (const Part& part : parts_) archive << part.anchor << part.surface;
+}
+
+void RoomMapper::load(std::istream& in) {
+  boost::archive::binary_iarchive archive(in);
+  archive >> *this;
+  std::size_t parts = 0;
+  archive >> parts >> part_of_;
+  parts_.assign(parts, {0, SurfaceMap(surface_options_)});
+  for (Part& part : parts_) archive >> part.anchor >> part.surface;
+  descriptors_.clear();
+  for (const Keyframe& keyframe : keyframes_.all()) descriptors_.emplace_back(*keyframe.cloud);
+}
+
+}  // namespace tofmap

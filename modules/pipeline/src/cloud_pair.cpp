@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "cloud_pair.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tofmap {
+namespace {
+
+/// Correspondences reach that far: on the coarsest level features may be off by more than a voxel.
+constexpr double coarse_gap_voxels = 2.5;
+constexpr double fine_gap_voxels = 2;
+
+/// Of the source that take part: enough to tell guesses apart, and to average noise.
+constexpr std::size_t coarse_points = 1500;
+constexpr std::size_t fine_points = 15000;
+
+/// Poses that differ by less than this, at the cloud's edge, are the same.
+constexpr double same_pose_voxels = 4;
+
+/// So far in front of a surface a point is surely not on it.
+constexpr double contradiction_slack_voxels = 1;
+
+/// Moving things and sensors' errors are seen through as well, but not by that much.
+constexpr double max_contradiction = 0.023;
+
+/// Parts of surfaces that are little fit each other more easily by chance than whole clouds do: so
+/// much larger a share of them must lie on the surface.
+constexpr double more_without_overlap = 0.15;
+
+/// Above that the next best pose is nearly as good as the best.
+constexpr double max_rival = 0.8;
+
+/// That many matches cannot agree by chance.
+constexpr int least_support = 15;
+
+constexpr double contradicted_quality = 0.01;
+
+/// A pose with what speaks for it.
+struct Candidate {
+  CloudIcpResult icp;
+  int support = 0;
+  CloudFit fit;
+  double seen_through = 0;
+
+  /// Of poses that sensors contradict only if there are no others.
+  double quality() const {
+    const double share = fit.overlap * fit.inlier_share;
+    return seen_through > max_contradiction ? contradicted_quality * share : share;
+  }
+};
+
+/// How well two clouds fit, as seen from the one more of which is covered: a small cloud within a
+/// large one fits well.
+CloudFit mutual_fit(const OrientedCloud& source, const OrientedCloud& target, const Pose& pose) {
+  const CloudFit there = measure_fit(source, target, pose);
+  const CloudFit back = measure_fit(target, source, pose.inverse());
+  return there.overlap >= back.overlap ? there : back;
+}
+
+double radius_m(const OrientedCloud& cloud) {
+  double squared = 0;
+  for (const Eigen::Vector3f& point : cloud.points_m) squared += point.squaredNorm();
+  return std::sqrt(squared / static_cast<double>(cloud.size()));
+}
+
+bool is_same_pose(const Pose& a, const Pose& b, double lever_m, double tolerance_m) {
+  return (a.translation() - b.translation()).norm() + lever_m * rotation_angle_rad(a, b) <
+         tolerance_m;
+}
+
+/// The larger share of either cloud that the other's sensor looked through; 0 if no place of a
+/// sensor is known.
+double contradiction(const LevelledCloud& source, const LevelledCloud& target, const Pose& pose) {
+  const double slack_m = contradiction_slack_voxels * target.levels.front().voxel_m;
+  double share = 0;
+  if (target.view) {
+    share = seen_through_share(*target.view, source.levels.front(), pose, slack_m);
+  }
+  if (source.view) {
+    share = std::max(
+        share, seen_through_share(*source.view, target.levels.front(), pose.inverse(), slack_m));
+  }
+  return share;
+}
+
+/// The guesses refined on the coarsest level, the best first, no two the same.
+std::vector<Candidate> refine_guesses(const LevelledCloud& source_cloud,
+                                      const LevelledCloud& target_cloud,
+                                      const std::vector<AlignmentGuess>& guesses,
+                                      CloudMethod method) {
+  const OrientedCloud& source = source_cloud.levels.front();
+  const OrientedCloud& target = target_cloud.levels.front();
+  const double lever_m = radius_m(source);
+  std::vector<Candidate> all;
+  for (const AlignmentGuess& guess : guesses) {
+    Candidate candidate;
+    candidate.icp = align_clouds(source, target, guess.target_from_source,
+                                 {method, coarse_gap_voxels * target.voxel_m, coarse_points});
+    candidate.support = guess.support;
+    candidate.fit = mutual_fit(source, target, candidate.icp.target_from_source);
+    candidate.seen_through =
+        contradiction(source_cloud, target_cloud, candidate.icp.target_from_source);
+    all.push_back(candidate);
+  }
+  std::ranges::stable_sort(all, std::ranges::greater(), &Candidate::quality);
+  std::vector<Candidate> distinct;
+  for (const Candidate& candidate : all) {
+    const bool is_known = std::ranges::any_of(distinct, [&](const Candidate& other) {
+      return is_same_pose(candidate.icp.target_from_source, other.icp.target_from_source, lever_m,
+                          same_pose_voxels * target.voxel_m);
+    });
+    if (!is_known) distinct.push_back(candidate);
+  }
+  return distinct;
+}
+
+PairVerdict verdict_of(const CloudPair& pair, const CloudRegistrationOptions& options) {
+  if (pair.support < least_support) return PairVerdict::few_matches;
+  if (pair.fit.overlap < options.min_overlap) return PairVerdict::low_overlap;
+  const double least = options.min_inlier_share + more_without_overlap * (1 - pair.fit.overlap);
+  if (pair.fit.inlier_share < least) return PairVerdict::low_inliers;
+  if (pair.seen_through > max_contradiction) return PairVerdict::contradicted;
+  if (pair.direction_share < options.min_direction_share) return PairVerdict::degenerate;
+  if (pair.rival > max_rival) return PairVerdict::ambiguous;
+  return PairVerdict::registered;
+}
+
+}  // namespace
+
+CloudPair align_pair(const LevelledCloud& source, const LevelledCloud& target,
+                     const CloudRegistrationOptions& options) {
+  const CloudMethod method = cloud_method(options.method);
+  CloudPair pair;
+  const auto matches = match_features(source.features, target.features);
+  pair.matches = static_cast<int>(matches.size());
+  const auto guesses = guess_alignments(source.levels.front(), target.levels.front(), matches);
+  if (guesses.empty()) return pair;
+  const std::vector<Candidate> candidates = refine_guesses(source, target, guesses, method);
+  Candidate best = candidates.front();
+  if (candidates.size() > 1) pair.rival = candidates[1].quality() / best.quality();
+  const std::size_t levels = std::min(source.levels.size(), target.levels.size());
+  for (std::size_t level = 1; level < levels; ++level) {
+    best.icp = align_clouds(source.levels[level], target.levels[level], best.icp.target_from_source,
+                            {method, fine_gap_voxels * target.levels[level].voxel_m, fine_points});
+  }
+  pair.support = best.support;
+  // Means over large voxels have little noise, so whether surfaces coincide is judged by them.
+  pair.fit = mutual_fit(source.levels.front(), target.levels.front(), best.icp.target_from_source);
+  pair.seen_through = contradiction(source, target, best.icp.target_from_source);
+  pair.direction_share = best.icp.direction_shares.minCoeff();
+  pair.covariance = best.icp.covariance;
+  pair.target_from_source = best.icp.target_from_source;
+  pair.verdict = verdict_of(pair, options);
+  return pair;
+}
+
+}  // namespace tofmap

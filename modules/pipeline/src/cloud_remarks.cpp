@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "cloud_remarks.hpp"
+
+#include <sstream>
+#include <utility>
+
+namespace tofmap {
+namespace {
+
+std::string rounded(double value) {
+  constexpr int digits = 4;
+  std::ostringstream text;
+  text.precision(digits);
+  text << value;
+  return text.str();
+}
+
+std::pair<bool, int> nearness(const CloudPair& pair) {
+  return {pair.verdict == PairVerdict::registered, pair.support};
+}
+
+}  // namespace
+
+std::string why_not_placed(int cloud, const std::vector<CloudPair>& pairs,
+                           std::span<const std::string> names) {
+  const CloudPair* best = nullptr;
+  for (const CloudPair& pair : pairs) {
+    if (pair.source != cloud && pair.target != cloud) continue;
+    if (best == nullptr || nearness(pair) > nearness(*best)) best = &pair;
+  }
+  if (best == nullptr) return {};
+  const int other = best->source == cloud ? best->target : best->source;
+  const std::string& name = names[static_cast<std::size_t>(other)];
+  if (best->verdict == PairVerdict::registered) {
+    return "fits " + name + ", but neither fits the others";
+  }
+  return "fits no other cloud; nearest to it came " + name + " (" + verdict_name(best->verdict) +
+         ")";
+}
+
+std::string odd_size(double ratio) {
+  return "its size differs from that of the others by a factor of " + rounded(ratio) +
+         ", and it fits none of them in any common unit; is it of the same place, in metres?";
+}
+
+std::string other_unit(const LengthUnit& unit, const std::string& name_of_fitting) {
+  return "its unit seems to be another, " + unit.name + ": scaled by " + rounded(unit.length) +
+         " it fits " + name_of_fitting;
+}
+
+}  // namespace tofmap

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "levelled_cloud.hpp"
+
+#include <tofmap/cloud/downsample.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr std::size_t feature_points = 5000;
+constexpr int level_count = 3;
+
+/// Finer voxels that hold hardly more points than the coarser ones show nothing new.
+constexpr double least_growth = 1.2;
+
+std::vector<Eigen::Vector3d> centred(const PointSet& cloud, double unit_m,
+                                     const Eigen::Vector3d& centre_m) {
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(cloud.points.size());
+  for (const Eigen::Vector3d& point : cloud.points) points.push_back(unit_m * point - centre_m);
+  return points;
+}
+
+Eigen::Vector3d mean(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) sum += point;
+  return sum / static_cast<double>(points.size());
+}
+
+/// Where the sensor stood: as the file says, or the origin of the cloud's frame if all could have
+/// been seen from there.
+std::optional<Eigen::Vector3d> viewpoint(const PointSet& cloud, double unit_m,
+                                         const Eigen::Vector3d& centre_m,
+                                         const std::vector<Eigen::Vector3d>& points_m) {
+  if (cloud.viewpoint) return unit_m * *cloud.viewpoint - centre_m;
+  const Eigen::Vector3d origin_m = -centre_m;
+  std::vector<Eigen::Vector3f> points;
+  for (const Eigen::Vector3d& point : points_m) points.push_back(point.cast<float>());
+  if (!may_be_viewpoint(points, origin_m)) return std::nullopt;
+  return origin_m;
+}
+
+}  // namespace
+
+double feature_voxel(const PointSet& cloud) {
+  return voxel_for_count(cloud.points, feature_points);
+}
+
+std::optional<LevelledCloud> make_levels(const PointSet& cloud, double unit_m, double voxel_m) {
+  LevelledCloud out;
+  out.centre_m = unit_m * mean(cloud.points);
+  const std::vector<Eigen::Vector3d> points = centred(cloud, unit_m, out.centre_m);
+  const std::vector<Eigen::Vector3d> coarse = downsample(points, voxel_m);
+  const auto stood_at = viewpoint(cloud, unit_m, out.centre_m, coarse);
+  const Eigen::Vector3d from = stood_at.value_or(mean(coarse));
+  const auto coarsest = orient(coarse, voxel_m, from);
+  if (!coarsest) return std::nullopt;
+  out.levels.push_back(*coarsest);
+  std::size_t count = coarse.size();
+  for (int level = 1; level < level_count; ++level) {
+    voxel_m /= 2;
+    const std::vector<Eigen::Vector3d> finer = downsample(points, voxel_m);
+    if (static_cast<double>(finer.size()) < least_growth * static_cast<double>(count)) break;
+    const auto level_cloud = orient(finer, voxel_m, from);
+    if (!level_cloud) break;
+    out.levels.push_back(*level_cloud);
+    count = finer.size();
+  }
+  if (stood_at) out.view.emplace(out.levels.back().points_m, *stood_at);
+  out.features = point_features(out.levels.front());
+  return out;
+}
+
+}  // namespace tofmap

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <tofmap/core/trajectory.hpp>
+
+namespace tofmap {
+
+struct PclAlignment {
+  Pose target_from_source = Pose::Identity();
+  bool converged = false;
+};
+
+/// PCL's ICP or generalised ICP, as it comes.
+PclAlignment align_with_pcl(const std::vector<Eigen::Vector3f>& source_m,
+                            const std::vector<Eigen::Vector3f>& target_m,
+                            const Pose& target_from_source, double max_gap_m, bool generalised,
+                            int max_iterations);
+
+}  // namespace tofmap

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "program.hpp"
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <support/scans.hpp>
+
+#include <tofmap/acquisition/scenes.hpp>
+#include <tofmap/cloud/point_file.hpp>
+
+namespace tofmap::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// Two scans of a room, one of another, as files.
+class Register : public testing::Test {
+ protected:
+  void SetUp() override {
+    write("a.ply", scan_of("room", 0));
+    write("b.ply", scan_of("room", 1));
+    write("elsewhere.ply", scan_of("hall", 0));
+  }
+
+  static PointSet scan_of(const std::string& scene_name, double at) {
+    const Scene scene = make_scene(scene_name);
+    return scan(RayScene(scene.surface), scene.path.pose_at(at));
+  }
+
+  void write(const std::string& name, const PointSet& points) const {
+    write_labelled_points(path(name), {points.points});
+  }
+
+  std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
+
+  Finished run(const std::vector<std::string>& names, const std::vector<std::string>& more = {},
+               const RunLimits& limits = {}) const {
+    std::vector<std::string> arguments{"register"};
+    for (const std::string& name : names) arguments.push_back(path(name));
+    arguments.insert(arguments.end(), {"--out", out_.string()});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments, limits);
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path out_ = folder_.path() / "out";
+};
+
+TEST_F(Register, PlacesWhatBelongsTogetherAndNamesWhatDoesNot) {
+  const Finished finished = run({"a.ply", "elsewhere.ply", "b.ply"});
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_THAT(finished.out, HasSubstr("2 of 3 clouds placed"));
+  EXPECT_THAT(finished.err, HasSubstr("elsewhere.ply: not placed: fits no other cloud"));
+  EXPECT_EQ(names_in(out_), (std::vector<std::string>{"merged.ply", "options.yaml", "report.json",
+                                                      "transforms.json"}));
+  const nlohmann::json clouds = read_json(out_ / "transforms.json")["clouds"];
+  ASSERT_EQ(clouds.size(), 3U);
+  EXPECT_EQ(clouds[0]["path"], path("a.ply").string());
+  const std::vector<double> transform = clouds[0]["transform"];
+  EXPECT_EQ(transform, (std::vector<double>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}));
+  EXPECT_EQ(clouds[0]["converged"], true);
+  EXPECT_EQ(clouds[0]["tied_to"], nlohmann::json::array({path("b.ply").string()}));
+  EXPECT_GT(clouds[2]["inlier_share"], 0.7);
+  EXPECT_LT(clouds[2]["rmse_m"], 0.03);
+  EXPECT_TRUE(clouds[1]["transform"].is_null());
+  EXPECT_EQ(clouds[1]["converged"], false);
+  const std::size_t merged = read_points(out_ / "merged.ply").points.size();
+  EXPECT_EQ(merged,
+            read_points(path("a.ply")).points.size() + read_points(path("b.ply")).points.size());
+  EXPECT_EQ(read_json(out_ / "report.json")["pairs"].size(), 3U);
+}
+
+TEST_F(Register, EndsWithBadInputIfNoTwoFitAndSaysHowNearTheyCame) {
+  const Finished finished = run({"a.ply", "elsewhere.ply"});
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, HasSubstr("no two of the clouds fit"));
+  EXPECT_NE(read_json(out_ / "report.json")["pairs"][0]["verdict"], "registered");
+}
+
+TEST_F(Register, NamesFilesThatAreNoClouds) {
+  std::ofstream(path("text.ply")) << "no cloud\n";
+  for (const std::string name : {"text.ply", "missing.pcd", "a.xyz"}) {
+    const Finished finished = run({"a.ply", name});
+    EXPECT_EQ(finished.status, 3) << name;
+    EXPECT_THAT(finished.err, HasSubstr(name));
+    EXPECT_FALSE(std::filesystem::exists(out_));
+  }
+}
+
+TEST_F(Register, WantsTwoCloudsAndKnownMethods) {
+  EXPECT_EQ(run({"a.ply"}).status, 2);
+  const Finished finished = run({"a.ply", "b.ply"}, {"--set", "register.method=ndt"});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_THAT(finished.err, HasSubstr("generalised"));
+}
+
+TEST_F(Register, LeavesNoHalfResultOnAFullDisk) {
+  const Finished finished = run({"a.ply", "b.ply"}, {}, {.max_file_bytes = 50000});
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, HasSubstr("is the disk full?"));
+  EXPECT_FALSE(std::filesystem::exists(out_));
+}
+
+}  // namespace
+}  // namespace tofmap::test

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "support/box_ranges.hpp"
+
+#include <gtest/gtest.h>
+
+#include <tofmap/mapping/keyframe_graph.hpp>
+
+namespace tofmap {
+namespace {
+
+Pose at(double x_m) { return test::moved_by({0, 0, 0}, {x_m, 0, 0}); }
+
+/// A camera that goes ten metres along x and back again, a keyframe a metre, each tied to the one
+/// before it.
+KeyframeGraph there_and_back() {
+  KeyframeGraph graph;
+  for (int id = 0; id <= 20; ++id) {
+    graph.add({id, id, 0.1 * id, at(id <= 10 ? id : 20 - id), nullptr});
+    if (id > 0) graph.tie(id - 1, id);
+  }
+  return graph;
+}
+
+std::vector<int> ids(const std::vector<const Keyframe*>& keyframes) {
+  std::vector<int> all;
+  for (const Keyframe* keyframe : keyframes) all.push_back(keyframe->id);
+  return all;
+}
+
+TEST(KeyframeGraph, ReachesNoFurtherThanATrustedChain) {
+  const KeyframeGraph graph = there_and_back();
+  // Number 0 is where number 20 is, but twenty ties away.
+  EXPECT_EQ(ids(graph.around(20, at(0), 5, 1, 1)), (std::vector<int>{16, 17, 18, 19, 20}));
+}
+
+TEST(KeyframeGraph, TakesTheNearestOnceTheyAreTied) {
+  KeyframeGraph graph = there_and_back();
+  graph.tie(0, 20);
+  EXPECT_EQ(ids(graph.around(20, at(0), 5, 1, 1)), (std::vector<int>{0, 1, 18, 19, 20}));
+}
+
+TEST(KeyframeGraph, MeasuresTurnsAsWell) {
+  KeyframeGraph graph;
+  graph.add({0, 0, 0, at(0), nullptr});
+  graph.add({1, 1, 0.1, test::moved_by({0, 1.5, 0}, {0, 0, 0}), nullptr});
+  graph.add({2, 2, 0.2, at(1), nullptr});
+  graph.tie(0, 1);
+  graph.tie(0, 2);
+  // A metre is two steps, 1.5 radians are three turns.
+  EXPECT_EQ(ids(graph.around(0, at(0), 2, 0.5, 0.5)), (std::vector<int>{2, 0}));
+}
+
+TEST(KeyframeGraph, HoldsAtLeastTheKeyframeItself) {
+  KeyframeGraph graph;
+  graph.add({0, 0, 0, at(3), nullptr});
+  EXPECT_EQ(ids(graph.around(0, at(0), 1, 1, 1)), (std::vector<int>{0}));
+  graph.place(0, at(4));
+  EXPECT_EQ(graph[0].world_from_camera.translation().x(), 4);
+}
+
+}  // namespace
+}  // namespace tofmap
