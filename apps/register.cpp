@@ -44,15 +44,20 @@ Input read_clouds(const std::vector<std::filesystem::path>& files) {
   return input;
 }
 
-/// Row by row, the unit's scale included.
-ordered_json matrix_json(const PlacedCloud& cloud) {
+/// Row by row.
+ordered_json matrix_json(const Eigen::Matrix4d& matrix) {
   ordered_json numbers = ordered_json::array();
-  Eigen::Matrix4d matrix = cloud.common_from_cloud.matrix();
-  matrix.topLeftCorner<3, 3>() *= cloud.unit_m;
   for (int row = 0; row < 4; ++row) {
     for (int col = 0; col < 4; ++col) numbers.push_back(matrix(row, col));
   }
   return numbers;
+}
+
+/// With the scale of the cloud's unit.
+Eigen::Matrix4d scaled_transform(const PlacedCloud& cloud) {
+  Eigen::Matrix4d matrix = cloud.common_from_cloud.matrix();
+  matrix.topLeftCorner<3, 3>() *= cloud.unit_m;
+  return matrix;
 }
 
 ordered_json transforms_json(const Input& input, const CloudRegistration& registration) {
@@ -61,7 +66,8 @@ ordered_json transforms_json(const Input& input, const CloudRegistration& regist
     const PlacedCloud& cloud = registration.clouds[i];
     ordered_json one;
     one["path"] = input.names[i];
-    one["transform"] = cloud.is_placed ? matrix_json(cloud) : ordered_json(nullptr);
+    one["transform"] =
+        cloud.is_placed ? matrix_json(scaled_transform(cloud)) : ordered_json(nullptr);
     one["inlier_share"] = cloud.inlier_share;
     one["rmse_m"] = cloud.is_placed ? ordered_json(cloud.rmse_m) : ordered_json(nullptr);
     one["converged"] = cloud.is_placed;
@@ -90,12 +96,7 @@ ordered_json pair_json(const Input& input, const CloudPair& pair) {
   json["rival"] = pair.rival;
   json["direction_share"] = pair.direction_share;
   json["deviations"] = pair.deviations;
-  json["target_from_source"] = ordered_json::array();
-  for (int row = 0; row < 4; ++row) {
-    for (int col = 0; col < 4; ++col) {
-      json["target_from_source"].push_back(pair.target_from_source.matrix()(row, col));
-    }
-  }
+  json["target_from_source"] = matrix_json(pair.target_from_source.matrix());
   return json;
 }
 

@@ -32,13 +32,13 @@ std::vector<int> ids(const std::vector<const Keyframe*>& keyframes) {
 TEST(KeyframeGraph, ReachesNoFurtherThanATrustedChain) {
   const KeyframeGraph graph = there_and_back();
   // Number 0 is where number 20 is, but twenty ties away.
-  EXPECT_EQ(ids(graph.around(20, at(0), 5, 1, 1)), (std::vector<int>{16, 17, 18, 19, 20}));
+  EXPECT_EQ(ids(graph.around(20, at(0), 5, {1, 1})), (std::vector<int>{16, 17, 18, 19, 20}));
 }
 
 TEST(KeyframeGraph, TakesTheNearestOnceTheyAreTied) {
   KeyframeGraph graph = there_and_back();
   graph.tie(0, 20);
-  EXPECT_EQ(ids(graph.around(20, at(0), 5, 1, 1)), (std::vector<int>{0, 1, 18, 19, 20}));
+  EXPECT_EQ(ids(graph.around(20, at(0), 5, {1, 1})), (std::vector<int>{0, 1, 18, 19, 20}));
 }
 
 TEST(KeyframeGraph, MeasuresTurnsAsWell) {
@@ -49,13 +49,13 @@ TEST(KeyframeGraph, MeasuresTurnsAsWell) {
   graph.tie(0, 1);
   graph.tie(0, 2);
   // A metre is two steps, 1.5 radians are three turns.
-  EXPECT_EQ(ids(graph.around(0, at(0), 2, 0.5, 0.5)), (std::vector<int>{2, 0}));
+  EXPECT_EQ(ids(graph.around(0, at(0), 2, {0.5, 0.5})), (std::vector<int>{2, 0}));
 }
 
 TEST(KeyframeGraph, HoldsAtLeastTheKeyframeItself) {
   KeyframeGraph graph;
   graph.add({0, 0, 0, at(3), nullptr});
-  EXPECT_EQ(ids(graph.around(0, at(0), 1, 1, 1)), (std::vector<int>{0}));
+  EXPECT_EQ(ids(graph.around(0, at(0), 1, {1, 1})), (std::vector<int>{0}));
   graph.place(0, at(4));
   EXPECT_EQ(graph[0].world_from_camera.translation().x(), 4);
 }

@@ -61,6 +61,35 @@ pcl::PCLPointCloud2 read_with(const std::filesystem::path& file) {
   return cloud_of(points == nullptr ? nullptr : points->GetPoints());
 }
 
+template <class Number>
+double number_at(const std::uint8_t* bytes) {
+  Number value;
+  std::memcpy(&value, bytes, sizeof(value));
+  return static_cast<double>(value);
+}
+
+double value_at(const std::uint8_t* bytes, std::uint8_t datatype) {
+  using Field = pcl::PCLPointField;
+  switch (datatype) {
+    case Field::INT8:
+      return number_at<std::int8_t>(bytes);
+    case Field::UINT8:
+      return number_at<std::uint8_t>(bytes);
+    case Field::INT16:
+      return number_at<std::int16_t>(bytes);
+    case Field::UINT16:
+      return number_at<std::uint16_t>(bytes);
+    case Field::INT32:
+      return number_at<std::int32_t>(bytes);
+    case Field::UINT32:
+      return number_at<std::uint32_t>(bytes);
+    case Field::FLOAT32:
+      return number_at<float>(bytes);
+    default:
+      return number_at<double>(bytes);
+  }
+}
+
 constexpr bool with_camera = false;
 
 bool is_pcd(const std::filesystem::path& file) { return file.extension() == ".pcd"; }
@@ -102,6 +131,22 @@ QuietPcl::~QuietPcl() {
 const pcl::PCLPointField* find_field(const pcl::PCLPointCloud2& cloud, const std::string& name) {
   const auto found = std::ranges::find(cloud.fields, name, &pcl::PCLPointField::name);
   return found == cloud.fields.end() ? nullptr : &*found;
+}
+
+std::vector<Eigen::Vector3d> finite_positions(const pcl::PCLPointCloud2& cloud) {
+  const std::array<const pcl::PCLPointField*, 3> axes{
+      find_field(cloud, "x"), find_field(cloud, "y"), find_field(cloud, "z")};
+  std::vector<Eigen::Vector3d> positions;
+  const std::size_t step = cloud.point_step;
+  for (std::size_t at = 0; step > 0 && at + step <= cloud.data.size(); at += step) {
+    Eigen::Vector3d position;
+    for (int axis = 0; axis < 3; ++axis) {
+      const pcl::PCLPointField& field = *axes[static_cast<std::size_t>(axis)];
+      position[axis] = value_at(cloud.data.data() + at + field.offset, field.datatype);
+    }
+    if (position.allFinite() && !position.isZero(0)) positions.push_back(position);
+  }
+  return positions;
 }
 
 AnyCloud read_any_cloud(const std::filesystem::path& file) {

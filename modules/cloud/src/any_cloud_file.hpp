@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 #include <pcl/PCLPointCloud2.h>
@@ -31,6 +32,10 @@ struct AnyCloud {
 /// Reads a PLY, PCD or VTK (.vtk, .vtp) file. Throws InputError that names the file if it cannot be
 /// read.
 AnyCloud read_any_cloud(const std::filesystem::path& file);
+
+/// Where points are, whatever numbers they are stored as; without those that are not finite or at
+/// exactly (0, 0, 0). x, y and z must be among the fields.
+std::vector<Eigen::Vector3d> finite_positions(const pcl::PCLPointCloud2& cloud);
 
 /// Writes a binary PCD if the file is named .pcd, else a binary PLY. Throws InputError that names
 /// the file if it cannot be written whole; a point takes `bytes_per_point` there.

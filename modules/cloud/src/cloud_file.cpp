@@ -4,7 +4,6 @@
 #include "tofmap/cloud/cloud_file.hpp"
 
 #include "any_cloud_file.hpp"
-#include "tofmap/cloud/point_file.hpp"
 
 #include <limits>
 
@@ -15,10 +14,9 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// PCL converts no numbers: what is not stored as float it leaves out.
-MapCloud positions_of(const std::filesystem::path& file) {
+MapCloud map_without_normals(const std::vector<Eigen::Vector3d>& positions) {
   MapCloud map;
-  for (const Eigen::Vector3d& position : read_points(file).points) {
+  for (const Eigen::Vector3d& position : positions) {
     MapPoint point;
     point.getVector3fMap() = position.cast<float>();
     point.normal_x = point.normal_y = point.normal_z = nan;
@@ -41,7 +39,10 @@ MapCloud read_map(const std::filesystem::path& file) {
   const pcl::PCLPointCloud2 cloud = read_any_cloud(file).data;
   MapCloud map;
   if (cloud.data.empty()) return map;  // PCL would take the address of a point there is not
-  if (find_field(cloud, "x")->datatype != pcl::PCLPointField::FLOAT32) return positions_of(file);
+  // PCL converts no numbers: what is not stored as float it would leave out.
+  if (find_field(cloud, "x")->datatype != pcl::PCLPointField::FLOAT32) {
+    return map_without_normals(finite_positions(cloud));
+  }
   const QuietPcl quiet;
   pcl::fromPCLPointCloud2(cloud, map);
   for (MapPoint& point : map.points) {

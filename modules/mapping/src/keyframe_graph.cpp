@@ -13,6 +13,11 @@ constexpr int max_ties = 5;
 
 }  // namespace
 
+double KeyframeSteps::between(const Pose& a, const Pose& b) const {
+  return std::max((a.translation() - b.translation()).norm() / step_m,
+                  rotation_angle_rad(a, b) / turn_rad);
+}
+
 void KeyframeGraph::add(Keyframe keyframe) {
   keyframes_.push_back(std::move(keyframe));
   tied_.emplace_back();
@@ -30,11 +35,9 @@ void KeyframeGraph::place(int id, const Pose& world_from_camera) {
 }
 
 std::vector<const Keyframe*> KeyframeGraph::around(int id, const Pose& pose, int count,
-                                                   double step_m, double turn_rad) const {
+                                                   const KeyframeSteps& steps) const {
   const auto steps_away = [&](int other) {
-    const Pose& there = (*this)[other].world_from_camera;
-    return std::max((there.translation() - pose.translation()).norm() / step_m,
-                    rotation_angle_rad(there, pose) / turn_rad);
+    return steps.between((*this)[other].world_from_camera, pose);
   };
   std::vector<int> ids = within_reach(id);
   // Of equally near ones the recent are taken.

@@ -166,4 +166,8 @@ PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const Pos
   return result;
 }
 
+bool is_outvoted(double deviations, double kernel_width) {
+  return deviations > std::sqrt(3) * kernel_width;  // Geman and McClure's weight is 1/16 there
+}
+
 }  // namespace tofmap

@@ -28,12 +28,6 @@ constexpr double steps_on_earlier_visits = 2;
 /// other any more.
 constexpr double steps_within_part = 4;
 
-/// How far apart two cameras are, in the steps at which keyframes are taken.
-double steps_between(const Pose& a, const Pose& b, const OdometryOptions& options) {
-  return std::max((a.translation() - b.translation()).norm() / options.keyframe_step_m,
-                  rotation_angle_rad(a, b) / options.keyframe_turn_rad);
-}
-
 }  // namespace
 
 RoomMapper::RoomMapper(const CameraModel& camera, const OdometryOptions& odometry,
@@ -64,12 +58,16 @@ TrackingResult RoomMapper::track(int frame_index, double timestamp_s,
   return result;
 }
 
+KeyframeSteps RoomMapper::keyframe_steps() const {
+  return {odometry_options_.keyframe_step_m, odometry_options_.keyframe_turn_rad};
+}
+
 std::vector<const Keyframe*> RoomMapper::keyframes_around() const {
   if (frames_.empty()) return {};
   const PlacedFrame& last = frames_.back();
   const Pose pose = keyframes_[last.keyframe].world_from_camera * last.keyframe_from_camera;
   return keyframes_.around(last.keyframe, pose, odometry_options_.keyframes_around,
-                           odometry_options_.keyframe_step_m, odometry_options_.keyframe_turn_rad);
+                           keyframe_steps());
 }
 
 TrackingResult RoomMapper::find_camera(double timestamp_s, const SurfaceCloud& cloud,
@@ -156,7 +154,7 @@ MapCloud RoomMapper::surface() const {
 bool RoomMapper::wants_keyframe(const Pose& pose, std::span<const Keyframe* const> around) const {
   return std::ranges::none_of(around, [&](const Keyframe* keyframe) {
     const bool is_of_earlier_visit = keyframe->id + recent_keyframes < keyframes_.size();
-    return steps_between(keyframe->world_from_camera, pose, odometry_options_) <
+    return keyframe_steps().between(keyframe->world_from_camera, pose) <
            (is_of_earlier_visit ? steps_on_earlier_visits : 1);
   });
 }
@@ -194,8 +192,7 @@ int RoomMapper::part_for(int id, const Pose& pose, std::span<const Keyframe* con
   for (const Keyframe* keyframe : around) {
     const int part = part_of_[static_cast<std::size_t>(keyframe->id)];
     const int anchor = parts_[static_cast<std::size_t>(part)].anchor;
-    const double steps =
-        steps_between(keyframes_[anchor].world_from_camera, pose, odometry_options_);
+    const double steps = keyframe_steps().between(keyframes_[anchor].world_from_camera, pose);
     if (steps >= least_steps) continue;
     nearest = part;
     least_steps = steps;
@@ -219,8 +216,7 @@ void RoomMapper::fit() {
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     if (!edges_[i].may_be_wrong) continue;
     loop->deviations = fitted.edge_deviations[i];
-    // Geman and McClure's weight is a sixteenth there.
-    loop->is_used = loop->deviations < std::sqrt(3) * loop_options_.kernel_width;
+    loop->is_used = !is_outvoted(loop->deviations, loop_options_.kernel_width);
     // Now both ends are where the loop says, and frames may be registered against either.
     if (loop->is_used) keyframes_.tie(edges_[i].from, edges_[i].to);
     ++loop;

@@ -91,8 +91,7 @@ std::vector<Pose> fitted_poses(std::vector<Pose> poses, std::vector<CloudPair>& 
   PoseGraphResult fitted = optimise_pose_graph(std::move(poses), edges, kernel_width);
   for (std::size_t i = 0; i < used.size(); ++i) {
     used[i]->deviations = fitted.edge_deviations[i];
-    // Geman and McClure's weight is a sixteenth there.
-    if (used[i]->deviations > std::sqrt(3) * kernel_width) {
+    if (is_outvoted(used[i]->deviations, kernel_width)) {
       used[i]->verdict = PairVerdict::disagrees;
     }
   }

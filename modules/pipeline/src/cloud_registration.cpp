@@ -24,9 +24,6 @@ namespace {
 /// What registration may be off beyond its covariance, in the finest voxels.
 constexpr double slack_voxels = 0.5;
 
-/// No surface can be told from fewer.
-constexpr std::size_t least_points = 50;
-
 /// A pose between centred frames as one between the clouds' own.
 Pose between_own_frames(const Pose& target_from_source, const LevelledCloud& source,
                         const LevelledCloud& target) {
@@ -135,7 +132,7 @@ class Registration {
   void try_other_units(int i) {
     const double spacing = spacings_[static_cast<std::size_t>(i)];
     for (const LengthUnit& unit : likely_units(spacing, common_voxel())) {
-      const std::optional<LevelledCloud> scaled = levels_with_unit(i, unit.length);
+      std::optional<LevelledCloud> scaled = levels_with_unit(i, unit.length);
       if (!scaled) continue;
       for (int other = 0; other < static_cast<int>(clouds_.size()); ++other) {
         if (other == i || !levels(other) || !is_reference(other)) continue;
@@ -144,7 +141,7 @@ class Registration {
         cloud(i).remark = other_unit(unit, names_[static_cast<std::size_t>(other)]);
         if (!options_.convert_units) return;
         cloud(i).unit_m = unit.length;
-        levels(i) = scaled;
+        levels(i) = std::move(scaled);
         std::erase_if(out_.pairs, [&](const CloudPair& unscaled) {
           return unscaled.source == i || unscaled.target == i;
         });
@@ -163,7 +160,8 @@ class Registration {
     for (int i = 0; i < static_cast<int>(clouds_.size()); ++i) {
       const auto index = static_cast<std::size_t>(i);
       if (cloud(i).is_placed || !cloud(i).remark.empty()) continue;
-      if (clouds_[index].points.size() < least_points || (is_common_[index] && !levels(i))) {
+      if (clouds_[index].points.size() < least_oriented_points ||
+          (is_common_[index] && !levels(i))) {
         cloud(i).remark = "has too few points on surfaces";
       } else if (!is_common_[index]) {
         cloud(i).remark = odd_size(spacings_[index] / common_voxel());

@@ -54,17 +54,17 @@ std::optional<LevelledCloud> make_levels(const PointSet& cloud, double unit_m, d
   const std::vector<Eigen::Vector3d> coarse = downsample(points, voxel_m);
   const auto stood_at = viewpoint(cloud, unit_m, out.centre_m, coarse);
   const Eigen::Vector3d from = stood_at.value_or(mean(coarse));
-  const auto coarsest = orient(coarse, voxel_m, from);
+  auto coarsest = orient(coarse, voxel_m, from);
   if (!coarsest) return std::nullopt;
-  out.levels.push_back(*coarsest);
+  out.levels.push_back(std::move(*coarsest));
   std::size_t count = coarse.size();
   for (int level = 1; level < level_count; ++level) {
     voxel_m /= 2;
     const std::vector<Eigen::Vector3d> finer = downsample(points, voxel_m);
     if (static_cast<double>(finer.size()) < least_growth * static_cast<double>(count)) break;
-    const auto level_cloud = orient(finer, voxel_m, from);
+    auto level_cloud = orient(finer, voxel_m, from);
     if (!level_cloud) break;
-    out.levels.push_back(*level_cloud);
+    out.levels.push_back(std::move(*level_cloud));
     count = finer.size();
   }
   if (stood_at) out.view.emplace(out.levels.back().points_m, *stood_at);

@@ -3,25 +3,15 @@
 
 #include "tofmap/registration/oriented_cloud.hpp"
 
+#include "pcl_points.hpp"
+
 #include <pcl/features/normal_3d_omp.h>
 #include <pcl/kdtree/kdtree_flann.h>
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
 
 namespace tofmap {
 namespace {
 
 constexpr int normal_neighbours = 20;
-constexpr std::size_t least_points = 50;
-
-pcl::PointCloud<pcl::PointXYZ>::Ptr pcl_cloud(std::span<const Eigen::Vector3d> points_m) {
-  auto cloud = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
-  for (const Eigen::Vector3d& point : points_m) {
-    const Eigen::Vector3f at = point.cast<float>();
-    cloud->push_back({at.x(), at.y(), at.z()});
-  }
-  return cloud;
-}
 
 }  // namespace
 
@@ -30,10 +20,8 @@ struct PointSearch::Tree {
 };
 
 PointSearch::PointSearch(const std::vector<Eigen::Vector3f>& points_m) {
-  auto cloud = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
-  for (const Eigen::Vector3f& at : points_m) cloud->push_back({at.x(), at.y(), at.z()});
   auto tree = std::make_shared<Tree>();
-  tree->tree.setInputCloud(cloud);
+  tree->tree.setInputCloud(pcl_points(points_m));
   tree_ = std::move(tree);
 }
 
@@ -50,9 +38,12 @@ std::optional<PointSearch::Neighbour> PointSearch::nearest(const Eigen::Vector3f
 
 std::optional<OrientedCloud> orient(std::span<const Eigen::Vector3d> points_m, double voxel_m,
                                     const Eigen::Vector3d& viewpoint_m) {
-  const auto cloud = pcl_cloud(points_m);
+  std::vector<Eigen::Vector3f> points;
+  points.reserve(points_m.size());
+  for (const Eigen::Vector3d& point : points_m) points.push_back(point.cast<float>());
+  const auto cloud = pcl_points(points);
   pcl::PointCloud<pcl::Normal> normals;
-  if (points_m.size() >= least_points) {
+  if (points_m.size() >= least_oriented_points) {
     pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::Normal> estimation;
     estimation.setInputCloud(cloud);
     estimation.setKSearch(normal_neighbours);
@@ -65,10 +56,10 @@ std::optional<OrientedCloud> orient(std::span<const Eigen::Vector3d> points_m, d
   for (std::size_t i = 0; i < normals.size(); ++i) {
     const Eigen::Vector3f normal = normals[i].getNormalVector3fMap();
     if (!normal.allFinite() || normal.squaredNorm() < 0.5F) continue;
-    kept_points.emplace_back((*cloud)[i].getVector3fMap());
+    kept_points.push_back(points[i]);
     kept_normals.push_back(normal);
   }
-  if (kept_points.size() < least_points) return std::nullopt;
+  if (kept_points.size() < least_oriented_points) return std::nullopt;
   const PointSearch search(kept_points);
   return OrientedCloud{std::move(kept_points), std::move(kept_normals), voxel_m, search};
 }

@@ -3,8 +3,8 @@
 
 #include "pcl_alignment.hpp"
 
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
+#include "pcl_points.hpp"
+
 #include <pcl/registration/gicp.h>
 #include <pcl/registration/icp.h>
 
@@ -12,12 +12,6 @@ namespace tofmap {
 namespace {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
-
-Cloud::Ptr pcl_cloud(const std::vector<Eigen::Vector3f>& points_m) {
-  auto cloud = std::make_shared<Cloud>();
-  for (const Eigen::Vector3f& at : points_m) cloud->push_back({at.x(), at.y(), at.z()});
-  return cloud;
-}
 
 template <class Icp>
 PclAlignment run(Icp& icp, const Cloud::Ptr& source, const Cloud::Ptr& target, const Pose& initial,
@@ -43,8 +37,8 @@ PclAlignment align_with_pcl(const std::vector<Eigen::Vector3f>& source_m,
                             const std::vector<Eigen::Vector3f>& target_m,
                             const Pose& target_from_source, double max_gap_m, bool generalised,
                             int max_iterations) {
-  const Cloud::Ptr source = pcl_cloud(source_m);
-  const Cloud::Ptr target = pcl_cloud(target_m);
+  const Cloud::Ptr source = pcl_points(source_m);
+  const Cloud::Ptr target = pcl_points(target_m);
   if (generalised) {
     pcl::GeneralizedIterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ> icp;
     return run(icp, source, target, target_from_source, max_gap_m, max_iterations);

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include "pcl_points.hpp"
 #include "tofmap/registration/global_alignment.hpp"
 
 #include <algorithm>
 
 #include <pcl/features/fpfh_omp.h>
 #include <pcl/kdtree/kdtree_flann.h>
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
 
 namespace tofmap {
 namespace {
@@ -48,16 +47,12 @@ std::vector<int> most_alike(const pcl::PointCloud<Signature>& features,
 }  // namespace
 
 std::vector<PointFeature> point_features(const OrientedCloud& cloud) {
-  auto points = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
   auto normals = std::make_shared<pcl::PointCloud<pcl::Normal>>();
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Eigen::Vector3f& at = cloud.points_m[i];
-    const Eigen::Vector3f& normal = cloud.normals[i];
-    points->push_back({at.x(), at.y(), at.z()});
+  for (const Eigen::Vector3f& normal : cloud.normals) {
     normals->push_back({normal.x(), normal.y(), normal.z()});
   }
   pcl::FPFHEstimationOMP<pcl::PointXYZ, pcl::Normal, Signature> estimation;
-  estimation.setInputCloud(points);
+  estimation.setInputCloud(pcl_points(cloud.points_m));
   estimation.setInputNormals(normals);
   estimation.setRadiusSearch(radius_voxels * cloud.voxel_m);
   pcl::PointCloud<Signature> signatures;

@@ -13,6 +13,15 @@ class access;
 
 namespace tofmap {
 
+/// The steps at which keyframes are taken.
+struct KeyframeSteps {
+  double step_m = 0;
+  double turn_rad = 0;
+
+  /// How many steps apart two cameras are: by distance or by turn, the larger of both.
+  double between(const Pose& a, const Pose& b) const;
+};
+
 /// The keyframes of a run, and which of them have been registered with each other: those are where
 /// they should be relative to one another, however far the path has drifted between them.
 class KeyframeGraph {
@@ -31,10 +40,10 @@ class KeyframeGraph {
   void place(int id, const Pose& world_from_camera);
 
   /// The keyframes around a pose, at most `count`, among those that few ties lie between and `id`:
-  /// the nearest, by the larger of distance over `step_m` and turn over `turn_rad`. `id` is one of
-  /// them and comes last, the others in the order of their ids.
-  std::vector<const Keyframe*> around(int id, const Pose& pose, int count, double step_m,
-                                      double turn_rad) const;
+  /// those the fewest steps away. `id` is one of them and comes last, the others in the order of
+  /// their ids.
+  std::vector<const Keyframe*> around(int id, const Pose& pose, int count,
+                                      const KeyframeSteps& steps) const;
 
  private:
   friend class boost::serialization::access;

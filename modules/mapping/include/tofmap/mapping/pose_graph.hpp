@@ -40,4 +40,8 @@ struct PoseGraphResult {
 PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const PoseEdge> edges,
                                     double kernel_width);
 
+/// Whether an edge that may be wrong has hardly a say left with these deviations: a sixteenth of
+/// that of an edge without error, or less.
+bool is_outvoted(double deviations, double kernel_width);
+
 }  // namespace tofmap

@@ -94,6 +94,7 @@ class RoomMapper {
   TrackingResult find_camera(double timestamp_s, const SurfaceCloud& cloud,
                              std::span<const Keyframe* const> around);
   TrackingResult relocalised(double timestamp_s, const SurfaceCloud& cloud);
+  KeyframeSteps keyframe_steps() const;
   std::vector<const Keyframe*> keyframes_around() const;
   bool wants_keyframe(const Pose& pose, std::span<const Keyframe* const> around) const;
   void add_keyframe(int frame_index, double timestamp_s,

@@ -39,8 +39,12 @@ struct OrientedCloud {
   std::size_t size() const { return points_m.size(); }
 };
 
+/// No surface can be told from fewer points.
+constexpr std::size_t least_oriented_points = 50;
+
 /// Normals by the covariance of each point's 20 nearest neighbours (PCL), turned to `viewpoint_m`.
-/// Points without a plane around them are left out; nothing if fewer than 50 are left.
+/// Points without a plane around them are left out; nothing if fewer than `least_oriented_points`
+/// are left.
 std::optional<OrientedCloud> orient(std::span<const Eigen::Vector3d> points_m, double voxel_m,
                                     const Eigen::Vector3d& viewpoint_m);
 
