@@ -18,8 +18,8 @@ function(tofmap_private_flags target)
                                              -fno-sanitize-recover=all)
     target_link_options(${target} PUBLIC -fsanitize=${TOFMAP_SANITIZE})
     # Under a sanitizer Eigen would align memory by hand and expect the same of what Debian's PCL
-    # allocated, which relies on malloc as it is aligned anyway.
-    target_compile_definitions(${target} PRIVATE EIGEN_MALLOC_ALREADY_ALIGNED=1)
+    # allocated, which relies on malloc as it is aligned anyway. Those who link to it must agree.
+    target_compile_definitions(${target} PUBLIC EIGEN_MALLOC_ALREADY_ALIGNED=1)
   endif()
   if(TOFMAP_COVERAGE)
     # Lines run by several threads at once are counted right only if the counters are atomic.

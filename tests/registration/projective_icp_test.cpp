@@ -5,7 +5,9 @@
 #include "support/box_room.hpp"
 
 #include <array>
+#include <random>
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <tofmap/core/error.hpp>
@@ -57,6 +59,38 @@ TEST(Registration, LeavesDirectionsThatABareWallDoesNotHoldToThePrior) {
   // The covariance says so: sideways no better than the prior, towards the wall far better.
   EXPECT_NEAR(std::sqrt(result.covariance(3, 3)), 0.2, 0.02);
   EXPECT_LT(std::sqrt(result.covariance(5, 5)), 0.01);
+}
+
+/// One wall, 3 m away, with noise of the predicted size.
+SurfaceCloud noisy_wall(const CameraModel& camera, const Pose& world_from_camera, unsigned seed) {
+  constexpr float sigma_m = 0.01F;
+  RangeImage image = test::box_ranges(camera, Vector3d(-50, -50, -50), Vector3d(50, 50, 3),
+                                      world_from_camera, sigma_m);
+  std::mt19937 random(seed);
+  std::normal_distribution<float> noise(0, sigma_m);
+  for (float& range : image.range_m.reshaped()) range += noise(random);
+  return surface_cloud(image, pixel_rays(camera), {});
+}
+
+TEST(Registration, IsNotMovedByTheNoiseOfABareWallsNormals) {
+  const CameraModel camera = test::small_camera();
+  const Pose truth = test::moved_by({0, 0, 0}, {0.1, 0.05, 0.04});
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const SurfaceCloud target = noisy_wall(camera, Pose::Identity(), 2 * seed);
+    const SurfaceCloud source = noisy_wall(camera, truth, 2 * seed + 1);
+    const std::array<RegistrationTarget, 1> targets{{{&target, Pose::Identity()}}};
+    // As narrow as that of a camera that goes on steadily.
+    MotionPrior prior{Pose::Identity(), 0.03, 0.03};
+    prior.world_from_camera.translation() = Vector3d(0.1, 0.05, 0);
+    const RegistrationResult result = register_to_targets(source, targets, camera, prior, {});
+    EXPECT_EQ(result.degenerate_directions, 3) << seed;
+    // Sideways lies within the tilt of a wall that noise tilts by milliradians.
+    EXPECT_NEAR(result.world_from_camera.translation().x(), 0.1, 0.002) << seed;
+    EXPECT_NEAR(result.world_from_camera.translation().y(), 0.05, 0.002) << seed;
+    EXPECT_NEAR(result.world_from_camera.translation().z(), 0.04, 0.002) << seed;
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> told(result.surface_information);
+    EXPECT_LT(told.eigenvalues()[2], 1e-6 * told.eigenvalues()[3]) << seed;
+  }
 }
 
 TEST(Registration, FailsWithoutOverlap) {

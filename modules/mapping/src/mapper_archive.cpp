@@ -75,8 +75,13 @@ void KeyframeGraph::serialize(Archive& archive, unsigned) {
 }
 
 template <class Archive>
+void MotionUncertainty::serialize(Archive& archive, unsigned) {
+  archive& joint_;
+}
+
+template <class Archive>
 void Odometry::serialize(Archive& archive, unsigned) {
-  archive& last_& before_last_& frames_since_placed_;
+  archive& last_& before_last_& frames_since_placed_& uncertainty_;
 }
 
 template <class Archive>

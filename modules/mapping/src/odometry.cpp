@@ -69,7 +69,10 @@ const char* status_name(TrackingStatus status) {
 
 Odometry::Odometry(const CameraModel& camera, const OdometryOptions& options,
                    const RegistrationOptions& registration)
-    : camera_(camera), options_(options), registration_(registration) {}
+    : camera_(camera),
+      options_(options),
+      registration_(registration),
+      uncertainty_(options.prior_rotation_sigma_rad, options.prior_translation_sigma_m) {}
 
 TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
                                std::span<const Keyframe* const> around) {
@@ -99,6 +102,9 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
   } else {
     result.status = TrackingStatus::tracked;
     result.world_from_camera = result.registration.world_from_camera;
+    // The prior of one frame does not tell of those before it that left a direction open, too.
+    uncertainty_.learn(frames_since_placed_, result.registration.surface_information);
+    result.registration.covariance = uncertainty_.of_pose();
     accept({timestamp_s, result.world_from_camera});
   }
   return result;
@@ -114,9 +120,10 @@ MotionPrior Odometry::predict(double timestamp_s) const {
   // After a gap the old velocity says little: a camera that is lost is expected to stay.
   constexpr int frames_of_steady_motion = 3;
   if (last_step_s > 0 && frames_since_placed_ <= frames_of_steady_motion) {
-    const double share = 1 + (timestamp_s - last_->timestamp_s) / last_step_s;
-    prior.world_from_camera =
-        interpolate(before_last_->world_from_camera, last_->world_from_camera, share);
+    const double share = (timestamp_s - last_->timestamp_s) / last_step_s;
+    const Pose step = before_last_->world_from_camera.inverse() * last_->world_from_camera;
+    // A camera that turns goes on along its own axes, not along the world's.
+    prior.world_from_camera = last_->world_from_camera * interpolate(Pose::Identity(), step, share);
   }
   return prior;
 }
@@ -153,6 +160,7 @@ std::vector<const Keyframe*> Odometry::choose_targets(
 void Odometry::restart(const StampedPose& pose) {
   last_ = pose;
   before_last_.reset();
+  uncertainty_.reset();
   frames_since_placed_ = 0;
 }
 
@@ -160,6 +168,7 @@ void Odometry::move(const Pose& new_from_old_world) {
   for (std::optional<StampedPose>* pose : {&last_, &before_last_}) {
     if (*pose) (*pose)->world_from_camera = new_from_old_world * (*pose)->world_from_camera;
   }
+  uncertainty_.turn(new_from_old_world.linear());
 }
 
 void Odometry::accept(const StampedPose& pose) {

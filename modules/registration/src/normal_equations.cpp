@@ -113,16 +113,28 @@ Observability observability(const NormalEquations& equations, double lever_m) {
   return seen;
 }
 
-int open_directions(const Observability& seen, const Matrix6d& surface_information,
-                    const Vector6d& prior_sigmas) {
-  int open = 0;
-  for (const auto& direction : seen.directions.colwise()) {
-    const Vector6d twist = seen.scale.cwiseProduct(direction);
+std::vector<int> open_directions(const Observability& seen, const NormalEquations& equations,
+                                 const Matrix6d& feigned, const Vector6d& prior_sigmas) {
+  std::vector<int> open;
+  for (int i = 0; i < seen.directions.cols(); ++i) {
+    const Vector6d twist = seen.scale.cwiseProduct(seen.directions.col(i));
     const double of_prior = twist.cwiseQuotient(prior_sigmas).squaredNorm();
-    const double of_surfaces = twist.dot(surface_information * twist);
-    open += of_surfaces < of_prior ? 1 : 0;
+    const double of_surfaces = twist.dot((equations.information - 2 * feigned) * twist);
+    if (of_surfaces < of_prior) open.push_back(i);
   }
   return open;
+}
+
+void leave_open(NormalEquations& equations, const Observability& seen,
+                std::span<const int> directions) {
+  Matrix6d kept = Matrix6d::Identity();
+  for (const int i : directions) {
+    kept -= seen.directions.col(i) * seen.directions.col(i).transpose();
+  }
+  // Directions are orthogonal where rotations count as the motion of points.
+  const Matrix6d keep = seen.scale.asDiagonal() * kept * seen.scale.cwiseInverse().asDiagonal();
+  equations.information = keep.transpose() * equations.information * keep;
+  equations.gradient = keep.transpose() * equations.gradient;
 }
 
 }  // namespace tofmap

@@ -4,6 +4,7 @@
 
 #include "correspondences.hpp"
 
+#include <span>
 #include <vector>
 
 namespace tofmap {
@@ -57,9 +58,14 @@ struct Observability {
 
 Observability observability(const NormalEquations& equations, double lever_m);
 
-/// How many directions are open: the surfaces, whose information is without what noisy normals
-/// feign, say less of them than a prior of these standard deviations.
-int open_directions(const Observability& seen, const Matrix6d& surface_information,
-                    const Vector6d& prior_sigmas);
+/// The directions that are open, by their columns: the surfaces say less of them than a prior of
+/// these standard deviations. What noisy normals feign is taken off twice, since how noisy they
+/// are is known by no more than that.
+std::vector<int> open_directions(const Observability& seen, const NormalEquations& equations,
+                                 const Matrix6d& feigned, const Vector6d& prior_sigmas);
+
+/// Takes from the equations what they say of these directions.
+void leave_open(NormalEquations& equations, const Observability& seen,
+                std::span<const int> directions);
 
 }  // namespace tofmap

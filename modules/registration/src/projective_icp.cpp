@@ -65,41 +65,36 @@ Vector6d prior_sigmas(const MotionPrior& prior) {
 
 /// The system at one pose, prior included.
 struct System {
-  std::vector<Correspondence> pairs;
   NormalEquations equations;
   ResidualStatistics statistics;
   Observability seen;
-  Matrix6d information = Matrix6d::Zero();  ///< without the prior
-  double kernel_width = 0;
-  double independent = 0;  ///< observations a correspondence is worth
+  int open_directions = 0;                  ///< that the prior alone decides on
+  Matrix6d information = Matrix6d::Zero();  ///< of the surfaces, without the prior
 };
 
-System build_system(std::vector<Correspondence> pairs, const Pose& pose, double lever_m,
+System build_system(const std::vector<Correspondence>& pairs, const Pose& pose, double lever_m,
                     const MotionPrior& prior, const RegistrationOptions& options) {
   System system;
   const double scale = robust_scale(pairs);
-  system.kernel_width = options.kernel_width * scale;
-  system.equations = build_equations(pairs, system.kernel_width);
-  system.statistics = residual_statistics(pairs, scale, system.kernel_width);
+  const double kernel_width = options.kernel_width * scale;
+  system.equations = build_equations(pairs, kernel_width);
+  system.statistics = residual_statistics(pairs, scale, kernel_width);
   // Points whose plane fits share pixels are no independent observations, and residuals
   // above the predicted noise tell of less information than predicted.
-  system.independent = 1 / (options.correlated_observations * scale * scale);
-  system.equations.information *= system.independent;
-  system.equations.gradient *= system.independent;
-  system.equations.weight_sum *= system.independent;
+  const double independent = 1 / (options.correlated_observations * scale * scale);
+  system.equations.information *= independent;
+  system.equations.gradient *= independent;
+  system.equations.weight_sum *= independent;
 
   system.seen = observability(system.equations, lever_m);
+  const Matrix6d feigned = independent * feigned_information(pairs, kernel_width);
+  const Vector6d sigmas = prior_sigmas(prior);
+  const std::vector<int> open = open_directions(system.seen, system.equations, feigned, sigmas);
+  leave_open(system.equations, system.seen, open);
+  system.open_directions = static_cast<int>(open.size());
   system.information = system.equations.information;
-  add_prior(system.equations, twist_between(pose, prior.world_from_camera), prior_sigmas(prior));
-  system.pairs = std::move(pairs);
+  add_prior(system.equations, twist_between(pose, prior.world_from_camera), sigmas);
   return system;
-}
-
-/// Directions of which the surfaces say less than the prior, at the pose of a system.
-int open_directions(const System& system, const MotionPrior& prior) {
-  const Matrix6d feigned =
-      system.independent * feigned_information(system.pairs, system.kernel_width);
-  return open_directions(system.seen, system.information - feigned, prior_sigmas(prior));
 }
 
 RegistrationStatus verdict(const RegistrationResult& result, bool has_converged,
@@ -110,11 +105,11 @@ RegistrationStatus verdict(const RegistrationResult& result, bool has_converged,
 }
 
 /// Gauss-Newton from the pose of `result`, which it keeps up to date, until a step is within so
-/// many tolerances; `last` is the last system that was solved.
+/// many tolerances.
 RegistrationStatus descend(const std::vector<const SurfacePoint*>& points,
                            std::span<const RegistrationTarget> targets, const CameraModel& camera,
                            const MotionPrior& prior, const RegistrationOptions& options,
-                           double tolerances, RegistrationResult& result, System& last) {
+                           double tolerances, RegistrationResult& result) {
   const double lever_m = median_range_m(points);
   bool has_converged = false;
   while (result.iterations < options.max_iterations && !has_converged) {
@@ -124,16 +119,19 @@ RegistrationStatus descend(const std::vector<const SurfacePoint*>& points,
     if (result.correspondences < options.min_correspondences) {
       return RegistrationStatus::few_correspondences;
     }
-    last = build_system(std::move(found.pairs), result.world_from_camera, lever_m, prior, options);
-    const Eigen::LDLT<Matrix6d> solver(last.equations.information);
-    const Vector6d twist = -solver.solve(last.equations.gradient);
+    const System system =
+        build_system(found.pairs, result.world_from_camera, lever_m, prior, options);
+    const Eigen::LDLT<Matrix6d> solver(system.equations.information);
+    const Vector6d twist = -solver.solve(system.equations.gradient);
     result.world_from_camera = moved(result.world_from_camera, twist);
     result.covariance = solver.solve(Matrix6d::Identity());
+    result.surface_information = system.information;
     result.overlap = found.overlap;
-    result.inlier_share = last.statistics.inlier_share;
-    result.rmse_m = last.statistics.rmse_m;
-    result.residual_scale = last.statistics.scale;
-    result.direction_shares = last.seen.shares;
+    result.inlier_share = system.statistics.inlier_share;
+    result.rmse_m = system.statistics.rmse_m;
+    result.residual_scale = system.statistics.scale;
+    result.direction_shares = system.seen.shares;
+    result.degenerate_directions = system.open_directions;
     has_converged = is_below_tolerance(twist, tolerances);
     ++result.iterations;
   }
@@ -145,19 +143,19 @@ RegistrationStatus refine(const SurfaceCloud& source,
                           const std::vector<const SurfacePoint*>& points,
                           std::span<const RegistrationTarget> targets, const CameraModel& camera,
                           const MotionPrior& prior, const RegistrationOptions& options,
-                          RegistrationResult& result, System& last) {
+                          RegistrationResult& result) {
   RegistrationOptions coarse = options;
   coarse.source_stride_px *= coarse_stride;
   coarse.min_correspondences /= coarse_stride * coarse_stride;
   const auto fewer_points = select_points(source, coarse.source_stride_px);
   if (!fewer_points.empty()) {
     const RegistrationStatus status =
-        descend(fewer_points, targets, camera, prior, coarse, coarse_tolerance, result, last);
+        descend(fewer_points, targets, camera, prior, coarse, coarse_tolerance, result);
     if (!succeeded(status)) result.world_from_camera = prior.world_from_camera;
   }
   result.iterations = 0;  // those that count are the fine ones
   constexpr double one = 1;
-  return descend(points, targets, camera, prior, options, one, result, last);
+  return descend(points, targets, camera, prior, options, one, result);
 }
 
 /// Points in a frame that is `frame_from_camera` of the camera's.
@@ -176,8 +174,7 @@ RegistrationStatus refine_with_pcl(const SurfaceCloud&,
                                    const std::vector<const SurfacePoint*>& points,
                                    std::span<const RegistrationTarget> targets,
                                    const CameraModel& camera, const MotionPrior& prior,
-                                   const RegistrationOptions& options, RegistrationResult& result,
-                                   System& last) {
+                                   const RegistrationOptions& options, RegistrationResult& result) {
   // About the expected camera, since PCL counts in floats.
   const Pose& origin = prior.world_from_camera;
   std::vector<Eigen::Vector3f> surface;
@@ -195,7 +192,7 @@ RegistrationStatus refine_with_pcl(const SurfaceCloud&,
   result.iterations = 0;
   const Pose pose = result.world_from_camera;
   const RegistrationStatus status =
-      descend(points, targets, camera, prior, just_measure, 1, result, last);
+      descend(points, targets, camera, prior, just_measure, 1, result);
   result.world_from_camera = pose;
   return status == RegistrationStatus::iteration_limit && found.converged
              ? RegistrationStatus::converged
@@ -262,10 +259,8 @@ RegistrationResult register_to_targets(const SurfaceCloud& source,
   result.world_from_camera = prior.world_from_camera;
   const auto points = select_points(source, options.source_stride_px);
   if (points.empty() || targets.empty()) return result;
-  System last;
   const auto& refine_pose = options.method == "projective" ? refine : refine_with_pcl;
-  result.status = refine_pose(source, points, targets, camera, prior, options, result, last);
-  if (result.iterations > 0) result.degenerate_directions = open_directions(last, prior);
+  result.status = refine_pose(source, points, targets, camera, prior, options, result);
   return result;
 }
 

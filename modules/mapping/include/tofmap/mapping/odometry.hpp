@@ -11,6 +11,7 @@
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/core/trajectory.hpp>
 #include <tofmap/mapping/keyframe.hpp>
+#include <tofmap/mapping/motion_uncertainty.hpp>
 #include <tofmap/registration/projective_icp.hpp>
 
 namespace boost::serialization {
@@ -92,6 +93,7 @@ class Odometry {
   std::optional<StampedPose> last_;
   std::optional<StampedPose> before_last_;
   int frames_since_placed_ = 0;
+  MotionUncertainty uncertainty_;  ///< of the last pose that was placed
 };
 
 }  // namespace tofmap

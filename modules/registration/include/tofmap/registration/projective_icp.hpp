@@ -68,7 +68,12 @@ struct RegistrationResult {
   /// in world axes, prior included.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
-  /// How many of the six directions of motion the surfaces say less of than the prior does.
+  /// Of the same twist, without the prior: the inverse of what its covariance would be. Nothing in
+  /// degenerate directions.
+  Eigen::Matrix<double, 6, 6> surface_information = Eigen::Matrix<double, 6, 6>::Zero();
+
+  /// How many of the six directions of motion the surfaces say less of than the prior does: they
+  /// are left to it.
   int degenerate_directions = 0;
   /// Shares of the observations that constrain each direction, ascending: 0 (free) … 1, rotations
   /// measured at the source's typical range.
@@ -84,8 +89,8 @@ struct RegistrationResult {
 /// weighted by the inverse of its predicted variance (noise of both points along the normal,
 /// plus `systematic_sigma_m`) and by a Geman-McClure kernel whose width is kernel_width times
 /// the robust scale of the residuals. The prior has its say in every direction of motion by its
-/// standard deviations, so it decides where the surfaces say little. `camera` took source and
-/// targets. The result is the same for any number of threads.
+/// standard deviations, and decides alone on those of which the surfaces say less. `camera` took
+/// source and targets. The result is the same for any number of threads.
 ///
 /// With the methods `pcl_icp` and `pcl_gicp` the pose is what PCL's algorithms make of the same
 /// points from the same start, for comparison; all else is measured at that pose.
