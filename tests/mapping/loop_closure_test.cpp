@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "support/box_room.hpp"
+#include "support/scenery.hpp"
 
 #include <memory>
 #include <numbers>
@@ -35,29 +36,28 @@ Keyframe keyframe(int id, const Pose& truth, const Pose& believed) {
 class FindLoop : public testing::Test {
  protected:
   FindLoop() {
-    options_.min_gap = 5;
+    options_.min_gap = 1;
     keyframes_.push_back(keyframe(0, old_truth_, old_truth_));
-    keyframes_.push_back(keyframe(9, new_truth_, drift_ * new_truth_));
+    keyframes_.push_back(keyframe(1, new_truth_, drift_ * new_truth_));
   }
 
   LoopCandidate find() const {
-    return find_loop(keyframes_[1], keyframes_, path_m_, small_camera(), options_, {});
+    return find_loop(keyframes_[1], keyframes_, small_camera(), options_, {});
   }
 
   Pose old_truth_ = moved_by({0.1, 0.5, 0}, {0, 0, 0});
   Pose new_truth_ = moved_by({0.05, 0.6, 0}, {0.2, 0.1, 0.1});
   Pose drift_ = moved_by({0, 0.01, 0.01}, {0.04, -0.02, 0.03});
   std::vector<Keyframe> keyframes_;
-  std::vector<double> path_m_ = std::vector<double>(10, 0);
   LoopOptions options_;
 };
 
 TEST_F(FindLoop, MeasuresTheMotionSinceAPlaceSeenBefore) {
-  path_m_.back() = 20;
+  keyframes_[1].path_m = 20;
   const LoopCandidate candidate = find();
   ASSERT_TRUE(candidate.edge);
   EXPECT_EQ(candidate.edge->from, 0);
-  EXPECT_EQ(candidate.edge->to, 9);
+  EXPECT_EQ(candidate.edge->to, 1);
   EXPECT_TRUE(candidate.edge->may_be_wrong);
   const Pose truth = old_truth_.inverse() * new_truth_;
   const Pose error = truth.inverse() * candidate.edge->from_from_to;
@@ -68,7 +68,7 @@ TEST_F(FindLoop, MeasuresTheMotionSinceAPlaceSeenBefore) {
 }
 
 TEST_F(FindLoop, PassesOverKeyframesThatWereJustThere) {
-  options_.min_gap = 10;
+  options_.min_gap = 2;
   EXPECT_EQ(find().from, -1);
 }
 
@@ -98,6 +98,49 @@ TEST_F(FindLoop, DoesNotVerifyABareWall) {
 TEST_F(FindLoop, DoesNotVerifyAnotherPlaceThatStandsWhereItIsBelievedToBe) {
   keyframes_[0].cloud = std::make_shared<const SurfaceCloud>(
       test::box_cloud(small_camera(), {-0.8, -0.5, -1}, {0.9, 0.7, 1.4}, old_truth_));
+  EXPECT_FALSE(find().edge);
+}
+
+/// A furnished room seen again after a long path, far from where it is believed to be.
+class FindLoopFarOff : public testing::Test {
+ protected:
+  FindLoopFarOff() {
+    for (int id = 0; id < 4; ++id) add(100 + 2 * id, 0, Pose::Identity());
+    add(103, path_m_, moved_by({0, 0.1, 0.02}, {0.7, 0.4, -0.3}));
+    options_.min_gap = 1;
+  }
+
+  void add(int frame, double path_m, const Pose& drift) {
+    const auto cloud = room_.view(frame);
+    keyframes_.push_back({.id = static_cast<int>(keyframes_.size()),
+                          .frame_index = frame,
+                          .world_from_camera = drift * room_.pose(frame),
+                          .cloud = cloud,
+                          .path_m = path_m,
+                          .place = PlaceDescriptor(*cloud)});
+  }
+
+  LoopCandidate find() const {
+    return find_loop(keyframes_.back(), keyframes_, room_.camera(), options_, {});
+  }
+
+  double path_m_ = 80;
+  test::Scenery room_{"room"};
+  std::vector<Keyframe> keyframes_;
+  LoopOptions options_;
+};
+
+TEST_F(FindLoopFarOff, RecognisesThePlace) {
+  const LoopCandidate candidate = find();
+  ASSERT_TRUE(candidate.edge);
+  const Pose truth =
+      room_.pose(keyframes_[static_cast<std::size_t>(candidate.from)].frame_index).inverse() *
+      room_.pose(103);
+  EXPECT_LT((truth.inverse() * candidate.edge->from_from_to).translation().norm(), 0.01);
+}
+
+TEST_F(FindLoopFarOff, DoesNotBelieveInMoreDriftThanThePathAllows) {
+  keyframes_.back().path_m = 2;
   EXPECT_FALSE(find().edge);
 }
 

@@ -1,67 +1,18 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include "support/scenery.hpp"
+
 #include <memory>
-#include <string>
 
 #include <gtest/gtest.h>
 
-#include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/mapping/room_mapper.hpp>
 
 namespace tofmap {
 namespace {
 
-/// A furnished scene: of an empty box every corner looks like every other.
-class Scenery {
- public:
-  explicit Scenery(const std::string& scene) : simulator_(make_scene(scene, 1), options()) {}
-
-  const CameraModel& camera() const { return simulator_.sensor().camera; }
-
-  Pose pose(int frame) const { return simulator_.simulate(frame).world_from_camera; }
-
-  /// The true surfaces of a frame.
-  std::shared_ptr<const SurfaceCloud> view(int frame) const {
-    const SimulatedFrame simulated = simulator_.simulate(frame);
-    RangeImage image(simulated.range_truth_m.rows(), simulated.range_truth_m.cols());
-    image.range_m = simulated.range_truth_m;
-    image.sigma_m.setConstant(0.01F);
-    image.confidence.setConstant(1);
-    image.wrap_count.setZero();
-    image.reason = image.range_m.isNaN().cast<std::uint8_t>();
-    return std::make_shared<const SurfaceCloud>(surface_cloud(image, pixel_rays(camera()), {}));
-  }
-
- private:
-  static SimulatorOptions options() {
-    SimulatorOptions options;
-    options.width_px = 88;
-    options.height_px = 72;
-    return options;
-  }
-
-  Simulator simulator_;
-};
-
-TEST(PlaceDescriptor, TellsPlacesApart) {
-  const Scenery room("room");
-  const PlaceDescriptor here(*room.view(100));
-  EXPECT_EQ(here.difference(here), 0);
-  const double near = here.difference(PlaceDescriptor(*room.view(102)));
-  const double far = here.difference(PlaceDescriptor(*room.view(180)));
-  EXPECT_LT(near, 0.1);
-  EXPECT_GT(far, 2 * near);
-  EXPECT_EQ(here.difference(PlaceDescriptor(*room.view(180))),
-            PlaceDescriptor(*room.view(180)).difference(here));
-}
-
-TEST(PlaceDescriptor, OfNothingIsLikeNothing) {
-  const Scenery room("room");
-  SurfaceCloud nothing = *room.view(100);
-  for (SurfacePoint& point : nothing.points) point.normal_z = NAN;
-  EXPECT_TRUE(std::isinf(PlaceDescriptor(nothing).difference(PlaceDescriptor(*room.view(100)))));
-}
+using test::Scenery;
 
 class LostCamera : public testing::Test {
  protected:

@@ -45,12 +45,14 @@ MapCloud read_map(const std::filesystem::path& file) {
   }
   const QuietPcl quiet;
   pcl::fromPCLPointCloud2(cloud, map);
+  const auto is_stored = [&](const char* field) { return find_field(cloud, field) != nullptr; };
+  const bool has_normals = is_stored("normal_x");
+  const bool has_confidence = is_stored("confidence");
+  const bool has_observations = is_stored("observations");
   for (MapPoint& point : map.points) {
-    if (find_field(cloud, "normal_x") == nullptr) {
-      point.normal_x = point.normal_y = point.normal_z = nan;
-    }
-    if (find_field(cloud, "confidence") == nullptr) point.confidence = 1;
-    if (find_field(cloud, "observations") == nullptr) point.observations = 1;
+    if (!has_normals) point.normal_x = point.normal_y = point.normal_z = nan;
+    if (!has_confidence) point.confidence = 1;
+    if (!has_observations) point.observations = 1;
   }
   return map;
 }

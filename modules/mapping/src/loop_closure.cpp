@@ -13,49 +13,105 @@ namespace {
 constexpr double least_prior_m = 0.05;
 constexpr double least_prior_rad = 0.03;
 
-/// Drift of directions, as a share of the path: a metre's drift in position comes with this.
-constexpr double drift_rad_per_drift_m = 0.3;
-
 /// Errors that neighbouring frames share, and that no covariance of one registration tells of.
 constexpr double shared_sigma_m = 0.002;
 constexpr double shared_sigma_rad = 0.0005;
 
-struct Overlap {
-  const Keyframe* keyframe;
-  double share;
-};
+/// Places that differ more are not tried.
+constexpr double alike_difference = 0.3;
 
-bool looks_the_same_way(const Pose& one, const Pose& other, const LoopOptions& options) {
-  return (one.translation() - other.translation()).norm() < options.radius_m &&
-         rotation_angle_rad(one, other) < options.max_turn_rad;
+/// How far from a keyframe a camera may stand and look that is recognised by it.
+constexpr double reach_m = 0.5;
+constexpr double reach_rad = 0.35;
+
+/// How many standard deviations of drift a loop may mend.
+constexpr double most_drift_sigmas = 3;
+
+/// Earlier keyframes that may see what the keyframe sees, as far as positions tell.
+std::vector<const Keyframe*> earlier_around(const Keyframe& keyframe,
+                                            std::span<const Keyframe> keyframes,
+                                            const LoopOptions& options) {
+  std::vector<const Keyframe*> earlier;
+  const Pose& pose = keyframe.world_from_camera;
+  for (const Keyframe& other : keyframes) {
+    if (other.id + options.min_gap > keyframe.id) break;
+    if ((pose.translation() - other.world_from_camera.translation()).norm() < options.radius_m &&
+        rotation_angle_rad(pose, other.world_from_camera) < options.max_turn_rad) {
+      earlier.push_back(&other);
+    }
+  }
+  return earlier;
 }
 
-MotionPrior loop_prior(const Keyframe& keyframe, double path_between_m,
-                       const LoopOptions& options) {
-  const double drift_m = options.drift_share * path_between_m;
-  return {.world_from_camera = keyframe.world_from_camera,
-          .rotation_sigma_rad = std::hypot(least_prior_rad, drift_rad_per_drift_m * drift_m),
-          .translation_sigma_m = std::hypot(least_prior_m, drift_m)};
+MotionPrior drift_prior(const Keyframe& keyframe, const Keyframe& other,
+                        const LoopOptions& options) {
+  return drift_prior(keyframe.world_from_camera, keyframe.path_m - other.path_m, options);
 }
 
-/// Earlier keyframes that see most of what the keyframe sees, the best first.
-std::vector<Overlap> best_overlaps(const Keyframe& keyframe, std::span<const Keyframe> keyframes,
-                                   const CameraModel& camera, const LoopOptions& options,
-                                   const RegistrationOptions& registration) {
-  constexpr std::size_t most_targets = 3;
+/// Those that see most of what the keyframe sees, the best first.
+std::vector<const Keyframe*> best_overlaps(const Keyframe& keyframe,
+                                           const std::vector<const Keyframe*>& earlier,
+                                           const CameraModel& camera, const LoopOptions& options,
+                                           const RegistrationOptions& registration) {
+  struct Overlap {
+    const Keyframe* keyframe;
+    double share;
+  };
+  constexpr std::size_t most = 3;
   RegistrationOptions coarse = registration;
   coarse.source_stride_px = 4 * registration.source_stride_px;  // a few hundred points tell enough
   std::vector<Overlap> overlaps;
-  for (const Keyframe& other : keyframes) {
-    if (other.id + options.min_gap > keyframe.id) break;
-    if (!looks_the_same_way(keyframe.world_from_camera, other.world_from_camera, options)) continue;
+  for (const Keyframe* other : earlier) {
     const double share = overlap_share(*keyframe.cloud, keyframe.world_from_camera,
-                                       target_of(other), camera, coarse);
-    if (share >= options.min_overlap) overlaps.push_back({&other, share});
+                                       target_of(*other), camera, coarse);
+    if (share >= options.min_overlap) overlaps.push_back({other, share});
   }
   std::ranges::stable_sort(overlaps, std::ranges::greater(), &Overlap::share);
-  if (overlaps.size() > most_targets) overlaps.resize(most_targets);
-  return overlaps;
+  if (overlaps.size() > most) overlaps.resize(most);
+  std::vector<const Keyframe*> best;
+  for (const Overlap& overlap : overlaps) best.push_back(overlap.keyframe);
+  return best;
+}
+
+/// Registers the keyframe from where it is believed to be, against those it overlaps most.
+LoopCandidate find_where_believed(const Keyframe& keyframe,
+                                  const std::vector<const Keyframe*>& earlier,
+                                  const CameraModel& camera, const LoopOptions& options,
+                                  const RegistrationOptions& registration) {
+  LoopCandidate candidate;
+  const auto overlapping = best_overlaps(keyframe, earlier, camera, options, registration);
+  if (overlapping.empty()) return candidate;
+  candidate.from = overlapping.front()->id;
+  std::vector<RegistrationTarget> targets;
+  for (const Keyframe* other : overlapping) targets.push_back(target_of(*other));
+  candidate.registration =
+      register_to_targets(*keyframe.cloud, targets, camera,
+                          drift_prior(keyframe, *overlapping.front(), options), registration);
+  return candidate;
+}
+
+/// Registers the keyframe from where the one stands that looks most like it.
+LoopCandidate find_where_alike(const Keyframe& keyframe, std::span<const Keyframe> keyframes,
+                               const std::vector<const Keyframe*>& earlier,
+                               const CameraModel& camera, const LoopOptions& options,
+                               const RegistrationOptions& registration) {
+  LoopCandidate candidate;
+  constexpr std::size_t one = 1;
+  const auto alike = most_alike(keyframe.place, earlier, one);
+  if (alike.empty()) return candidate;
+  const Keyframe& other = *alike.front();
+  if (keyframe.place.difference(other.place) > alike_difference) return candidate;
+  const auto before = keyframes.first(static_cast<std::size_t>(keyframe.id));
+  const MotionPrior prior{.world_from_camera = other.world_from_camera,
+                          .rotation_sigma_rad = reach_rad,
+                          .translation_sigma_m = reach_m};
+  const RegistrationResult found = register_from_afar(
+      *keyframe.cloud, targets_around(other, before), camera, prior, registration);
+  if (deviation(drift_prior(keyframe, other, options), found.world_from_camera) >
+      most_drift_sigmas) {
+    return candidate;
+  }
+  return {.from = other.id, .registration = found, .edge = {}};
 }
 
 }  // namespace
@@ -78,6 +134,13 @@ std::vector<OptionField<LoopOptions>> LoopOptions::fields() {
   };
 }
 
+MotionPrior drift_prior(const Pose& expected, double path_m, const LoopOptions& options) {
+  const double drift_m = options.drift_share * path_m;
+  return {.world_from_camera = expected,
+          .rotation_sigma_rad = std::hypot(least_prior_rad, drift_rad_per_drift_m * drift_m),
+          .translation_sigma_m = std::hypot(least_prior_m, drift_m)};
+}
+
 bool is_verified(const RegistrationResult& result, const LoopOptions& options) {
   return result.status == RegistrationStatus::converged && result.overlap >= options.min_overlap &&
          result.inlier_share >= options.min_inlier_share && result.degenerate_directions == 0;
@@ -93,30 +156,39 @@ PoseEdge edge_of(const Keyframe& from, int to, const RegistrationResult& registr
   turn.topLeftCorner<3, 3>() = from.world_from_camera.linear().transpose();
   turn.bottomRightCorner<3, 3>() = turn.topLeftCorner<3, 3>();
   edge.covariance = turn * registration.covariance * turn.transpose();
-  edge.covariance.diagonal().head<3>().array() += shared_sigma_rad * shared_sigma_rad;
-  edge.covariance.diagonal().tail<3>().array() += shared_sigma_m * shared_sigma_m;
+  widen(edge, shared_sigma_rad, shared_sigma_m);
   return edge;
 }
 
+RegistrationResult register_from_afar(const SurfaceCloud& cloud,
+                                      std::span<const RegistrationTarget> targets,
+                                      const CameraModel& camera, const MotionPrior& prior,
+                                      const RegistrationOptions& registration) {
+  constexpr double widest_gap_m = 1;
+  constexpr int iterations = 40;
+  RegistrationOptions wide = registration;
+  wide.max_point_gap_m =
+      std::max(registration.max_point_gap_m, std::min(widest_gap_m, 2 * prior.translation_sigma_m));
+  wide.max_iterations = std::max(registration.max_iterations, iterations);
+  MotionPrior closer = prior;
+  closer.world_from_camera =
+      register_to_targets(cloud, targets, camera, prior, wide).world_from_camera;
+  return register_to_targets(cloud, targets, camera, closer, registration);
+}
+
 LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyframes,
-                        std::span<const double> path_m, const CameraModel& camera,
-                        const LoopOptions& options, const RegistrationOptions& registration) {
-  LoopCandidate candidate;
-  const auto overlaps = best_overlaps(keyframe, keyframes, camera, options, registration);
-  if (overlaps.empty()) return candidate;
-  const Keyframe& best = *overlaps.front().keyframe;
-  candidate.from = best.id;
-  std::vector<RegistrationTarget> targets;
-  for (const Overlap& overlap : overlaps) {
-    targets.push_back(target_of(*overlap.keyframe));
+                        const CameraModel& camera, const LoopOptions& options,
+                        const RegistrationOptions& registration) {
+  const auto earlier = earlier_around(keyframe, keyframes, options);
+  LoopCandidate candidate = find_where_believed(keyframe, earlier, camera, options, registration);
+  if (!is_verified(candidate.registration, options)) {
+    const LoopCandidate alike =
+        find_where_alike(keyframe, keyframes, earlier, camera, options, registration);
+    if (is_verified(alike.registration, options)) candidate = alike;
   }
-  const double path_between_m =
-      path_m[static_cast<std::size_t>(keyframe.id)] - path_m[static_cast<std::size_t>(best.id)];
-  candidate.registration =
-      register_to_targets(*keyframe.cloud, targets, camera,
-                          loop_prior(keyframe, path_between_m, options), registration);
   if (is_verified(candidate.registration, options)) {
-    candidate.edge = edge_of(best, keyframe.id, candidate.registration);
+    const Keyframe& from = keyframes[static_cast<std::size_t>(candidate.from)];
+    candidate.edge = edge_of(from, keyframe.id, candidate.registration);
     candidate.edge->may_be_wrong = true;
   }
   return candidate;

@@ -44,14 +44,15 @@ void serialize(Archive& archive, tofmap::SurfaceCloud& cloud, unsigned version) 
 template <class Archive>
 void save(Archive& archive, const tofmap::Keyframe& keyframe, unsigned) {
   archive << keyframe.id << keyframe.frame_index << keyframe.timestamp_s;
-  archive << keyframe.world_from_camera << *keyframe.cloud;
+  archive << keyframe.world_from_camera << keyframe.path_m << *keyframe.cloud;
 }
 
 template <class Archive>
 void load(Archive& archive, tofmap::Keyframe& keyframe, unsigned) {
   archive >> keyframe.id >> keyframe.frame_index >> keyframe.timestamp_s;
   auto cloud = std::make_shared<tofmap::SurfaceCloud>();
-  archive >> keyframe.world_from_camera >> *cloud;
+  archive >> keyframe.world_from_camera >> keyframe.path_m >> *cloud;
+  keyframe.place = tofmap::PlaceDescriptor(*cloud);
   keyframe.cloud = std::move(cloud);
 }
 
@@ -101,7 +102,7 @@ void RoomMapper::PlacedFrame::serialize(Archive& archive, unsigned) {
 
 template <class Archive>
 void RoomMapper::serialize(Archive& archive, unsigned) {
-  archive& odometry_& keyframes_& path_m_& frames_& edges_& loops_;
+  archive& odometry_& keyframes_& frames_& edges_& loops_;
   archive& unfitted_loops_& last_fit_& current_& lost_frames_& searched_;
 }
 
@@ -120,8 +121,6 @@ void RoomMapper::load(std::istream& in) {
   archive >> parts >> part_of_;
   parts_.assign(parts, {0, SurfaceMap(surface_options_)});
   for (Part& part : parts_) archive >> part.anchor >> part.surface;
-  descriptors_.clear();
-  for (const Keyframe& keyframe : keyframes_.all()) descriptors_.emplace_back(*keyframe.cloud);
 }
 
 }  // namespace tofmap

@@ -17,13 +17,6 @@ bool has_surface(const SurfaceCloud& cloud, int min_points) {
   return false;
 }
 
-/// How many standard deviations of the prior the pose is off, the worse of both parts.
-double deviation(const MotionPrior& prior, const Pose& pose) {
-  const double turn = rotation_angle_rad(prior.world_from_camera, pose);
-  const double step = (prior.world_from_camera.translation() - pose.translation()).norm();
-  return std::max(turn / prior.rotation_sigma_rad, step / prior.translation_sigma_m);
-}
-
 }  // namespace
 
 std::vector<OptionField<OdometryOptions>> OdometryOptions::fields() {

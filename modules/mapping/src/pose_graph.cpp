@@ -89,14 +89,8 @@ void check_edges(std::span<const PoseEdge> edges, std::size_t poses) {
   }
 }
 
-double deviation(const PoseEdge& edge, const std::vector<Node>& nodes) {
-  const Node& from = nodes[static_cast<std::size_t>(edge.from)];
-  const Node& to = nodes[static_cast<std::size_t>(edge.to)];
-  Eigen::Matrix<double, 6, 1> residual;
-  const EdgeError error(edge);
-  error(from.rotation.coeffs().data(), from.translation_m.data(), to.rotation.coeffs().data(),
-        to.translation_m.data(), residual.data());
-  return residual.norm();
+Node node_of(const Pose& pose) {
+  return {Eigen::Quaterniond(pose.linear()).normalized(), pose.translation()};
 }
 
 /// One pass with a fixed kernel.
@@ -136,6 +130,21 @@ ceres::Solver::Summary solve(std::span<const PoseEdge> edges, double kernel_widt
 
 }  // namespace
 
+double edge_deviation(const PoseEdge& edge, const std::vector<Pose>& poses) {
+  const Node from = node_of(poses[static_cast<std::size_t>(edge.from)]);
+  const Node to = node_of(poses[static_cast<std::size_t>(edge.to)]);
+  Eigen::Matrix<double, 6, 1> residual;
+  const EdgeError error(edge);
+  error(from.rotation.coeffs().data(), from.translation_m.data(), to.rotation.coeffs().data(),
+        to.translation_m.data(), residual.data());
+  return residual.norm();
+}
+
+void widen(PoseEdge& edge, double rotation_sigma_rad, double translation_sigma_m) {
+  edge.covariance.diagonal().head<3>().array() += rotation_sigma_rad * rotation_sigma_rad;
+  edge.covariance.diagonal().tail<3>().array() += translation_sigma_m * translation_sigma_m;
+}
+
 PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const PoseEdge> edges,
                                     double kernel_width) {
   check_edges(edges, poses.size());
@@ -143,12 +152,10 @@ PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const Pos
   result.poses = std::move(poses);
   if (result.poses.empty()) return result;
   std::vector<Node> nodes;
-  for (const Pose& pose : result.poses) {
-    nodes.push_back({Eigen::Quaterniond(pose.linear()).normalized(), pose.translation()});
-  }
+  for (const Pose& pose : result.poses) nodes.push_back(node_of(pose));
   double width = kernel_width;
   for (const PoseEdge& edge : edges) {
-    if (edge.may_be_wrong) width = std::max(width, 2 * deviation(edge, nodes));
+    if (edge.may_be_wrong) width = std::max(width, 2 * edge_deviation(edge, result.poses));
   }
   while (true) {
     const ceres::Solver::Summary summary = solve(edges, width, nodes);
@@ -162,7 +169,9 @@ PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const Pos
     result.poses[i].linear() = nodes[i].rotation.normalized().toRotationMatrix();
     result.poses[i].translation() = nodes[i].translation_m;
   }
-  for (const PoseEdge& edge : edges) result.edge_deviations.push_back(deviation(edge, nodes));
+  for (const PoseEdge& edge : edges) {
+    result.edge_deviations.push_back(edge_deviation(edge, result.poses));
+  }
   return result;
 }
 

@@ -3,10 +3,10 @@
 
 #include "tofmap/mapping/room_mapper.hpp"
 
+#include "tofmap/mapping/loop_fit.hpp"
 #include "tofmap/mapping/seen_through.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace tofmap {
 namespace {
@@ -83,8 +83,7 @@ TrackingResult RoomMapper::find_camera(double timestamp_s, const SurfaceCloud& c
 
 TrackingResult RoomMapper::relocalised(double timestamp_s, const SurfaceCloud& cloud) {
   TrackingResult result;
-  const auto found =
-      relocalise(cloud, keyframes_.all(), descriptors_, camera_, loop_options_, registration_);
+  const auto found = relocalise(cloud, keyframes_.all(), camera_, loop_options_, registration_);
   if (!found) return result;
   result.status = TrackingStatus::relocalised;
   result.world_from_camera = found->registration.world_from_camera;
@@ -107,7 +106,7 @@ void RoomMapper::close_loops() {
   searched_ = keyframes_.size();
   const Keyframe& keyframe = keyframes_[keyframes_.size() - 1];
   const LoopCandidate candidate =
-      find_loop(keyframe, keyframes_.all(), path_m_, camera_, loop_options_, registration_);
+      find_loop(keyframe, keyframes_.all(), camera_, loop_options_, registration_);
   if (candidate.edge) {
     edges_.push_back(*candidate.edge);
     const Pose& found = candidate.registration.world_from_camera;
@@ -167,10 +166,12 @@ void RoomMapper::add_keyframe(int frame_index, double timestamp_s,
   double path_m = 0;
   if (id > 0) {
     const Pose& last = keyframes_[id - 1].world_from_camera;
-    path_m = path_m_.back() + (result.world_from_camera.translation() - last.translation()).norm();
+    path_m = keyframes_[id - 1].path_m +
+             (result.world_from_camera.translation() - last.translation()).norm();
   }
   part_of_.push_back(part_for(id, result.world_from_camera, around));
-  keyframes_.add({id, frame_index, timestamp_s, result.world_from_camera, cloud});
+  keyframes_.add({id, frame_index, timestamp_s, result.world_from_camera, cloud, path_m,
+                  PlaceDescriptor(*cloud)});
   // Targets are registered against together: each edge says its share of what all of them say.
   const auto shares = static_cast<double>(result.targets.size());
   for (const int target : result.targets) {
@@ -180,8 +181,6 @@ void RoomMapper::add_keyframe(int frame_index, double timestamp_s,
     keyframes_.tie(target, id);
   }
   current_ = id;
-  descriptors_.emplace_back(*cloud);
-  path_m_.push_back(path_m);
 }
 
 /// The part whose anchor is nearest to a new keyframe; a new part with that as its anchor if none
@@ -203,11 +202,8 @@ int RoomMapper::part_for(int id, const Pose& pose, std::span<const Keyframe* con
 }
 
 void RoomMapper::fit() {
-  std::vector<Pose> poses;
-  for (const Keyframe& keyframe : keyframes_.all()) poses.push_back(keyframe.world_from_camera);
   const Pose current_before = keyframes_[current_].world_from_camera;
-  const PoseGraphResult fitted =
-      optimise_pose_graph(std::move(poses), edges_, loop_options_.kernel_width);
+  const PoseGraphResult fitted = fit_loops(keyframes_.all(), edges_, loop_options_);
   for (int id = 0; id < keyframes_.size(); ++id) {
     keyframes_.place(id, fitted.poses[static_cast<std::size_t>(id)]);
   }

@@ -4,7 +4,6 @@
 #include "cloud_graph.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include <tofmap/mapping/pose_graph.hpp>

@@ -40,41 +40,65 @@ double weight_of(const Correspondence& pair, double kernel_width) {
   return geman_mcclure_weight(normalised, kernel_width) / pair.variance_m2;
 }
 
+/// cross_matrix(a) b = a × b.
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& vector) {
+  Eigen::Matrix3d matrix;
+  matrix << 0, -vector.z(), vector.y(), vector.z(), 0, -vector.x(), -vector.y(), vector.x(), 0;
+  return matrix;
+}
+
 void fill_upper(Matrix6d& lower) {
   lower.triangularView<Eigen::StrictlyUpper>() =
       lower.transpose().triangularView<Eigen::StrictlyUpper>();
 }
 
+/// What normals that are tilted by chance, along any direction but their own, say of a twist. With
+/// A v the Jacobian of a direction v, A Aᵀ is that of all directions, of which the normal's own is
+/// taken off: so a pair costs the moments of its point, and what it costs anyway.
+class TiltInformation {
+ public:
+  void add(const Correspondence& pair, double weight, const Vector6d& jacobian) {
+    const double of_tilt = weight * pair.normal_sigma_rad * pair.normal_sigma_rad;
+    weight_ += of_tilt;
+    first_ += of_tilt * pair.point_m;
+    second_ += of_tilt * pair.point_m * pair.point_m.transpose();
+    along_normals_.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, of_tilt);
+  }
+
+  Matrix6d sum() const {
+    Matrix6d all;
+    all.topLeftCorner<3, 3>() = second_.trace() * Eigen::Matrix3d::Identity() - second_;
+    all.topRightCorner<3, 3>() = cross_matrix(first_);
+    all.bottomLeftCorner<3, 3>() = all.topRightCorner<3, 3>().transpose();
+    all.bottomRightCorner<3, 3>() = weight_ * Eigen::Matrix3d::Identity();
+    Matrix6d own = along_normals_;
+    fill_upper(own);
+    return all - own;
+  }
+
+ private:
+  double weight_ = 0;
+  Eigen::Vector3d first_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d second_ = Eigen::Matrix3d::Zero();
+  Matrix6d along_normals_ = Matrix6d::Zero();  ///< the lower half
+};
+
 }  // namespace
 
 NormalEquations build_equations(const std::vector<Correspondence>& pairs, double kernel_width) {
   NormalEquations equations;
+  TiltInformation tilts;
   for (const Correspondence& pair : pairs) {
     const double weight = weight_of(pair, kernel_width);
     const Vector6d jacobian = residual_jacobian(pair);
     equations.information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
     equations.gradient += weight * pair.residual_m * jacobian;
     equations.weight_sum += weight;
+    tilts.add(pair, weight, jacobian);
   }
   fill_upper(equations.information);
+  equations.feigned = tilts.sum();
   return equations;
-}
-
-Matrix6d feigned_information(const std::vector<Correspondence>& pairs, double kernel_width) {
-  Matrix6d feigned = Matrix6d::Zero();
-  for (const Correspondence& pair : pairs) {
-    const double weight =
-        weight_of(pair, kernel_width) * pair.normal_sigma_rad * pair.normal_sigma_rad;
-    const Eigen::Vector3d along = pair.normal.unitOrthogonal();
-    const Eigen::Vector3d across = pair.normal.cross(along);
-    for (const Eigen::Vector3d& tilt : {along, across}) {
-      Vector6d jacobian;
-      jacobian << pair.point_m.cross(tilt), tilt;
-      feigned.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
-    }
-  }
-  fill_upper(feigned);
-  return feigned;
 }
 
 ResidualStatistics residual_statistics(const std::vector<Correspondence>& pairs,
@@ -114,12 +138,12 @@ Observability observability(const NormalEquations& equations, double lever_m) {
 }
 
 std::vector<int> open_directions(const Observability& seen, const NormalEquations& equations,
-                                 const Matrix6d& feigned, const Vector6d& prior_sigmas) {
+                                 const Vector6d& prior_sigmas) {
   std::vector<int> open;
   for (int i = 0; i < seen.directions.cols(); ++i) {
     const Vector6d twist = seen.scale.cwiseProduct(seen.directions.col(i));
     const double of_prior = twist.cwiseQuotient(prior_sigmas).squaredNorm();
-    const double of_surfaces = twist.dot((equations.information - 2 * feigned) * twist);
+    const double of_surfaces = twist.dot((equations.information - 2 * equations.feigned) * twist);
     if (of_surfaces < of_prior) open.push_back(i);
   }
   return open;

@@ -18,6 +18,8 @@ struct NormalEquations {
   Matrix6d information = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
   double weight_sum = 0;  ///< of 1 / variance, kernel included
+  /// What of that information is expected to come from the noise of the normals alone.
+  Matrix6d feigned = Matrix6d::Zero();
 };
 
 /// How well the residuals fit at one pose.
@@ -39,9 +41,6 @@ double geman_mcclure_weight(double normalised_residual, double width);
 
 NormalEquations build_equations(const std::vector<Correspondence>& pairs, double kernel_width);
 
-/// What of that information is expected to come from the noise of the normals alone.
-Matrix6d feigned_information(const std::vector<Correspondence>& pairs, double kernel_width);
-
 ResidualStatistics residual_statistics(const std::vector<Correspondence>& pairs,
                                        double kernel_scale, double kernel_width);
 
@@ -62,7 +61,7 @@ Observability observability(const NormalEquations& equations, double lever_m);
 /// these standard deviations. What noisy normals feign is taken off twice, since how noisy they
 /// are is known by no more than that.
 std::vector<int> open_directions(const Observability& seen, const NormalEquations& equations,
-                                 const Matrix6d& feigned, const Vector6d& prior_sigmas);
+                                 const Vector6d& prior_sigmas);
 
 /// Takes from the equations what they say of these directions.
 void leave_open(NormalEquations& equations, const Observability& seen,

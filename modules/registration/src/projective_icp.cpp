@@ -85,11 +85,11 @@ System build_system(const std::vector<Correspondence>& pairs, const Pose& pose, 
   system.equations.information *= independent;
   system.equations.gradient *= independent;
   system.equations.weight_sum *= independent;
+  system.equations.feigned *= independent;
 
   system.seen = observability(system.equations, lever_m);
-  const Matrix6d feigned = independent * feigned_information(pairs, kernel_width);
   const Vector6d sigmas = prior_sigmas(prior);
-  const std::vector<int> open = open_directions(system.seen, system.equations, feigned, sigmas);
+  const std::vector<int> open = open_directions(system.seen, system.equations, sigmas);
   leave_open(system.equations, system.seen, open);
   system.open_directions = static_cast<int>(open.size());
   system.information = system.equations.information;
@@ -226,6 +226,13 @@ std::vector<OptionField<RegistrationOptions>> RegistrationOptions::fields() {
       {"min_inlier_share", &O::min_inlier_share, 0, 1, "",
        "share of the correspondences that must agree with the pose"},
   };
+}
+
+double deviation(const MotionPrior& prior, const Pose& world_from_camera) {
+  const double turn = rotation_angle_rad(prior.world_from_camera, world_from_camera);
+  const double step =
+      (prior.world_from_camera.translation() - world_from_camera.translation()).norm();
+  return std::max(turn / prior.rotation_sigma_rad, step / prior.translation_sigma_m);
 }
 
 bool succeeded(RegistrationStatus status) {

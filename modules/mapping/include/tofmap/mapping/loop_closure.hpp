@@ -27,9 +27,15 @@ struct LoopOptions {
   static std::vector<OptionField<LoopOptions>> fields();
 };
 
+/// Drift of directions: a metre's drift in position comes with this.
+inline constexpr double drift_rad_per_drift_m = 0.3;
+
+/// Where a camera is expected, and how far it may have drifted along a path, metres.
+MotionPrior drift_prior(const Pose& expected, double path_m, const LoopOptions& options);
+
 /// What became of the search for a loop.
 struct LoopCandidate {
-  int from = -1;  ///< id of the earlier keyframe that overlaps most; −1: there is none
+  int from = -1;  ///< id of the earlier keyframe; −1: there is none
   RegistrationResult registration;
   std::optional<PoseEdge> edge;  ///< if the loop was verified
 };
@@ -37,14 +43,23 @@ struct LoopCandidate {
 /// Looks for an earlier keyframe that sees what `keyframe` sees.
 ///
 /// Candidates are keyframes at least `min_gap` before it, whose cameras stand within `radius_m` and
-/// look within `max_turn_rad` of the same direction; the three that overlap most are registered
+/// look within `max_turn_rad` of the same direction. The three that overlap most are registered
 /// against together, from the pose as it is believed and with a prior as wide as drift allows:
-/// `drift_share` of the path between (`path_m`, metres along the path at each keyframe, by id). The
-/// loop is there if that is_verified(). Only keyframes before it in `keyframes`, which are in order
-/// of their ids, are looked at.
+/// `drift_share` of the path between. If that is not verified, drift may have been larger: then the
+/// candidate that looks most like the keyframe is registered against from where it stands, and what
+/// is found counts if it is within three standard deviations of drift. The loop is there if
+/// is_verified(). Only keyframes before it in `keyframes`, which are in order of their ids, are
+/// looked at.
 LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyframes,
-                        std::span<const double> path_m, const CameraModel& camera,
-                        const LoopOptions& options, const RegistrationOptions& registration);
+                        const CameraModel& camera, const LoopOptions& options,
+                        const RegistrationOptions& registration);
+
+/// Registers twice: first across gaps of twice the prior's standard deviation, up to a metre; then,
+/// from what that finds, as closely as frames are registered.
+RegistrationResult register_from_afar(const SurfaceCloud& cloud,
+                                      std::span<const RegistrationTarget> targets,
+                                      const CameraModel& camera, const MotionPrior& prior,
+                                      const RegistrationOptions& registration);
 
 /// Whether a registration far from where the path came from can be believed: it converged with
 /// `min_overlap` and `min_inlier_share`, and leaves no direction to the prior.

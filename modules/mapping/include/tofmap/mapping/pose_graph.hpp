@@ -20,6 +20,9 @@ struct PoseEdge {
   bool may_be_wrong = false;  ///< a loop: few large errors must not bend the graph
 };
 
+/// Adds errors of these standard deviations, the same along all axes, to those of an edge.
+void widen(PoseEdge& edge, double rotation_sigma_rad, double translation_sigma_m);
+
 struct PoseGraphResult {
   std::vector<Pose> poses;
   bool converged = false;
@@ -39,6 +42,9 @@ struct PoseGraphResult {
 /// Throws UsageError if an edge names a pose that is not there, or the same one twice.
 PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const PoseEdge> edges,
                                     double kernel_width);
+
+/// The error of an edge between these poses in standard deviations, √(eᵀ Σ⁻¹ e).
+double edge_deviation(const PoseEdge& edge, const std::vector<Pose>& poses);
 
 /// Whether an edge that may be wrong has hardly a say left with these deviations: a sixteenth of
 /// that of an edge without error, or less.

@@ -110,10 +110,8 @@ class RoomMapper {
   SurfaceMapOptions surface_options_;
   Odometry odometry_;
   KeyframeGraph keyframes_;
-  std::vector<PlaceDescriptor> descriptors_;  ///< of each keyframe
   std::vector<Part> parts_;
-  std::vector<int> part_of_;    ///< index of the part that a keyframe's frames go to
-  std::vector<double> path_m_;  ///< along the path, at each keyframe
+  std::vector<int> part_of_;  ///< index of the part that a keyframe's frames go to
   std::vector<PlacedFrame> frames_;
   std::vector<PoseEdge> edges_;
   std::vector<Loop> loops_;  ///< in the order of their edges

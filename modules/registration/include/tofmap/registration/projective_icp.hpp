@@ -26,6 +26,9 @@ struct MotionPrior {
   double translation_sigma_m = 0;  ///< must be positive
 };
 
+/// How many standard deviations of the prior the pose is off, the worse of turn and step.
+double deviation(const MotionPrior& prior, const Pose& world_from_camera);
+
 struct RegistrationOptions {
   std::string method = "projective";
   int source_stride_px = 2;

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/mapping/keyframe.hpp"
+
+#include <algorithm>
+
+namespace tofmap {
+
+std::vector<RegistrationTarget> targets_around(const Keyframe& keyframe,
+                                               std::span<const Keyframe> keyframes) {
+  std::vector<RegistrationTarget> targets;
+  const int last = std::min(static_cast<int>(keyframes.size()) - 1, keyframe.id + 1);
+  for (int id = std::max(0, keyframe.id - 1); id <= last; ++id) {
+    targets.push_back(target_of(keyframes[static_cast<std::size_t>(id)]));
+  }
+  return targets;
+}
+
+std::vector<const Keyframe*> most_alike(const PlaceDescriptor& place,
+                                        std::vector<const Keyframe*> keyframes, std::size_t most) {
+  std::ranges::stable_sort(
+      keyframes, {}, [&](const Keyframe* keyframe) { return place.difference(keyframe->place); });
+  keyframes.resize(std::min(keyframes.size(), most));
+  return keyframes;
+}
+
+}  // namespace tofmap

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/mapping/place_descriptor.hpp"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <tofmap/core/median.hpp>
+
+namespace tofmap {
+
+PlaceDescriptor::PlaceDescriptor() { log_range_.fill(std::numeric_limits<float>::quiet_NaN()); }
+
+PlaceDescriptor::PlaceDescriptor(const SurfaceCloud& cloud) : PlaceDescriptor() {
+  std::vector<float> ranges;
+  for (std::size_t part = 0; part < log_range_.size(); ++part) {
+    const std::size_t first_row = part / cols * cloud.height / rows;
+    const std::size_t last_row = (part / cols + 1) * cloud.height / rows;
+    const std::size_t first_col = part % cols * cloud.width / cols;
+    const std::size_t last_col = (part % cols + 1) * cloud.width / cols;
+    ranges.clear();
+    for (std::size_t row = first_row; row < last_row; ++row) {
+      for (std::size_t col = first_col; col < last_col; ++col) {
+        const SurfacePoint& point = cloud.points[row * cloud.width + col];
+        if (point.has_normal()) ranges.push_back(point.getVector3fMap().norm());
+      }
+    }
+    const std::size_t pixels = (last_row - first_row) * (last_col - first_col);
+    if (ranges.empty() || 2 * ranges.size() < pixels) continue;
+    log_range_[part] = std::log(median(ranges));
+  }
+}
+
+double PlaceDescriptor::difference(const PlaceDescriptor& other) const {
+  double sum = 0;
+  std::size_t shared = 0;
+  for (std::size_t i = 0; i < log_range_.size(); ++i) {
+    const float off = std::abs(log_range_[i] - other.log_range_[i]);
+    if (std::isnan(off)) continue;
+    sum += off;
+    ++shared;
+  }
+  if (2 * shared < log_range_.size()) return std::numeric_limits<double>::infinity();
+  return sum / static_cast<double>(shared);
+}
+
+}  // namespace tofmap
