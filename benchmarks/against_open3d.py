@@ -19,7 +19,8 @@ import time
 import cv2
 import numpy
 import open3d
-import yaml
+
+import recording
 
 registration = open3d.pipelines.registration
 VOXEL_M = 0.05
@@ -31,13 +32,6 @@ METHODS = {
     "generalised ICP": lambda source, target, start: registration.registration_generalized_icp(
         source, target, REACH_M, start),
 }
-
-
-def rays(camera):
-    u, v = numpy.meshgrid(numpy.arange(camera["width"]), numpy.arange(camera["height"]))
-    directions = numpy.stack([(u - camera["cx"]) / camera["fx"], (v - camera["cy"]) / camera["fy"],
-                              numpy.ones(u.shape)], axis=-1)
-    return directions / numpy.linalg.norm(directions, axis=-1, keepdims=True)
 
 
 def cloud(file, directions):
@@ -87,8 +81,7 @@ def main():
           + " | ".join(f"Open3D, {name} | ms a frame" for name in METHODS) + " |")
     print("|---|---|" + "---|---|" * len(METHODS))
     for sequence in sequences:
-        with open(f"{sequence}/sequence.yaml", encoding="utf-8") as file:
-            directions = rays(yaml.safe_load(file)["camera"])
+        directions = recording.rays(sequence)
         ours, theirs = [], {name: [] for name in METHODS}
         with tempfile.TemporaryDirectory() as folder:
             for method in ("joint", "none"):
@@ -99,9 +92,7 @@ def main():
                                 "--set", "filters.chain=isolated_wrap plane_edge"], check=True)
                 files = sorted(os.listdir(f"{folder}/ranges/range"))
                 clouds = [cloud(f"{folder}/ranges/range/{name}", directions) for name in files]
-                with open(f"{sequence}/frames.txt", encoding="utf-8") as file:
-                    times = [float(line.split()[0]) for line in file
-                             if line.strip() and not line.startswith("#")]
+                times = [float(frame[0]) for frame in recording.frames(sequence)]
                 truth = truth_at(sequence, times[:len(clouds)])
                 for name, align in METHODS.items():
                     path, milliseconds = positions(clouds, align)

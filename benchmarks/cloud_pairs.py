@@ -17,7 +17,8 @@ import tempfile
 
 import cv2
 import numpy
-import yaml
+
+import recording
 
 EVERY = 20
 NOISE_PER_M = 0.02 / 5
@@ -25,13 +26,6 @@ AHEAD = numpy.array([0, 0, 3, 1])
 RIGHT_WITHIN_M = 0.1
 HEADER = ("ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\n"
           "property float y\nproperty float z\nend_header\n")
-
-
-def rays(camera):
-    u, v = numpy.meshgrid(numpy.arange(camera["width"]), numpy.arange(camera["height"]))
-    directions = numpy.stack([(u - camera["cx"]) / camera["fx"], (v - camera["cy"]) / camera["fy"],
-                              numpy.ones(u.shape)], axis=-1)
-    return directions / numpy.linalg.norm(directions, axis=-1, keepdims=True)
 
 
 def pose(row):
@@ -46,14 +40,11 @@ def pose(row):
 
 def write_clouds(sequence, folder):
     """The files, and the true pose of each."""
-    with open(f"{sequence}/sequence.yaml", encoding="utf-8") as file:
-        directions = rays(yaml.safe_load(file)["camera"])
-    with open(f"{sequence}/frames.txt", encoding="utf-8") as file:
-        frames = [line.split() for line in file if line.strip() and not line.startswith("#")]
+    directions = recording.rays(sequence)
     truth = numpy.loadtxt(f"{sequence}/groundtruth.txt")
     random = numpy.random.default_rng(1)
     poses = {}
-    for frame in frames[::EVERY]:
+    for frame in recording.frames(sequence)[::EVERY]:
         name = os.path.splitext(os.path.basename(frame[1]))[0]
         range_m = cv2.imread(f"{sequence}/range_truth/{name}.png", cv2.IMREAD_UNCHANGED) / 1000.0
         noisy = range_m * (1 + NOISE_PER_M * random.normal(size=range_m.shape))

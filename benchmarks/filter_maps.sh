@@ -8,15 +8,9 @@
 # (default: build).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-tofmap=${BUILD_DIR:-build}/apps/tofmap
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+source benchmarks/scene_tables.sh
 
-recordings=()
-for scene in room corridor hall; do
-  "$tofmap" simulate "$scene" --out "$work/$scene" --quiet
-  recordings+=("$work/$scene")
-done
+for scene in room corridor hall; do simulate "$scene" "$scene"; done
 recordings+=("$@")
 
 figure() {  # NAME of a figure in the last report; a dash if there is none
@@ -45,11 +39,7 @@ line() {  # LABEL CHAIN [SETTING…]: a line of the table
   printf '\n'
 }
 
-printf '| trajectory, mm / map, mm / seen, %% (frames placed) |'
-for recording in "${recordings[@]}"; do printf ' %s |' "$(basename "$recording")"; done
-printf '\n|---|'
-for _ in "${recordings[@]}"; do printf -- '---|'; done
-printf '\n'
+table_head "trajectory, mm / map, mm / seen, % (frames placed)"
 line "no filter" ""
 line "the default: isolated_wrap plane_edge" "isolated_wrap plane_edge"
 line "without isolated_wrap" "plane_edge"

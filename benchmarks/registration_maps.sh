@@ -7,15 +7,9 @@
 # simulated; more can be named as arguments. BUILD_DIR names the build folder (default: build).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-tofmap=${BUILD_DIR:-build}/apps/tofmap
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+source benchmarks/scene_tables.sh
 
-recordings=()
-for scene in room hall; do
-  "$tofmap" simulate "$scene" --out "$work/$scene" --quiet
-  recordings+=("$work/$scene")
-done
+for scene in room hall; do simulate "$scene" "$scene"; done
 recordings+=("$@")
 
 # Every frame is a keyframe, and only the last one is registered against.
@@ -49,11 +43,7 @@ line() {  # LABEL [SETTING…]: a line of the table
   printf '\n'
 }
 
-printf '| ATE, m, unwrapped / wrapped |'
-for recording in "${recordings[@]}"; do printf ' %s |' "$(basename "$recording")"; done
-printf '\n|---|'
-for _ in "${recordings[@]}"; do printf -- '---|'; done
-printf '\n'
+table_head "ATE, m, unwrapped / wrapped"
 line "ours, loops closed"
 line "ours, loops open" loops.close=false
 line "ours, frame to frame" "${chain[@]}"

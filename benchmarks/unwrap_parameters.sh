@@ -7,17 +7,12 @@
 # BUILD_DIR names the build folder (default: build).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-tofmap=${BUILD_DIR:-build}/apps/tofmap
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+source benchmarks/scene_tables.sh
 
-for scene in slope beyond corridor flat; do
-  "$tofmap" simulate "$scene" --frames 10 --out "$work/$scene" --quiet
-done
-"$tofmap" simulate room --frames 30 --out "$work/room" --quiet
-"$tofmap" simulate room --frames 30 --out "$work/room_5cm" --quiet \
-  --set simulator.range_noise_m=0.05
-recordings=("$work"/{slope,beyond,corridor,flat,room,room_5cm} "$@")
+for scene in slope beyond corridor flat; do simulate "$scene" "$scene" --frames 10; done
+simulate room room --frames 30
+simulate room room_5cm --frames 30 --set simulator.range_noise_m=0.05
+recordings+=("$@")
 
 figure() {  # NAME of a figure in the last report
   sed -n "s/.*\"$1\": \([0-9.e-]*\).*/\1/p" "$work/result/report.json"
@@ -36,11 +31,7 @@ line() {  # LABEL [SETTING…]: a line of the table
   printf '\n'
 }
 
-printf '| wrong wraps, %% (frames that converge, %%) |'
-for recording in "${recordings[@]}"; do printf ' %s |' "$(basename "$recording")"; done
-printf '\n|---|'
-for _ in "${recordings[@]}"; do printf -- '---|'; done
-printf '\n'
+table_head "wrong wraps, % (frames that converge, %)"
 line "as it is"
 for value in 1 3 9; do line "k = $value" "unwrap.window_px=$value"; done
 for value in 0.03 0.14 0.28; do line "σ = $value" "unwrap.sigma_cycles=$value"; done

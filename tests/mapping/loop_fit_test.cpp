@@ -18,8 +18,8 @@ using test::edge;
 using test::largest_error_m;
 using test::loop;
 
-/// A camera that goes round a circle of 3 m, each step 5 mm too high, of which its edges, which claim
-/// a millimetre, know nothing: in the end it is 12 cm off, of 18.8 m.
+/// A camera that goes round a circle of 3 m, each step 5 mm too high, of which its edges, which
+/// claim a millimetre, know nothing: in the end it is 12 cm off, of 18.8 m.
 class DriftingPath : public testing::Test {
  protected:
   static constexpr int steps = 24;

@@ -89,8 +89,8 @@ PoseGraphResult fit_loops(std::span<const Keyframe> keyframes, std::span<const P
                              2 * agreeing.size() > loops.size() &&
                              2 * static_cast<std::size_t>(outvoted) > agreeing.size();
   if (!tell_of_drift) return fitted;
-  fitted = optimise_pose_graph(
-      std::move(poses), with_drift(edges, agreeing, keyframes, options), options.kernel_width);
+  fitted = optimise_pose_graph(std::move(poses), with_drift(edges, agreeing, keyframes, options),
+                               options.kernel_width);
   fitted.edge_deviations.clear();
   for (const PoseEdge& edge : edges) {
     fitted.edge_deviations.push_back(edge_deviation(edge, fitted.poses));
