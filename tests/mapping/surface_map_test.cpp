@@ -33,6 +33,16 @@ TEST(SurfaceMap, AveragesAVoxelByTheVarianceOfItsPoints) {
   EXPECT_NEAR(points[0].confidence, 0.8, 1e-6);
 }
 
+TEST(SurfaceMap, BelievesPointsByTheirConfidence) {
+  SurfaceMap map({.voxel_m = 0.1, .min_observations = 1});
+  SurfaceCloud cloud;
+  cloud.push_back(point_at(1.01F, 0.01F));
+  cloud.push_back(point_at(1.06F, 0.01F));
+  cloud.back().confidence = 0.2F;
+  map.integrate(cloud, Pose::Identity());
+  EXPECT_NEAR(map.extract()[0].z, (0.8 * 1.01 + 0.2 * 1.06) / 1.0, 1e-5);
+}
+
 TEST(SurfaceMap, LeavesOutVoxelsSeenTooSeldomAndPointsTooUncertain) {
   SurfaceMap map({.voxel_m = 0.1, .min_observations = 2, .max_sigma_m = 0.05});
   SurfaceCloud cloud;

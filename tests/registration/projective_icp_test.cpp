@@ -61,6 +61,26 @@ TEST(Registration, LeavesDirectionsThatABareWallDoesNotHoldToThePrior) {
   EXPECT_LT(std::sqrt(result.covariance(5, 5)), 0.01);
 }
 
+TEST(Registration, BelievesPointsByTheirConfidence) {
+  const CameraModel camera = test::small_camera();
+  const SurfaceCloud target = test::box_cloud(camera, box_min, box_max, Pose::Identity());
+  SurfaceCloud source = target;
+  // The left half has moved ahead by what no robust kernel minds at this noise.
+  const float ahead_m = 0.01F;
+  for (SurfacePoint& point : source) {
+    if (point.x > 0) continue;
+    point.z += ahead_m;
+    point.confidence = 0.01F;
+  }
+  const std::array<RegistrationTarget, 1> targets{{{&target, Pose::Identity()}}};
+  const RegistrationResult result = register_to_targets(source, targets, camera, loose_prior(), {});
+  EXPECT_LT(result.world_from_camera.translation().norm(), 0.05 * ahead_m);
+  for (SurfacePoint& point : source) point.confidence = 1;
+  const RegistrationResult trusting =
+      register_to_targets(source, targets, camera, loose_prior(), {});
+  EXPECT_GT(trusting.world_from_camera.translation().norm(), 0.2 * ahead_m);
+}
+
 /// One wall, 3 m away, with noise of the predicted size.
 SurfaceCloud noisy_wall(const CameraModel& camera, const Pose& world_from_camera, unsigned seed) {
   constexpr float sigma_m = 0.01F;

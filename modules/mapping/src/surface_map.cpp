@@ -57,7 +57,7 @@ void SurfaceMap::integrate(const SurfaceCloud& cloud, const Pose& world_from_cam
     const double sigma = point.sigma_m * std::abs(normal.dot(in_camera.normalized()));
     if (!(sigma <= options_.max_sigma_m)) continue;
     const Eigen::Vector3d in_world = world_from_camera * in_camera;
-    const double weight = 1 / std::max(sigma * sigma, min_sigma_m * min_sigma_m);
+    const double weight = point.confidence / std::max(sigma * sigma, min_sigma_m * min_sigma_m);
     Voxel& voxel = voxels_[key(in_world)];
     voxel.weighted_point_m += weight * in_world;
     voxel.weighted_normal += weight * (world_from_camera.linear() * normal);

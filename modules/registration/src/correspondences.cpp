@@ -63,6 +63,7 @@ std::optional<Correspondence> correspondence(const SurfacePoint& source,
   pair.point_m = point;
   pair.normal = normal;
   pair.residual_m = normal.dot(gap);
+  pair.confidence = double{source.confidence} * double{found->confidence};
   pair.normal_sigma_rad = found->normal_sigma_rad;
   const Eigen::Vector3d normal_in_source = target_from_source.linear().transpose() * normal;
   pair.variance_m2 = variance_along(*found, normal) + variance_along(source, normal_in_source) +

@@ -15,6 +15,7 @@ struct Correspondence {
   Eigen::Vector3d normal;       ///< of the target's plane
   double residual_m = 0;        ///< signed, from plane to point
   double variance_m2 = 0;       ///< predicted, of the residual
+  double confidence = 1;        ///< probability that both points are where they are measured
   double normal_sigma_rad = 0;  ///< of the plane's tilt
 };
 

@@ -34,10 +34,10 @@ double geman_mcclure_weight(double normalised_residual, double width) {
 
 namespace {
 
-/// Geman-McClure times the inverse of the predicted variance.
+/// Geman-McClure times the inverse of the predicted variance, of what is as measured.
 double weight_of(const Correspondence& pair, double kernel_width) {
   const double normalised = pair.residual_m / std::sqrt(pair.variance_m2);
-  return geman_mcclure_weight(normalised, kernel_width) / pair.variance_m2;
+  return geman_mcclure_weight(normalised, kernel_width) * pair.confidence / pair.variance_m2;
 }
 
 /// cross_matrix(a) b = a × b.

@@ -17,7 +17,7 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 struct NormalEquations {
   Matrix6d information = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
-  double weight_sum = 0;  ///< of 1 / variance, kernel included
+  double weight_sum = 0;  ///< of confidence / variance, kernel included
   /// What of that information is expected to come from the noise of the normals alone.
   Matrix6d feigned = Matrix6d::Zero();
 };

@@ -29,9 +29,9 @@ struct SurfaceMapOptions {
 /// The surface seen so far, one averaged point per voxel of a hash grid: memory follows the
 /// volume seen, not the number of frames.
 ///
-/// Each voxel keeps the mean of its points and normals, weighted by the inverse variance of the
-/// points along their normals. The result depends on the order of frames only by rounding, and
-/// on the number of threads not at all.
+/// Each voxel keeps the mean of its points and normals, weighted by confidence and the inverse
+/// variance of the points along their normals. The result depends on the order of frames only by
+/// rounding, and on the number of threads not at all.
 class SurfaceMap {
  public:
   explicit SurfaceMap(const SurfaceMapOptions& options);
