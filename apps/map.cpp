@@ -90,7 +90,7 @@ int run_map(const MapArguments& arguments) {
   if (arguments.resume) take_up_map(arguments.out, run, source, options.pipeline);
   follow_camera(run, source, arguments.common.quiet);
   if (run.is_interrupted()) {
-    write_map_state(out.path(), run, source.sensor(), options.pipeline);
+    write_map_state(out.path(), run, source, options.pipeline);
   }
   const RoomMap map = run.finish();
   check_result(map);

@@ -3,8 +3,11 @@
 
 #include "map_state.hpp"
 
+#include <cstdio>
 #include <fstream>
 #include <sstream>
+
+#include <boost/crc.hpp>
 
 #include <tofmap/core/error.hpp>
 
@@ -12,8 +15,8 @@ namespace tofmap::app {
 namespace {
 
 constexpr const char* file_name = "state.bin";
-constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION;
-constexpr const char* last_line = "data";
+// The number after the comma is raised whenever what is stored changes between releases.
+constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 2";
 
 /// What a run must have in common with the one it goes on from, a fact a line.
 std::vector<std::string> identity(const SensorModel& sensor, PipelineOptions options) {
@@ -43,14 +46,30 @@ void check_identity(std::istream& in, const std::vector<std::string>& now,
   }
 }
 
-void check_recording(const MapRun& run, const SequenceReader& source,
-                     const std::filesystem::path& folder) {
-  const auto& files = source.files();
-  bool is_same = run.frames().size() <= files.size();
-  for (std::size_t i = 0; is_same && i < run.frames().size(); ++i) {
-    is_same = run.frames()[i].timestamp_s == files[i].timestamp_s;
+/// What tells so many frames of a recording from those of another: their times, and the phases of
+/// the first and the last.
+std::string recording_line(const SequenceReader& source, int frames) {
+  boost::crc_32_type checksum;
+  for (int i = 0; i < frames; ++i) {
+    const double time_s = source.files()[static_cast<std::size_t>(i)].timestamp_s;
+    checksum.process_bytes(&time_s, sizeof time_s);
   }
-  if (is_same) return;
+  for (const int i : {0, frames - 1}) {
+    if (frames == 0) break;
+    const SourcedFrame sourced = source.read(i);
+    if (!sourced.frame) continue;
+    const ImageF& phase = sourced.frame->phase_a;
+    checksum.process_bytes(phase.data(), static_cast<std::size_t>(phase.size()) * sizeof(float));
+  }
+  return "recording: " + std::to_string(frames) + " frames, " + std::to_string(checksum.checksum());
+}
+
+void check_recording(const std::string& line, const SequenceReader& source,
+                     const std::filesystem::path& folder) {
+  int frames = -1;
+  std::sscanf(line.c_str(), "recording: %d", &frames);
+  const bool has_them = frames >= 0 && frames <= *source.frame_count();
+  if (has_them && line == recording_line(source, frames)) return;
   throw InputError(folder.string() +
                    ": its run is of another recording; give that one, or start anew without "
                    "--resume");
@@ -59,12 +78,14 @@ void check_recording(const MapRun& run, const SequenceReader& source,
 }  // namespace
 
 void write_map_state(const std::filesystem::path& folder, const MapRun& run,
-                     const SensorModel& sensor, PipelineOptions options) {
+                     const SequenceReader& source, PipelineOptions options) {
   const std::filesystem::path file = folder / file_name;
   std::ofstream out(file, std::ios::binary);
   out << first_line << '\n';
-  for (const std::string& line : identity(sensor, std::move(options))) out << line << '\n';
-  out << last_line << '\n';
+  for (const std::string& line : identity(source.sensor(), std::move(options))) {
+    out << line << '\n';
+  }
+  out << recording_line(source, static_cast<int>(run.frames().size())) << '\n';
   try {
     run.save(out);
   } catch (const std::exception&) {
@@ -89,13 +110,13 @@ void take_up_map(const std::filesystem::path& folder, MapRun& run, SequenceReade
                      ": was written by another version; start anew without --resume");
   }
   check_identity(in, identity(source.sensor(), std::move(options)), folder);
+  std::getline(in, line);
+  check_recording(line, source, folder);
   try {
-    std::getline(in, line);
     run.load(in);
   } catch (const std::exception&) {
     throw InputError(file.string() + ": is damaged; start anew without --resume");
   }
-  check_recording(run, source, folder);
   source.start_at(static_cast<int>(run.frames().size()));
 }
 

@@ -12,7 +12,7 @@ namespace tofmap::app {
 /// Writes what an interrupted run needs to go on into a result folder. Throws InputError if it
 /// cannot be written whole.
 void write_map_state(const std::filesystem::path& folder, const MapRun& run,
-                     const SensorModel& sensor, PipelineOptions options);
+                     const SequenceReader& source, PipelineOptions options);
 
 /// Goes on where the interrupted run of a result folder ended: fills `run` and moves the recording
 /// to its next frame. A folder that is not there is a run that has not begun. Throws InputError if

@@ -41,9 +41,9 @@ def with_wiggle(sequence, out, error_m):
         error_cycles = error_m * 2 * frequency / SPEED_OF_LIGHT_M_S
         for name in os.listdir(f"{sequence}/{folder}"):
             stored = cv2.imread(f"{sequence}/{folder}/{name}", cv2.IMREAD_UNCHANGED)
-            cycles = stored / 65536.0
+            cycles = stored / 65535.0
             cycles = (cycles + error_cycles * numpy.sin(8 * numpy.pi * cycles)) % 1
-            wiggled = numpy.minimum(numpy.round(65536 * cycles), NO_RETURN - 1)
+            wiggled = numpy.minimum(numpy.round(65535 * cycles), NO_RETURN - 1)
             wiggled[stored == NO_RETURN] = NO_RETURN
             cv2.imwrite(f"{out}/{folder}/{name}", wiggled.astype(numpy.uint16))
 

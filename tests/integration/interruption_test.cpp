@@ -150,6 +150,15 @@ TEST_F(InterruptedMap, DoesNotGoOnWithAnotherRecording) {
   EXPECT_THAT(resumed.err, testing::HasSubstr("another recording"));
 }
 
+TEST_F(InterruptedMap, DoesNotGoOnWithARecordingOfTheSameTimes) {
+  if (read_json(out_ / "report.json")["frames"].empty()) GTEST_SKIP() << "nothing was mapped";
+  fs::copy_file(sequence_ / "phase_b" / "000000.png", sequence_ / "phase_a" / "000000.png",
+                fs::copy_options::overwrite_existing);
+  const Finished resumed = resume();
+  EXPECT_EQ(resumed.status, 3);
+  EXPECT_THAT(resumed.err, testing::HasSubstr("another recording"));
+}
+
 TEST_F(InterruptedMap, DoesNotGoOnFromADamagedState) {
   const std::string state = read_text(out_ / "state.bin");
   for (const std::size_t size : {std::size_t{10}, state.size() / 2, state.size() - 1}) {
