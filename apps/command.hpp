@@ -45,6 +45,7 @@ struct Outcome {
   int status = exit_status::done;
 };
 
+void add_calibrate_command(CLI::App& program, Outcome& outcome);
 void add_simulate_command(CLI::App& program, Outcome& outcome);
 void add_info_command(CLI::App& program, Outcome& outcome);
 void add_unwrap_command(CLI::App& program, Outcome& outcome);

@@ -6,6 +6,7 @@
 #include "method_run.hpp"
 #include "options.hpp"
 #include "output_folder.hpp"
+#include "recording.hpp"
 
 #include <cstdio>
 #include <memory>
@@ -22,7 +23,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct EvaluateArguments {
-  std::filesystem::path sequence;
+  RecordingArguments recording;
   std::filesystem::path out;
   CommonArguments common;
 };
@@ -58,12 +59,13 @@ void write_method(const OutputFolder& out, const MethodResult& result) {
 
 int run_evaluate(const EvaluateArguments& arguments) {
   ProgramOptions options;
-  const OptionTable table = arguments.common.resolve("evaluate", options);
+  OptionTable table = arguments.common.resolve("evaluate", options);
+  arguments.recording.apply(table);
   const std::vector<std::string> methods = method_names(options.evaluation);
   const bool down_to_map = options.evaluation.down_to == "map";
   const bool quiet = arguments.common.quiet;
 
-  const SequenceReader source(arguments.sequence);
+  const SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
   const Truth truth = down_to_map ? read_truth(source) : Truth{};
   if (!quiet) say_what_is_missing(source, truth, down_to_map);
   OutputFolder out(arguments.out);
@@ -102,7 +104,7 @@ void add_evaluate_command(CLI::App& program, Outcome& outcome) {
   auto arguments = std::make_shared<EvaluateArguments>();
   CLI::App* app = program.add_subcommand(
       "evaluate", "compare every method, with and without unwrapping, down to the map");
-  app->add_option("SEQ", arguments->sequence, "folder of the recording")->required();
+  arguments->recording.add_to(*app);
   app->add_option("--out", arguments->out, "folder for the result")->required();
   arguments->common.add_to(*app);
   app->callback([arguments, &outcome] { outcome.status = run_evaluate(*arguments); });

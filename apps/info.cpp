@@ -4,6 +4,7 @@
 #include "command.hpp"
 #include "interruption.hpp"
 #include "options.hpp"
+#include "recording.hpp"
 
 #include <cstdio>
 #include <memory>
@@ -16,7 +17,7 @@ namespace tofmap::app {
 namespace {
 
 struct InfoArguments {
-  std::filesystem::path sequence;
+  RecordingArguments recording;
   CommonArguments common;
 };
 
@@ -92,8 +93,9 @@ void print_doubts(const SensorModel& sensor, const FrameSurvey& survey) {
 
 int run_info(const InfoArguments& arguments) {
   ProgramOptions options;
-  arguments.common.resolve("info", options);
-  const SequenceReader source(arguments.sequence);
+  OptionTable table = arguments.common.resolve("info", options);
+  arguments.recording.apply(table);
+  const SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
   const FrameSurvey survey = survey_frames(source);
   print_sensor(source.sensor());
   print_frames(source, survey);
@@ -106,7 +108,7 @@ int run_info(const InfoArguments& arguments) {
 void add_info_command(CLI::App& program, Outcome& outcome) {
   auto arguments = std::make_shared<InfoArguments>();
   CLI::App* app = program.add_subcommand("info", "tell what is in a recording, and what is wrong");
-  app->add_option("SEQ", arguments->sequence, "folder of the recording")->required();
+  arguments->recording.add_to(*app);
   arguments->common.add_to(*app);
   app->callback([arguments, &outcome] { outcome.status = run_info(*arguments); });
 }

@@ -31,6 +31,7 @@ int run(int argc, char** argv) {
   Outcome outcome;
   add_simulate_command(program, outcome);
   add_info_command(program, outcome);
+  add_calibrate_command(program, outcome);
   add_unwrap_command(program, outcome);
   add_map_command(program, outcome);
   add_register_command(program, outcome);

@@ -8,6 +8,7 @@
 #include "options.hpp"
 #include "output_folder.hpp"
 #include "progress.hpp"
+#include "recording.hpp"
 
 #include <cstdio>
 #include <memory>
@@ -24,7 +25,7 @@ namespace tofmap::app {
 namespace {
 
 struct MapArguments {
-  std::filesystem::path sequence;
+  RecordingArguments recording;
   std::filesystem::path out;
   std::string method;
   bool resume = false;
@@ -82,9 +83,10 @@ void follow_camera(MapRun& run, FrameSource& source, bool quiet) {
 int run_map(const MapArguments& arguments) {
   ProgramOptions options;
   OptionTable table = arguments.common.resolve("map", options);
+  arguments.recording.apply(table);
   if (!arguments.method.empty()) table.set("unwrap.method", arguments.method);
 
-  SequenceReader source(arguments.sequence);
+  SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
   OutputFolder out(arguments.out);
   MapRun run(source.sensor(), options.pipeline);
   if (arguments.resume) take_up_map(arguments.out, run, source, options.pipeline);
@@ -110,7 +112,7 @@ int run_map(const MapArguments& arguments) {
 void add_map_command(CLI::App& program, Outcome& outcome) {
   auto arguments = std::make_shared<MapArguments>();
   CLI::App* app = program.add_subcommand("map", "make a map of the room from a recording");
-  app->add_option("SEQ", arguments->sequence, "folder of the recording")->required();
+  arguments->recording.add_to(*app);
   app->add_option("--out", arguments->out, "folder for the result")->required();
   app->add_option("--method", arguments->method, "how to unwrap: " + unwrap_method_names(", "));
   app->add_flag("--resume", arguments->resume,

@@ -66,7 +66,7 @@ MethodResult run_down_to_map(const std::string& method, const SequenceReader& re
   MethodResult result;
   result.name = method;
   options.unwrap.method = method;
-  SequenceReader source(recording.folder());
+  SequenceReader source(recording.folder(), recording.calibration());
   Progress progress("method " + method + ", frame", source.frame_count(), quiet);
   MapHooks hooks;
   hooks.keep_going = [&](int done) {

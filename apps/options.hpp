@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "calibration_options.hpp"
 #include "evaluation_options.hpp"
 #include "pictures.hpp"
 
@@ -26,6 +27,8 @@ struct RunOptions {
 struct ProgramOptions {
   RunOptions run;
   SimulatorOptions simulator;
+  CameraOptions camera;
+  CalibrationOptions calibration;
   PipelineOptions pipeline;
   FusionOptions fusion;
   CloudRegistrationOptions cloud_registration;

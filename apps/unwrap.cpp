@@ -8,6 +8,7 @@
 #include "options.hpp"
 #include "output_folder.hpp"
 #include "progress.hpp"
+#include "recording.hpp"
 #include "unwrapped_frame.hpp"
 
 #include <algorithm>
@@ -27,7 +28,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct UnwrapArguments {
-  std::filesystem::path sequence;
+  RecordingArguments recording;
   std::filesystem::path out;
   std::string method;
   std::filesystem::path poses;
@@ -59,9 +60,10 @@ Trajectory poses_of(const SequenceReader& source, const std::filesystem::path& f
 int run_unwrap(const UnwrapArguments& arguments) {
   ProgramOptions options;
   OptionTable table = arguments.common.resolve("unwrap", options);
+  arguments.recording.apply(table);
   if (!arguments.method.empty()) table.set("unwrap.method", arguments.method);
 
-  const SequenceReader source(arguments.sequence);
+  const SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
   const Trajectory poses =
       arguments.poses.empty() ? Trajectory{} : poses_of(source, arguments.poses);
   limit_to_image_format(options.pipeline.unwrap, source.sensor());
@@ -128,7 +130,7 @@ int run_unwrap(const UnwrapArguments& arguments) {
 void add_unwrap_command(CLI::App& program, Outcome& outcome) {
   auto arguments = std::make_shared<UnwrapArguments>();
   CLI::App* app = program.add_subcommand("unwrap", "make unwrapped range images of a recording");
-  app->add_option("SEQ", arguments->sequence, "folder of the recording")->required();
+  arguments->recording.add_to(*app);
   app->add_option("--out", arguments->out, "folder for the result")->required();
   app->add_option("--method", arguments->method, "how to unwrap: " + unwrap_method_names(", "));
   app->add_option("--min-confidence", arguments->min_confidence,

@@ -3,6 +3,7 @@
 
 #include "command.hpp"
 #include "options.hpp"
+#include "recording.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -84,8 +85,9 @@ View view_of_mesh(const ViewArguments& arguments, const fs::path& file) {
 }
 
 /// One frame of a recording, unwrapped and filtered as the options say.
-View view_of_frame(const ViewArguments& arguments, const PipelineOptions& options) {
-  const SequenceReader source(arguments.path);
+View view_of_frame(const ViewArguments& arguments, const ProgramOptions& all) {
+  const PipelineOptions& options = all.pipeline;
+  const SequenceReader source = open_recording(arguments.path, all.camera);
   const SourcedFrame sourced = source.read(arguments.frame);
   if (!sourced.frame) throw InputError(sourced.damage);
   const PixelRays rays = pixel_rays(source.sensor().camera);
@@ -111,7 +113,7 @@ bool is_mesh(const fs::path& file) {
   return false;
 }
 
-View make_view(const ViewArguments& arguments, const PipelineOptions& options) {
+View make_view(const ViewArguments& arguments, const ProgramOptions& options) {
   const fs::path& path = arguments.path;
   if (!fs::exists(path)) {
     throw InputError(path.string() +
@@ -142,7 +144,7 @@ int run_view(const ViewArguments& arguments) {
   ProgramOptions options;
   OptionTable table = arguments.common.resolve("view", options);
   if (!arguments.method.empty()) table.set("unwrap.method", arguments.method);
-  const View view = make_view(arguments, options.pipeline);
+  const View view = make_view(arguments, options);
   if (arguments.screenshot.empty()) {
     open_window(view, arguments.path.string());
     return exit_status::done;

@@ -109,7 +109,8 @@ ImageF phase_from_pixels(const ImageU16& pixels) {
 
 }  // namespace
 
-SequenceReader::SequenceReader(std::filesystem::path folder) : folder_(std::move(folder)) {
+SequenceReader::SequenceReader(std::filesystem::path folder, CameraCalibration calibration)
+    : folder_(std::move(folder)), calibration_(std::move(calibration)) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder_, ignored)) {
     throw InputError(folder_.string() +
@@ -118,6 +119,7 @@ SequenceReader::SequenceReader(std::filesystem::path folder) : folder_(std::move
   sensor_ = read_sequence_header(folder_ / "sequence.yaml");
   constexpr double end_of_scale = 65535;  // more than that may have been meant
   sensor_.saturation_amplitude = end_of_scale;
+  sensor_ = calibrated(std::move(sensor_), calibration_);
   files_ = read_frame_list(folder_ / "frames.txt");
 }
 
@@ -158,6 +160,7 @@ DualFrequencyFrame SequenceReader::read_frame(int index) const {
   frame.timestamp_s = files.timestamp_s;
   frame.phase_a = phase_from_pixels(read_sized(folder_ / files.phase_a, sensor_.camera));
   frame.phase_b = phase_from_pixels(read_sized(folder_ / files.phase_b, sensor_.camera));
+  calibrate(frame, sensor_.modulation, calibration_);
   // One amplitude says nothing about the other image's noise: it counts as none.
   if (files.amplitude_a.empty() || files.amplitude_b.empty()) return frame;
   frame.amplitude_a = read_sized(folder_ / files.amplitude_a, sensor_.camera).cast<float>();

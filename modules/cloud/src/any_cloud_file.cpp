@@ -150,6 +150,9 @@ std::vector<Eigen::Vector3d> finite_positions(const pcl::PCLPointCloud2& cloud) 
 }
 
 AnyCloud read_any_cloud(const std::filesystem::path& file) {
+  if (std::filesystem::is_directory(file)) {
+    throw InputError(file.string() + ": is a folder; name the clouds in it");
+  }
   if (!std::filesystem::is_regular_file(file)) {
     throw InputError(file.string() + ": no such file");
   }

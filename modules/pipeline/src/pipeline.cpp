@@ -116,6 +116,9 @@ PreparedFrame prepare_frame(const DualFrequencyFrame& frame, Unwrapper& unwrappe
   out.filtered = timed(out.times.filter_ms, [&] {
     return apply_filters(out.unwrapped.image, frame, sensor.modulation, rays, options.filters);
   });
+  // Wrapped ranges are those of a camera that knows of no wraps: how likely they are right would
+  // tell registration what only unwrapping knows.
+  if (options.unwrap.method == "none") out.filtered.image.confidence.setOnes();
   out.cloud = timed(out.times.cloud_ms, [&] {
     return std::make_shared<const SurfaceCloud>(
         surface_cloud(out.filtered.image, rays, options.cloud));

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <tofmap/acquisition/camera_calibration.hpp>
 #include <tofmap/acquisition/frame_source.hpp>
 #include <tofmap/core/trajectory.hpp>
 
@@ -32,10 +33,12 @@ struct SequenceFrameFiles {
 class SequenceReader final : public FrameSource {
  public:
   /// Opens the folder: reads sequence.yaml and frames.txt and checks them. Throws InputError
-  /// that names the file and the remedy if either is missing or wrong, or lists no frame.
-  explicit SequenceReader(std::filesystem::path folder);
+  /// that names the file and the remedy if either is missing or wrong, or lists no frame, or if the
+  /// calibration, which is applied to all frames, is of another camera.
+  explicit SequenceReader(std::filesystem::path folder, CameraCalibration calibration = {});
 
   const std::filesystem::path& folder() const { return folder_; }
+  const CameraCalibration& calibration() const { return calibration_; }
   const SensorModel& sensor() const override { return sensor_; }
   /// The frame that next() gives next, by its place in frames.txt.
   void start_at(int index);
@@ -61,6 +64,7 @@ class SequenceReader final : public FrameSource {
   DualFrequencyFrame read_frame(int index) const;
 
   std::filesystem::path folder_;
+  CameraCalibration calibration_;
   SensorModel sensor_;
   std::vector<SequenceFrameFiles> files_;
   int next_index_ = 0;

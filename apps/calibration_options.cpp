@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "calibration_options.hpp"
+
+#include <sstream>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap::app {
+
+std::vector<OptionField<CameraOptions>> CameraOptions::fields() {
+  return {{"calibration_file", &CameraOptions::calibration_file, 0, 0, "",
+           "what 'tofmap calibrate' found of the camera; empty: nothing"}};
+}
+
+std::vector<OptionField<CalibrationOptions>> CalibrationOptions::fields() {
+  using O = CalibrationOptions;
+  return {
+      {"reference", &O::reference, 0, 0, "",
+       "truth: the recording's true ranges; beat: how both frequencies disagree; auto: truth where "
+       "there is any",
+       "auto | truth | beat"},
+      {"harmonics", &O::harmonics, 0, 0, "",
+       "orders of the periodic error over a wavelength; empty: 1 2 3 4 8 against truth, 4 8 by the "
+       "beat, in which motion feigns lower ones"},
+      {"every_frame", &O::every_frame, 1, 100000, "", "every how manieth frame is looked at"},
+      {"max_error_m", &O::max_error_m, 0.001, 1, "m",
+       "pixels farther off than this, from the middle of all, count as wrong"},
+  };
+}
+
+std::vector<int> harmonic_orders(const CalibrationOptions& options, const std::string& reference) {
+  constexpr int most = 16;
+  if (options.harmonics.empty()) {
+    return reference == "truth" ? std::vector<int>{1, 2, 3, 4, 8} : std::vector<int>{4, 8};
+  }
+  std::vector<int> orders;
+  std::istringstream words(options.harmonics);
+  for (std::string word; words >> word;) {
+    const bool is_number = word.find_first_not_of("0123456789") == std::string::npos;
+    const int order = is_number && word.size() < 3 ? std::stoi(word) : 0;
+    if (order < 1 || order > most) {
+      throw UsageError("calibration.harmonics: '" + word + "' is no whole number from 1 to " +
+                       std::to_string(most));
+    }
+    orders.push_back(order);
+  }
+  return orders;
+}
+
+}  // namespace tofmap::app

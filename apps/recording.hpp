@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "options.hpp"
+
+#include <filesystem>
+
+#include <tofmap/acquisition/sequence.hpp>
+
+namespace CLI {
+class App;
+}
+
+namespace tofmap::app {
+
+/// A recording as commands take it from the command line: SEQ, and --calibration, which is short
+/// for camera.calibration_file.
+struct RecordingArguments {
+  std::filesystem::path sequence;
+  std::string calibration;
+
+  void add_to(CLI::App& command);
+
+  /// Puts what was given into the table of a command.
+  void apply(OptionTable& table) const;
+};
+
+/// Opens a recording of a calibrated camera.
+SequenceReader open_recording(const std::filesystem::path& sequence, const CameraOptions& options);
+
+}  // namespace tofmap::app

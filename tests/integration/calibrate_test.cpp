@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "program.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include <tofmap/acquisition/camera_calibration.hpp>
+#include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/core/median.hpp>
+
+namespace tofmap::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A recording of a camera whose ranges swing by 2 cm four times a wavelength: that of a perfect
+/// one, calibrated by the opposite error.
+class Calibrate : public testing::Test {
+ protected:
+  static constexpr double swing_m = 0.02;
+
+  Calibrate() {
+    const fs::path perfect = folder_.path() / "perfect";
+    EXPECT_EQ(run_program({"simulate", "room", "--frames", "12", "--out", perfect.string(), "--set",
+                           "simulator.max_step_m=0.3", "simulator.max_turn_deg=20",
+                           "simulator.range_noise_m=0.005"})
+                  .status,
+              0);
+    CameraCalibration opposite;
+    opposite.error_a.harmonics = opposite.error_b.harmonics = {{4, 0, -swing_m}};
+    SequenceReader reader(perfect, opposite);
+    SequenceWriter writer(sequence_, reader.sensor());
+    while (const auto sourced = reader.next()) {
+      writer.add(*sourced->frame, {}, reader.range_truth(sourced->index));
+    }
+  }
+
+  CameraCalibration calibrate(const std::string& reference) const {
+    const fs::path file = folder_.path() / (reference + ".yaml");
+    const Finished finished = run_program({"calibrate", sequence_.string(), "--out", file.string(),
+                                           "--set", "calibration.reference=" + reference});
+    EXPECT_EQ(finished.status, 0) << finished.err;
+    return read_calibration(file);
+  }
+
+  /// Of the ranges at A, the wraps of the truth given.
+  double median_error_m(const CameraCalibration& calibration) const {
+    SequenceReader reader(sequence_, calibration);
+    const double wavelength_m = reader.sensor().modulation.wavelength_a_m();
+    std::vector<double> errors_m;
+    while (const auto sourced = reader.next()) {
+      const ImageF truth_m = *reader.range_truth(sourced->index);
+      for (Eigen::Index i = 0; i < truth_m.size(); ++i) {
+        const double off = sourced->frame->phase_a.data()[i] - truth_m.data()[i] / wavelength_m;
+        if (!std::isnan(off)) errors_m.push_back(wavelength_m * std::abs(off - std::round(off)));
+      }
+    }
+    return median(errors_m);
+  }
+
+  TemporaryFolder folder_;
+  fs::path sequence_ = folder_.path() / "wiggling";
+};
+
+double amplitude_m(const PhaseError& error) {
+  for (const WiggleHarmonic& harmonic : error.harmonics) {
+    if (harmonic.order == 4) return std::hypot(harmonic.cosine_m, harmonic.sine_m);
+  }
+  return 0;
+}
+
+TEST_F(Calibrate, FindsThePeriodicErrorFromKnownRanges) {
+  const CameraCalibration found = calibrate("truth");
+  EXPECT_NEAR(amplitude_m(found.error_a), swing_m, 0.2 * swing_m);
+  EXPECT_NEAR(amplitude_m(found.error_b), swing_m, 0.2 * swing_m);
+  EXPECT_NEAR(found.error_a.offset_m, 0, 0.003);
+}
+
+TEST_F(Calibrate, FindsThePeriodicErrorWithoutKnownRanges) {
+  fs::remove_all(sequence_ / "range_truth");
+  const CameraCalibration found = calibrate("auto");
+  EXPECT_NEAR(amplitude_m(found.error_a), swing_m, 0.35 * swing_m);
+  EXPECT_NEAR(amplitude_m(found.error_b), swing_m, 0.35 * swing_m);
+}
+
+TEST_F(Calibrate, MakesRangesBetter) {
+  const double before_m = median_error_m({});
+  EXPECT_GT(before_m, 0.5 * swing_m);
+  EXPECT_LT(median_error_m(calibrate("beat")), 0.5 * before_m);
+}
+
+TEST_F(Calibrate, IsWrittenIntoTheOptionsOfWhatUsesIt) {
+  calibrate("truth");
+  const std::string file = (folder_.path() / "truth.yaml").string();
+  const fs::path out = folder_.path() / "ranges";
+  const Finished finished = run_program({"unwrap", sequence_.string(), "--out", out.string(),
+                                         "--calibration", file, "--set", "pictures.frames=0"});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  EXPECT_THAT(read_text(out / "options.yaml"), testing::HasSubstr(file));
+}
+
+TEST_F(Calibrate, SaysWhatIsMissing) {
+  fs::remove_all(sequence_ / "range_truth");
+  const Finished none = run_program(
+      {"calibrate", sequence_.string(), "--out", "c.yaml", "--set", "calibration.reference=truth"});
+  EXPECT_EQ(none.status, 3);
+  EXPECT_THAT(none.err, testing::HasSubstr("range_truth"));
+  const Finished wrong = run_program(
+      {"info", sequence_.string(), "--calibration", (sequence_ / "sequence.yaml").string()});
+  EXPECT_EQ(wrong.status, 3);
+  EXPECT_THAT(wrong.err, testing::HasSubstr("tofmap-camera"));
+  const Finished order = run_program(
+      {"calibrate", sequence_.string(), "--out", "c.yaml", "--set", "calibration.harmonics=0"});
+  EXPECT_EQ(order.status, 2);
+  EXPECT_THAT(order.err, testing::HasSubstr("calibration.harmonics"));
+}
+
+}  // namespace
+}  // namespace tofmap::test
