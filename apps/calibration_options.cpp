@@ -18,22 +18,24 @@ std::vector<OptionField<CalibrationOptions>> CalibrationOptions::fields() {
   using O = CalibrationOptions;
   return {
       {"reference", &O::reference, 0, 0, "",
-       "truth: the recording's true ranges; beat: how both frequencies disagree; auto: truth where "
-       "there is any",
-       "auto | truth | beat"},
+       "truth: the recording's true ranges; wall: a flat wall at known distances; beat: how both "
+       "frequencies disagree; auto: wall if wall_file is given, else truth where there is any",
+       "auto | truth | wall | beat"},
+      {"wall_file", &O::wall_file, 0, 0, "",
+       "lines 'frame distance', metres from the camera along the wall's normal"},
       {"harmonics", &O::harmonics, 0, 0, "",
-       "orders of the periodic error over a wavelength; empty: 1 2 3 4 8 against truth, 4 8 by the "
-       "beat, in which motion feigns lower ones"},
+       "orders of the periodic error over a wavelength; empty: 1 2 3 4 8 against known ranges, 4 8 "
+       "by the beat, in which motion feigns lower ones"},
       {"every_frame", &O::every_frame, 1, 100000, "", "every how manieth frame is looked at"},
       {"max_error_m", &O::max_error_m, 0.001, 1, "m",
        "pixels farther off than this, from the middle of all, count as wrong"},
   };
 }
 
-std::vector<int> harmonic_orders(const CalibrationOptions& options, const std::string& reference) {
+std::vector<int> harmonic_orders(const CalibrationOptions& options, bool ranges_are_known) {
   constexpr int most = 16;
   if (options.harmonics.empty()) {
-    return reference == "truth" ? std::vector<int>{1, 2, 3, 4, 8} : std::vector<int>{4, 8};
+    return ranges_are_known ? std::vector<int>{1, 2, 3, 4, 8} : std::vector<int>{4, 8};
   }
   std::vector<int> orders;
   std::istringstream words(options.harmonics);

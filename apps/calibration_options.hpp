@@ -19,6 +19,7 @@ struct CameraOptions {
 /// How a camera is calibrated.
 struct CalibrationOptions {
   std::string reference = "auto";
+  std::string wall_file;
   std::string harmonics;
   int every_frame = 1;
   double max_error_m = 0.15;
@@ -26,8 +27,8 @@ struct CalibrationOptions {
   static std::vector<OptionField<CalibrationOptions>> fields();
 };
 
-/// The orders of the harmonics that are fitted against a reference. Throws UsageError if the option
-/// holds something else than whole numbers from 1 to 16.
-std::vector<int> harmonic_orders(const CalibrationOptions& options, const std::string& reference);
+/// The orders of the harmonics that are fitted. Throws UsageError if the option holds something
+/// else than whole numbers from 1 to 16.
+std::vector<int> harmonic_orders(const CalibrationOptions& options, bool ranges_are_known);
 
 }  // namespace tofmap::app

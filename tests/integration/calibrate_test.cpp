@@ -4,6 +4,7 @@
 #include "program.hpp"
 
 #include <cmath>
+#include <fstream>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -75,16 +76,16 @@ double amplitude_m(const PhaseError& error) {
 
 TEST_F(Calibrate, FindsThePeriodicErrorFromKnownRanges) {
   const CameraCalibration found = calibrate("truth");
-  EXPECT_NEAR(amplitude_m(found.error_a), swing_m, 0.2 * swing_m);
-  EXPECT_NEAR(amplitude_m(found.error_b), swing_m, 0.2 * swing_m);
+  EXPECT_NEAR(amplitude_m(found.error_a), swing_m, 0.1 * swing_m);
+  EXPECT_NEAR(amplitude_m(found.error_b), swing_m, 0.1 * swing_m);
   EXPECT_NEAR(found.error_a.offset_m, 0, 0.003);
 }
 
 TEST_F(Calibrate, FindsThePeriodicErrorWithoutKnownRanges) {
   fs::remove_all(sequence_ / "range_truth");
   const CameraCalibration found = calibrate("auto");
-  EXPECT_NEAR(amplitude_m(found.error_a), swing_m, 0.35 * swing_m);
-  EXPECT_NEAR(amplitude_m(found.error_b), swing_m, 0.35 * swing_m);
+  EXPECT_NEAR(amplitude_m(found.error_a), swing_m, 0.15 * swing_m);
+  EXPECT_NEAR(amplitude_m(found.error_b), swing_m, 0.15 * swing_m);
 }
 
 TEST_F(Calibrate, MakesRangesBetter) {
@@ -103,6 +104,16 @@ TEST_F(Calibrate, IsWrittenIntoTheOptionsOfWhatUsesIt) {
   EXPECT_THAT(read_text(out / "options.yaml"), testing::HasSubstr(file));
 }
 
+TEST_F(Calibrate, LeavesOutFramesThatNoWallFills) {
+  const fs::path wall = folder_.path() / "wall.txt";
+  std::ofstream(wall) << "0 2.5\n";  // a corner of the furnished room
+  const Finished finished = run_program({"calibrate", sequence_.string(), "--out", "c.yaml",
+                                         "--set", "calibration.wall_file=" + wall.string()});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_THAT(finished.err, testing::HasSubstr("no flat wall fills it"));
+  EXPECT_THAT(finished.err, testing::HasSubstr("too few pixels"));
+}
+
 TEST_F(Calibrate, SaysWhatIsMissing) {
   fs::remove_all(sequence_ / "range_truth");
   const Finished none = run_program(
@@ -113,6 +124,10 @@ TEST_F(Calibrate, SaysWhatIsMissing) {
       {"info", sequence_.string(), "--calibration", (sequence_ / "sequence.yaml").string()});
   EXPECT_EQ(wrong.status, 3);
   EXPECT_THAT(wrong.err, testing::HasSubstr("tofmap-camera"));
+  const Finished wall = run_program(
+      {"calibrate", sequence_.string(), "--out", "c.yaml", "--set", "calibration.reference=wall"});
+  EXPECT_EQ(wall.status, 2);
+  EXPECT_THAT(wall.err, testing::HasSubstr("calibration.wall_file"));
   const Finished order = run_program(
       {"calibrate", sequence_.string(), "--out", "c.yaml", "--set", "calibration.harmonics=0"});
   EXPECT_EQ(order.status, 2);

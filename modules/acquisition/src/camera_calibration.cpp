@@ -156,11 +156,12 @@ SensorModel calibrated(SensorModel sensor, const CameraCalibration& calibration)
     sensor.saturation_amplitude = calibration.saturation_amplitude;
   }
   if (!calibration.camera) return sensor;
-  const auto size = [](const CameraModel& camera) {
-    return std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px);
-  };
-  if (size(*calibration.camera) != size(sensor.camera)) {
-    throw InputError("the calibration is of a camera of " + size(*calibration.camera) +
+  const CameraModel& given = *calibration.camera;
+  if (given.width_px != sensor.camera.width_px || given.height_px != sensor.camera.height_px) {
+    const auto size = [](const CameraModel& camera) {
+      return std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px);
+    };
+    throw InputError("the calibration is of a camera of " + size(given) +
                      " pixels, the recording's has " + size(sensor.camera) +
                      "; is it of another camera?");
   }

@@ -8,7 +8,11 @@
 
 namespace tofmap {
 
+namespace {
+
 constexpr int max_side_px = 16384;
+
+}  // namespace
 
 YamlSection load_yaml(const std::filesystem::path& file, const std::string& hint) {
   try {

@@ -20,10 +20,6 @@ constexpr double shared_sigma_rad = 0.0005;
 /// Places that differ more are not tried.
 constexpr double alike_difference = 0.3;
 
-/// How far from a keyframe a camera may stand and look that is recognised by it.
-constexpr double reach_m = 0.5;
-constexpr double reach_rad = 0.35;
-
 /// How many standard deviations of drift a loop may mend.
 constexpr double most_drift_sigmas = 3;
 
@@ -90,28 +86,25 @@ LoopCandidate find_where_believed(const Keyframe& keyframe,
   return candidate;
 }
 
-/// Registers the keyframe from where the one stands that looks most like it.
-LoopCandidate find_where_alike(const Keyframe& keyframe, std::span<const Keyframe> keyframes,
-                               const std::vector<const Keyframe*>& earlier,
-                               const CameraModel& camera, const LoopOptions& options,
-                               const RegistrationOptions& registration) {
-  LoopCandidate candidate;
+/// Registers the keyframe from where the one stands that looks most like it; nothing if that is not
+/// verified.
+std::optional<LoopCandidate> find_where_alike(const Keyframe& keyframe,
+                                              std::span<const Keyframe> keyframes,
+                                              const std::vector<const Keyframe*>& earlier,
+                                              const CameraModel& camera, const LoopOptions& options,
+                                              const RegistrationOptions& registration) {
   constexpr std::size_t one = 1;
   const auto alike = most_alike(keyframe.place, earlier, one);
-  if (alike.empty()) return candidate;
+  if (alike.empty()) return std::nullopt;
   const Keyframe& other = *alike.front();
-  if (keyframe.place.difference(other.place) > alike_difference) return candidate;
+  if (keyframe.place.difference(other.place) > alike_difference) return std::nullopt;
   const auto before = keyframes.first(static_cast<std::size_t>(keyframe.id));
-  const MotionPrior prior{.world_from_camera = other.world_from_camera,
-                          .rotation_sigma_rad = reach_rad,
-                          .translation_sigma_m = reach_m};
-  const RegistrationResult found = register_from_afar(
-      *keyframe.cloud, targets_around(other, before), camera, prior, registration);
-  if (deviation(drift_prior(keyframe, other, options), found.world_from_camera) >
-      most_drift_sigmas) {
-    return candidate;
-  }
-  return {.from = other.id, .registration = found, .edge = {}};
+  const RegistrationResult found =
+      register_near(other, *keyframe.cloud, before, camera, registration);
+  const double drift_sigmas =
+      deviation(drift_prior(keyframe, other, options), found.world_from_camera);
+  if (drift_sigmas > most_drift_sigmas || !is_verified(found, options)) return std::nullopt;
+  return LoopCandidate{.from = other.id, .registration = found, .edge = {}};
 }
 
 }  // namespace
@@ -176,21 +169,30 @@ RegistrationResult register_from_afar(const SurfaceCloud& cloud,
   return register_to_targets(cloud, targets, camera, closer, registration);
 }
 
+RegistrationResult register_near(const Keyframe& keyframe, const SurfaceCloud& cloud,
+                                 std::span<const Keyframe> keyframes, const CameraModel& camera,
+                                 const RegistrationOptions& registration) {
+  const MotionPrior prior{.world_from_camera = keyframe.world_from_camera,
+                          .rotation_sigma_rad = recognition_reach_rad,
+                          .translation_sigma_m = recognition_reach_m};
+  return register_from_afar(cloud, targets_around(keyframe, keyframes), camera, prior,
+                            registration);
+}
+
 LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyframes,
                         const CameraModel& camera, const LoopOptions& options,
                         const RegistrationOptions& registration) {
   const auto earlier = earlier_around(keyframe, keyframes, options);
   LoopCandidate candidate = find_where_believed(keyframe, earlier, camera, options, registration);
   if (!is_verified(candidate.registration, options)) {
-    const LoopCandidate alike =
+    const auto alike =
         find_where_alike(keyframe, keyframes, earlier, camera, options, registration);
-    if (is_verified(alike.registration, options)) candidate = alike;
+    if (!alike) return candidate;
+    candidate = *alike;
   }
-  if (is_verified(candidate.registration, options)) {
-    const Keyframe& from = keyframes[static_cast<std::size_t>(candidate.from)];
-    candidate.edge = edge_of(from, keyframe.id, candidate.registration);
-    candidate.edge->may_be_wrong = true;
-  }
+  const Keyframe& from = keyframes[static_cast<std::size_t>(candidate.from)];
+  candidate.edge = edge_of(from, keyframe.id, candidate.registration);
+  candidate.edge->may_be_wrong = true;
   return candidate;
 }
 

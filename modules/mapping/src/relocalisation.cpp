@@ -9,10 +9,6 @@
 namespace tofmap {
 namespace {
 
-/// How far from a keyframe a camera may stand and look that is recognised by it.
-constexpr double reach_m = 0.5;
-constexpr double reach_rad = 0.35;
-
 /// Share of the frame's points that agree with what is known of a place.
 double support(const Relocalisation& place) {
   return place.registration.overlap * place.registration.inlier_share;
@@ -24,8 +20,8 @@ constexpr double sure_share = 0.9;
 bool is_same_place(const Relocalisation& one, const Relocalisation& other) {
   const Pose& pose = one.registration.world_from_camera;
   const Pose& other_pose = other.registration.world_from_camera;
-  return (pose.translation() - other_pose.translation()).norm() < reach_m / 2 &&
-         rotation_angle_rad(pose, other_pose) < reach_rad / 2;
+  return (pose.translation() - other_pose.translation()).norm() < recognition_reach_m / 2 &&
+         rotation_angle_rad(pose, other_pose) < recognition_reach_rad / 2;
 }
 
 }  // namespace
@@ -40,11 +36,8 @@ std::optional<Relocalisation> relocalise(const SurfaceCloud& cloud,
   std::vector<Relocalisation> found;
   for (const Keyframe* keyframe :
        most_alike(PlaceDescriptor(cloud), std::move(all), most_candidates)) {
-    const MotionPrior prior{.world_from_camera = keyframe->world_from_camera,
-                            .rotation_sigma_rad = reach_rad,
-                            .translation_sigma_m = reach_m};
-    const RegistrationResult result = register_from_afar(
-        cloud, targets_around(*keyframe, keyframes), camera, prior, registration);
+    const RegistrationResult result =
+        register_near(*keyframe, cloud, keyframes, camera, registration);
     if (is_verified(result, options)) found.push_back({keyframe->id, result});
   }
   if (found.empty()) return std::nullopt;

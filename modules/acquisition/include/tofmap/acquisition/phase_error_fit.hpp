@@ -2,13 +2,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include <tofmap/acquisition/camera_calibration.hpp>
 
 namespace tofmap {
+
+/// What both frequencies measure at one pixel, and how far it is, known or found by unwrapping.
+struct RangePair {
+  float a_m = 0;  ///< with the wraps that come nearest to the reference
+  float b_m = 0;
+  float reference_m = 0;
+};
+
+/// Appends the pixels `first`, `first` + `stride`, … of a frame, row by row, that have a return at
+/// both frequencies and a reference range.
+void append_range_pairs(const DualFrequencyFrame& frame, const Modulation& modulation,
+                        const ImageF& reference_m, int first, int stride,
+                        std::vector<RangePair>& pairs);
 
 /// A value and the standard deviation of its error.
 struct Estimate {
@@ -16,75 +28,30 @@ struct Estimate {
   double sigma = 0;
 };
 
-/// Linear least squares, a sample at a time.
-class LeastSquares {
- public:
-  explicit LeastSquares(int unknowns);
-
-  void add(const Eigen::VectorXd& row, double value);
-
-  int samples() const { return samples_; }
-
-  /// Throws UsageError if the samples do not determine all unknowns. Neighbouring samples share
-  /// errors: `correlated` of them count as one independent one.
-  std::vector<Estimate> solve(double correlated) const;
-
-  /// Root mean square of what the solution leaves.
-  double residual_rms() const;
-
- private:
-  Eigen::MatrixXd information_;
-  Eigen::VectorXd gradient_;
-  double squares_ = 0;
-  int samples_ = 0;
+/// What both frequencies measure too far.
+struct PhaseErrorFit {
+  PhaseError error_a;
+  PhaseError error_b;
+  Estimate offset_m;          ///< of A less that of B
+  double residual_rms_m = 0;  ///< of what was fitted, with the errors taken out
 };
 
-/// What one frequency measures too far, from samples of it against known ranges.
-class PhaseErrorFit {
- public:
-  /// Harmonics of these orders, and an offset.
-  explicit PhaseErrorFit(std::vector<int> orders);
-
-  void add(double phase_cycles, double error_m);
-
-  /// The offset, and those harmonics whose amplitude is above four standard deviations. Throws
-  /// UsageError if the phases do not cover the cycle.
-  PhaseError solve() const;
-
-  int samples() const { return equations_.samples(); }
-  double residual_rms_m() const { return equations_.residual_rms(); }
-
- private:
-  std::vector<int> orders_;
-  LeastSquares equations_;
+struct PhaseErrorFitOptions {
+  std::vector<int> orders;    ///< of the harmonics
+  double max_error_m = 0.15;  ///< what is farther off, from the median of all, counts as wrong
 };
 
-/// What both frequencies measure too far, from how they disagree, without known ranges. Both are
-/// taken to have the same harmonics in cycles, as electronics that drive both have. Offsets that
-/// both share cannot be seen.
-class BeatErrorFit {
- public:
-  BeatErrorFit(std::vector<int> orders, const Modulation& modulation);
+/// Finds offsets and harmonics of both frequencies from references that are known ranges. Harmonics
+/// below four standard deviations are left out. Throws UsageError if the pairs do not tell all
+/// unknowns: there are too few, or their phases do not cover the cycle.
+PhaseErrorFit fit_to_references(std::span<const RangePair> pairs, const Modulation& modulation,
+                                const PhaseErrorFitOptions& options);
 
-  /// `difference_m`: the range at A less that at B.
-  void add(double phase_a_cycles, double phase_b_cycles, double difference_m);
-
-  struct Result {
-    PhaseError error_a;
-    PhaseError error_b;
-    Estimate offset_m;  ///< of A less that of B; motion between both images is in it, too
-  };
-
-  /// As above; offsets of the errors are zero.
-  Result solve() const;
-
-  int samples() const { return equations_.samples(); }
-  double residual_rms_m() const { return equations_.residual_rms(); }
-
- private:
-  std::vector<int> orders_;
-  Modulation modulation_;
-  LeastSquares equations_;
-};
+/// Finds harmonics from how both frequencies disagree; references tell wraps alone. Both are taken
+/// to have the same harmonics in cycles, as electronics that drive both have. Offsets stay zero:
+/// what both share cannot be seen, and `offset_m` has motion between both images in it, too.
+/// Otherwise as above.
+PhaseErrorFit fit_to_beat(std::span<const RangePair> pairs, const Modulation& modulation,
+                          const PhaseErrorFitOptions& options);
 
 }  // namespace tofmap

@@ -61,6 +61,16 @@ RegistrationResult register_from_afar(const SurfaceCloud& cloud,
                                       const CameraModel& camera, const MotionPrior& prior,
                                       const RegistrationOptions& registration);
 
+/// How far from a keyframe a camera may stand and look that is recognised by it.
+inline constexpr double recognition_reach_m = 0.5;
+inline constexpr double recognition_reach_rad = 0.35;
+
+/// Registers a cloud from afar as if it had been taken where a keyframe was, against that one and
+/// those before and after it in `keyframes`.
+RegistrationResult register_near(const Keyframe& keyframe, const SurfaceCloud& cloud,
+                                 std::span<const Keyframe> keyframes, const CameraModel& camera,
+                                 const RegistrationOptions& registration);
+
 /// Whether a registration far from where the path came from can be believed: it converged with
 /// `min_overlap` and `min_inlier_share`, and leaves no direction to the prior.
 bool is_verified(const RegistrationResult& result, const LoopOptions& options);
