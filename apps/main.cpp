@@ -30,6 +30,7 @@ int run(int argc, char** argv) {
   program.failure_message(CLI::FailureMessage::simple);
   Outcome outcome;
   add_simulate_command(program, outcome);
+  add_record_command(program, outcome);
   add_info_command(program, outcome);
   add_calibrate_command(program, outcome);
   add_unwrap_command(program, outcome);

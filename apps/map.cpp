@@ -4,6 +4,7 @@
 #include "command.hpp"
 #include "frame_report.hpp"
 #include "interruption.hpp"
+#include "live_input.hpp"
 #include "map_state.hpp"
 #include "options.hpp"
 #include "output_folder.hpp"
@@ -11,7 +12,9 @@
 #include "recording.hpp"
 
 #include <cstdio>
+#include <functional>
 #include <memory>
+#include <string>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -47,18 +50,27 @@ void check_result(const RoomMap& map) {
   }
 }
 
-void write_result(const OutputFolder& out, const RoomMap& map, double voxel_m, bool with_pcd,
-                  const std::string& options_yaml) {
+/// What a run writes beside the map, and how.
+struct MapOutput {
+  const MapArguments& arguments;
+  const ProgramOptions& options;
+  std::string options_yaml;
+  nlohmann::ordered_json acquisition;  ///< of a device; else null
+};
+
+void write_result(const OutputFolder& out, const RoomMap& map, const MapOutput& output) {
   write_map(out.path() / "map.ply", map.surface);
-  if (with_pcd) write_map(out.path() / "map.pcd", map.surface);
+  if (output.arguments.pcd) write_map(out.path() / "map.pcd", map.surface);
+  const double voxel_m = output.options.pipeline.map.voxel_m;
   write_mesh(out.path() / "mesh.ply", extract_mesh(map.surface, voxel_m));
   write_trajectory(out.path() / "trajectory.txt", map.trajectory);
   write_trajectory(out.path() / "keyframes.txt", map.keyframes);
   nlohmann::ordered_json report;
   report["summary"] = summary_json(map);
+  if (!output.acquisition.is_null()) report["acquisition"] = output.acquisition;
   for (const FrameRecord& record : map.frames) report["frames"].push_back(frame_json(record));
   out.write_text("report.json", report.dump(1) + "\n");
-  out.write_text("options.yaml", options_yaml);
+  out.write_text("options.yaml", output.options_yaml);
 }
 
 void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
@@ -66,18 +78,88 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
               map.trajectory.size(), map.frames.size(), map.keyframes.size(), map.surface.size());
   if (map.damaged() > 0) std::printf("%d frames were damaged, see report.json\n", map.damaged());
   std::printf("map: %s, mesh and pictures beside it\n", (folder / "map.ply").c_str());
-  if (map.interrupted) std::printf("interrupted; --resume goes on from here\n");
 }
 
-/// Until the recording ends, or the user ends it.
-void follow_camera(MapRun& run, FrameSource& source, bool quiet) {
+/// Puts the map in place, with pictures of it.
+RoomMap finish_map(MapRun& run, OutputFolder& out, const MapOutput& output) {
+  RoomMap map = run.finish();
+  check_result(map);
+  write_result(out, map, output);
+  out.commit();
+  if (!output.arguments.common.quiet) print_summary(map, out.final_path());
+  return map;
+}
+
+int status_of(const RoomMap& map) {
+  return map.interrupted ? exit_status::interrupted : exit_status::done;
+}
+
+/// Until the recording ends, or the user ends it. `remark` tells what is not told by the number of
+/// frames.
+void follow_camera(MapRun& run, FrameSource& source, bool quiet,
+                   const std::function<std::string()>& remark) {
   Progress progress("mapping frame", source.frame_count(), quiet);
   MapHooks hooks;
   hooks.keep_going = [&](int done) {
-    progress.show(done);
+    progress.show(done, remark());
     return !is_interrupted();
   };
   run.advance(source, hooks);
+}
+
+int map_recording(const MapArguments& arguments, const ProgramOptions& options,
+                  const OptionTable& table) {
+  SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
+  OutputFolder out(arguments.out);
+  MapRun run(source.sensor(), options.pipeline);
+  if (arguments.resume) take_up_map(arguments.out, run, source, options.pipeline);
+  follow_camera(run, source, arguments.common.quiet, [] { return std::string(); });
+  if (run.is_interrupted()) write_map_state(out.path(), run, source, options.pipeline);
+  const RoomMap map = finish_map(run, out, {arguments, options, table.to_yaml(false), {}});
+  if (map.interrupted && !arguments.common.quiet) {
+    std::printf("interrupted; --resume goes on from here\n");
+  }
+  add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
+    write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
+    if (map.interrupted) return;
+    write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures);
+  });
+  return status_of(map);
+}
+
+/// How mapping goes, in one line.
+std::string live_status(const MapRun& run, const LiveInput& input) {
+  if (run.frames().empty()) return "";
+  const std::string losses = input.losses();
+  return std::string(status_name(run.frames().back().tracking.status)) + ", " +
+         std::to_string(run.voxel_count()) + " voxels" + (losses.empty() ? "" : ", " + losses);
+}
+
+int map_device(const MapArguments& arguments, const ProgramOptions& options,
+               const OptionTable& table) {
+  const std::string uri = arguments.recording.sequence.string();
+  if (arguments.resume) {
+    throw UsageError("--resume goes on with a recording; " + uri +
+                     " does not come again. 'tofmap record' makes a recording of it");
+  }
+  OutputFolder out(arguments.out);
+  LiveInput input(uri, options, {});
+  if (is_interrupted()) return exit_status::interrupted;
+  MapRun run(input.sensor(), options.pipeline);
+  follow_camera(run, input.frames(), arguments.common.quiet,
+                [&] { return live_status(run, input); });
+  const RoomMap map =
+      finish_map(run, out, {arguments, options, table.to_yaml(false), input.report()});
+  const std::string losses = input.losses();
+  if (!losses.empty() && !arguments.common.quiet) {
+    std::printf("not mapped: %s; see report.json\n", losses.c_str());
+  }
+  add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
+    write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
+  });
+  const std::string silence = input.silence();
+  if (!silence.empty()) throw InputError(silence);
+  return status_of(map);
 }
 
 int run_map(const MapArguments& arguments) {
@@ -85,34 +167,18 @@ int run_map(const MapArguments& arguments) {
   OptionTable table = arguments.common.resolve("map", options);
   arguments.recording.apply(table);
   if (!arguments.method.empty()) table.set("unwrap.method", arguments.method);
-
-  SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
-  OutputFolder out(arguments.out);
-  MapRun run(source.sensor(), options.pipeline);
-  if (arguments.resume) take_up_map(arguments.out, run, source, options.pipeline);
-  follow_camera(run, source, arguments.common.quiet);
-  if (run.is_interrupted()) {
-    write_map_state(out.path(), run, source, options.pipeline);
-  }
-  const RoomMap map = run.finish();
-  check_result(map);
-  write_result(out, map, options.pipeline.map.voxel_m, arguments.pcd, table.to_yaml(false));
-  out.commit();
-  if (!arguments.common.quiet) print_summary(map, out.final_path());
-  add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
-    write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
-    if (map.interrupted) return;
-    write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures);
-  });
-  return map.interrupted ? exit_status::interrupted : exit_status::done;
+  const bool is_device = is_device_uri(arguments.recording.sequence.string());
+  return is_device ? map_device(arguments, options, table)
+                   : map_recording(arguments, options, table);
 }
 
 }  // namespace
 
 void add_map_command(CLI::App& program, Outcome& outcome) {
   auto arguments = std::make_shared<MapArguments>();
-  CLI::App* app = program.add_subcommand("map", "make a map of the room from a recording");
-  arguments->recording.add_to(*app);
+  CLI::App* app =
+      program.add_subcommand("map", "make a map of the room from a recording or camera");
+  arguments->recording.add_to(*app, "folder of the recording, OpenNI2 device or .oni file");
   app->add_option("--out", arguments->out, "folder for the result")->required();
   app->add_option("--method", arguments->method, "how to unwrap: " + unwrap_method_names(", "));
   app->add_flag("--resume", arguments->resume,

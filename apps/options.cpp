@@ -20,19 +20,23 @@ OptionTable option_table(const std::string& command, ProgramOptions& options) {
   const auto is_any_of = [&](std::initializer_list<std::string_view> names) {
     return command.empty() || std::ranges::find(names, command) != names.end();
   };
-  if (!is_any_of(
-          {"simulate", "info", "calibrate", "unwrap", "map", "register", "evaluate", "view"})) {
+  if (!is_any_of({"simulate", "record", "info", "calibrate", "unwrap", "map", "register",
+                  "evaluate", "view"})) {
     throw UsageError(
         "'" + command +
-        "' is no command with options; there are: simulate, info, calibrate, unwrap, map, "
-        "register, evaluate, view");
+        "' is no command with options; there are: simulate, record, info, calibrate, unwrap, "
+        "map, register, evaluate, view");
   }
   if (command == "unwrap") options.pipeline.filters.chain = smoothing_chain();
   OptionTable table;
   table.bind("", options.run);
   if (is_any_of({"simulate"})) table.bind("simulator", options.simulator);
-  if (is_any_of({"info", "unwrap", "map", "evaluate", "view"})) {
+  if (is_any_of({"record", "info", "unwrap", "map", "evaluate", "view"})) {
     table.bind("camera", options.camera);
+  }
+  if (is_any_of({"record", "map"})) {
+    table.bind("device", options.device);
+    table.bind("live", options.live);
   }
   if (is_any_of({"calibrate"})) table.bind("calibration", options.calibration);
   if (is_any_of({"map", "evaluate"})) {

@@ -8,6 +8,7 @@
 
 #include <string>
 
+#include <tofmap/acquisition/openni2_source.hpp>
 #include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/filters/view_fusion.hpp>
@@ -23,11 +24,21 @@ struct RunOptions {
   static std::vector<OptionField<RunOptions>> fields();
 };
 
+/// How frames of a device wait to be worked on.
+struct LiveOptions {
+  int queue = 8;
+  std::string late_frames = "auto";
+
+  static std::vector<OptionField<LiveOptions>> fields();
+};
+
 /// The options of all commands; each uses its own groups.
 struct ProgramOptions {
   RunOptions run;
   SimulatorOptions simulator;
   CameraOptions camera;
+  DeviceOptions device;
+  LiveOptions live;
   CalibrationOptions calibration;
   PipelineOptions pipeline;
   FusionOptions fusion;

@@ -20,7 +20,7 @@ Progress::~Progress() {
   if (has_line_) std::fputc('\n', stderr);
 }
 
-void Progress::show(int done) {
+void Progress::show(int done, const std::string& remark) {
   using namespace std::chrono_literals;
   const auto now = std::chrono::steady_clock::now();
   const bool is_last = total_ && done == *total_;
@@ -29,11 +29,10 @@ void Progress::show(int done) {
   has_line_ = true;
   const double seconds = std::chrono::duration<double>(now - start_).count();
   const double rate = seconds > 0 ? done / seconds : 0;
-  if (total_) {
-    std::fprintf(stderr, "\r%s %d / %d (%.1f a second)\033[K", what_.c_str(), done, *total_, rate);
-  } else {
-    std::fprintf(stderr, "\r%s %d (%.1f a second)\033[K", what_.c_str(), done, rate);
-  }
+  const std::string total = total_ ? " / " + std::to_string(*total_) : "";
+  const std::string rest = remark.empty() ? "" : "; " + remark;
+  std::fprintf(stderr, "\r%s %d%s (%.1f a second)%s\033[K", what_.c_str(), done, total.c_str(),
+               rate, rest.c_str());
 }
 
 }  // namespace tofmap::app

@@ -17,7 +17,8 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   ~Progress();
 
-  void show(int done);
+  /// `remark` follows the numbers, if there is any.
+  void show(int done, const std::string& remark = "");
 
  private:
   std::string what_;

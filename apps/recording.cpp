@@ -7,8 +7,8 @@
 
 namespace tofmap::app {
 
-void RecordingArguments::add_to(CLI::App& command) {
-  command.add_option("SEQ", sequence, "folder of the recording")->required();
+void RecordingArguments::add_to(CLI::App& command, const std::string& meaning) {
+  command.add_option("SEQ", sequence, meaning)->required();
   command.add_option("--calibration", calibration, "what 'tofmap calibrate' found of the camera");
 }
 
@@ -16,10 +16,13 @@ void RecordingArguments::apply(OptionTable& table) const {
   if (!calibration.empty()) table.set("camera.calibration_file", calibration);
 }
 
+CameraCalibration calibration_of(const CameraOptions& options) {
+  if (options.calibration_file.empty()) return {};
+  return read_calibration(options.calibration_file);
+}
+
 SequenceReader open_recording(const std::filesystem::path& sequence, const CameraOptions& options) {
-  CameraCalibration calibration;
-  if (!options.calibration_file.empty()) calibration = read_calibration(options.calibration_file);
-  return SequenceReader(sequence, std::move(calibration));
+  return SequenceReader(sequence, calibration_of(options));
 }
 
 }  // namespace tofmap::app

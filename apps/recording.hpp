@@ -20,11 +20,15 @@ struct RecordingArguments {
   std::filesystem::path sequence;
   std::string calibration;
 
-  void add_to(CLI::App& command);
+  /// `meaning` says what SEQ may be.
+  void add_to(CLI::App& command, const std::string& meaning = "folder of the recording");
 
   /// Puts what was given into the table of a command.
   void apply(OptionTable& table) const;
 };
+
+/// What the options say of a camera; nothing if they name no file.
+CameraCalibration calibration_of(const CameraOptions& options);
 
 /// Opens a recording of a calibrated camera.
 SequenceReader open_recording(const std::filesystem::path& sequence, const CameraOptions& options);

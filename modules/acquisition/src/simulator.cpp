@@ -43,13 +43,9 @@ SimulatorOptions checked(SimulatorOptions options) {
 
 SensorModel sensor_model(const SimulatorOptions& options, double scene_max_range_m) {
   SensorModel sensor;
-  const double half_fov_rad = options.horizontal_fov_deg / 2 * std::numbers::pi / 180;
   CameraModel& camera = sensor.camera;
-  camera.width_px = options.width_px;
-  camera.height_px = options.height_px;
-  camera.fx_px = camera.fy_px = options.width_px / 2.0 / std::tan(half_fov_rad);
-  camera.cx_px = (options.width_px - 1) / 2.0;
-  camera.cy_px = (options.height_px - 1) / 2.0;
+  camera = pinhole_camera(options.horizontal_fov_deg * std::numbers::pi / 180, options.width_px,
+                          options.height_px);
   camera.distortion = {options.distortion_k1, options.distortion_k2, options.distortion_p1,
                        options.distortion_p2, options.distortion_k3};
   sensor.modulation = {options.frequency_a_hz, options.frequency_b_hz};

@@ -61,6 +61,16 @@ Eigen::Vector2d undistort(const std::array<double, 5>& k, const Eigen::Vector2d&
 
 }  // namespace
 
+CameraModel pinhole_camera(double horizontal_view_rad, int width_px, int height_px) {
+  CameraModel camera;
+  camera.width_px = width_px;
+  camera.height_px = height_px;
+  camera.fx_px = camera.fy_px = width_px / 2.0 / std::tan(horizontal_view_rad / 2);
+  camera.cx_px = (width_px - 1) / 2.0;
+  camera.cy_px = (height_px - 1) / 2.0;
+  return camera;
+}
+
 void validate(const CameraModel& camera) {
   const auto fail = [](const std::string& what) { throw InputError("camera: " + what); };
   if (camera.width_px <= 0 || camera.height_px <= 0) {

@@ -140,6 +140,12 @@ Trajectory RoomMapper::keyframe_trajectory() const {
   return trajectory;
 }
 
+std::size_t RoomMapper::voxel_count() const {
+  std::size_t count = 0;
+  for (const Part& part : parts_) count += part.surface.size();
+  return count;
+}
+
 MapCloud RoomMapper::surface() const {
   SurfaceMap whole(surface_options_);
   for (const Part& part : parts_) {

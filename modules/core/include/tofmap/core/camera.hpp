@@ -25,6 +25,10 @@ struct CameraModel {
   std::array<double, 5> distortion{};
 };
 
+/// A camera without distortion, its centre amid the image, that sees so much from the left side of
+/// the leftmost pixels to the right side of the rightmost: below π.
+CameraModel pinhole_camera(double horizontal_view_rad, int width_px, int height_px);
+
 /// Throws InputError if the size or focal length is not positive, a number is not
 /// finite, or the distortion folds the image over itself (a pixel has no ray).
 void validate(const CameraModel& camera);

@@ -111,6 +111,9 @@ class MapRun {
   const std::vector<FrameRecord>& frames() const { return frames_; }
   bool is_interrupted() const { return is_interrupted_; }
 
+  /// Of the map so far, voxels with too few points to be written among them.
+  std::size_t voxel_count() const { return mapper_.voxel_count(); }
+
   /// All that is needed to go on; a run of the same sensor and options that loads it comes to the
   /// same result, to the bit. Only the build that wrote it can read it. Reading throws
   /// std::exception if it is damaged.

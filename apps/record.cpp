@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "command.hpp"
+#include "interruption.hpp"
+#include "live_input.hpp"
+#include "options.hpp"
+#include "output_folder.hpp"
+#include "progress.hpp"
+
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/core/error.hpp>
+
+namespace tofmap::app {
+namespace {
+
+struct RecordArguments {
+  std::string uri;
+  std::filesystem::path out;
+  std::filesystem::path oni;
+  int frames = 0;
+  CommonArguments common;
+};
+
+/// An .oni file that appears when it is whole.
+class OniFile {
+ public:
+  /// Throws InputError if there is such a file already. An empty path is no file.
+  explicit OniFile(const std::filesystem::path& file) : file_(file) {
+    if (file_.empty()) return;
+    if (std::filesystem::exists(file_)) {
+      throw InputError(file_.string() + ": exists; remove it, or choose another --oni");
+    }
+    partial_ = file_;
+    partial_ += ".part";
+  }
+  OniFile(const OniFile&) = delete;
+  OniFile& operator=(const OniFile&) = delete;
+  ~OniFile() {
+    std::error_code ignored;
+    if (!partial_.empty()) std::filesystem::remove(partial_, ignored);
+  }
+
+  const std::filesystem::path& path() const { return partial_; }
+
+  void commit() {
+    if (file_.empty()) return;
+    std::error_code error;
+    const auto size = std::filesystem::file_size(partial_, error);
+    if (error || size == 0) {
+      throw InputError(file_.string() + ": could not be written; is the disk full?");
+    }
+    std::filesystem::rename(partial_, file_);
+    partial_.clear();
+  }
+
+ private:
+  std::filesystem::path file_;
+  std::filesystem::path partial_;
+};
+
+/// Writes frames until the device ends, the user ends it, or there are enough. Returns how many.
+int write_frames(LiveInput& input, SequenceWriter& writer, const RecordArguments& arguments) {
+  Progress progress("recording frame",
+                    arguments.frames > 0 ? std::optional(arguments.frames) : std::nullopt,
+                    arguments.common.quiet);
+  while (const std::optional<SourcedFrame> sourced = input.frames().next()) {
+    if (sourced->frame) writer.add(*sourced->frame);
+    progress.show(writer.count(), input.losses());
+  }
+  return writer.count();
+}
+
+int run_record(const RecordArguments& arguments) {
+  ProgramOptions options;
+  const OptionTable table = arguments.common.resolve("record", options);
+  OutputFolder out(arguments.out, Replaces::recordings);
+  OniFile oni(arguments.oni);
+  std::optional<LiveInput> input;
+  input.emplace(arguments.uri, options, LiveInput::Wanted{oni.path(), arguments.frames});
+  int written = 0;
+  if (!is_interrupted()) {
+    SequenceWriter writer(out.path(), input->sensor());
+    written = write_frames(*input, writer, arguments);
+  }
+  if (written == 0) {
+    if (is_interrupted()) return exit_status::interrupted;
+    throw InputError(arguments.uri + ": delivered no whole frame; nothing was written");
+  }
+  const nlohmann::ordered_json report = {{"frames", written}, {"acquisition", input->report()}};
+  out.write_text("report.json", report.dump(1) + "\n");
+  out.write_text("options.yaml", table.to_yaml(false));
+  out.commit();
+  const std::string losses = input->losses();
+  if (!arguments.common.quiet) {
+    std::printf("%d frames of '%s' recorded: %s\n", written, arguments.uri.c_str(),
+                out.final_path().c_str());
+    if (!losses.empty()) std::printf("not recorded: %s; see report.json\n", losses.c_str());
+  }
+  const std::string silence = input->silence();
+  input.reset();  // ends the .oni file
+  oni.commit();
+  if (!silence.empty()) throw InputError(silence);
+  return is_interrupted() ? exit_status::interrupted : exit_status::done;
+}
+
+}  // namespace
+
+void add_record_command(CLI::App& program, Outcome& outcome) {
+  auto arguments = std::make_shared<RecordArguments>();
+  CLI::App* app = program.add_subcommand("record", "record an OpenNI2 device or .oni file");
+  app->add_option("URI", arguments->uri,
+                  "OpenNI2 device or .oni file; tofmap://SCENE and tofmap:///path/to/recording are "
+                  "simulated cameras")
+      ->required();
+  app->add_option("--out", arguments->out, "folder for the recording")->required();
+  app->add_option("--oni", arguments->oni, ".oni file to record to, too");
+  app->add_option("--frames", arguments->frames, "end after so many frames; 0: at the end")
+      ->check(CLI::NonNegativeNumber);
+  arguments->common.add_to(*app);
+  app->callback([arguments, &outcome] { outcome.status = run_record(*arguments); });
+}
+
+}  // namespace tofmap::app

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "device_uri.hpp"
+
+#include <sstream>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+
+std::vector<OptionField<PlayerOptions>> PlayerOptions::fields() {
+  using P = PlayerOptions;
+  return {
+      {"layout", &P::layout, 0, 0, "",
+       "stacked: A above B in each image, and a tag; alternating: A and B in turn, without",
+       "stacked | alternating"},
+      {"depth", &P::depth, 0, 0, "",
+       "along each pixel's ray, or z, along the optical axis, as OpenNI2 has it", "radial | z"},
+      {"speed", &P::speed, -1, 1000, "",
+       "of the recording's; 0: as fast as can be; -1: a frame whenever a client waits for one"},
+      {"repeat", &P::repeat, 0, 1000000, "", "how often the frames are played; 0: for ever"},
+      {"unplug_at", &P::unplug_at, 0, 1000000000, "",
+       "goes away after so many frames, as if unplugged; 0: never"},
+      {"lose_every", &P::lose_every, 0, 1000000, "",
+       "every how manieth image is lost on the way; 0: none"},
+  };
+}
+
+DeviceRequest parse_device_uri(const std::string& uri) {
+  if (!uri.starts_with(uri_scheme)) {
+    throw UsageError("'" + uri + "' does not begin with " + uri_scheme);
+  }
+  const std::string address = uri.substr(std::string(uri_scheme).size());
+  const std::size_t question = address.find('?');
+  DeviceRequest request;
+  request.scene = address.substr(0, question);
+  if (request.scene.empty()) {
+    throw UsageError("'" + uri + "' names neither a scene nor the folder of a recording");
+  }
+  if (question == std::string::npos) return request;
+  OptionTable table;
+  table.bind("player", request.player);
+  table.bind("simulator", request.simulator);
+  std::istringstream assignments(address.substr(question + 1));
+  for (std::string one; std::getline(assignments, one, '&');) {
+    const bool has_group = one.find('.') < one.find('=');
+    table.assign(has_group ? one : "player." + one);
+  }
+  return request;
+}
+
+}  // namespace tofmap

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "device_uri.hpp"
+#include "oni_driver_api.hpp"
+#include "played_device.hpp"
+
+#include <cstdlib>
+#include <cstring>
+#include <list>
+#include <mutex>
+#include <sstream>
+#include <string>
+
+namespace tofmap {
+namespace {
+
+/// Addresses, with spaces between, that programs find which open any device there is.
+constexpr const char* announced_variable = "TOFMAP_DEVICES";
+
+OniDeviceInfo info_of(const std::string& uri) {
+  OniDeviceInfo info{};
+  const auto copy = [](char* to, const std::string& text) {
+    std::strncpy(to, text.c_str(), ONI_MAX_STR - 1);
+  };
+  copy(info.uri, uri);
+  copy(info.vendor, "tofmap");
+  copy(info.name, "dual-frequency time-of-flight camera");
+  return info;
+}
+
+/// Offers scenes and recordings as OpenNI2 devices. No exception leaves it: OpenNI2 is not made for
+/// any.
+class Driver final : public oni::driver::DriverBase {
+ public:
+  explicit Driver(OniDriverServices* services) : DriverBase(services) {}
+
+  OniStatus initialize(oni::driver::DeviceConnectedCallback connected,
+                       oni::driver::DeviceDisconnectedCallback disconnected,
+                       oni::driver::DeviceStateChangedCallback state_changed,
+                       void* cookie) override {
+    const OniStatus status = DriverBase::initialize(connected, disconnected, state_changed, cookie);
+    const char* announced = std::getenv(announced_variable);
+    std::istringstream uris(announced == nullptr ? "" : announced);
+    for (std::string uri; status == ONI_STATUS_OK && uris >> uri;) tryDevice(uri.c_str());
+    return status;
+  }
+
+  OniStatus tryDevice(const char* uri) override {
+    try {
+      parse_device_uri(uri);
+    } catch (const std::exception& error) {
+      if (std::string(uri).starts_with(uri_scheme)) fail(error.what());
+      return ONI_STATUS_ERROR;
+    }
+    const OniDeviceInfo info = info_of(uri);
+    deviceConnected(&info);
+    return ONI_STATUS_OK;
+  }
+
+  oni::driver::DeviceBase* deviceOpen(const char* uri, const char* /*mode*/) override {
+    const OniDeviceInfo info = info_of(uri);
+    PlayedDevice::Events events;
+    events.at_end = [this, info] { deviceStateChanged(&info, ONI_DEVICE_STATE_EOF); };
+    events.unplugged = [this, info] { deviceDisconnected(&info); };
+    events.failed = [this, info](const char* what) {
+      fail(what);
+      deviceStateChanged(&info, ONI_DEVICE_STATE_ERROR);
+    };
+    try {
+      const std::scoped_lock lock(mutex_);
+      return &devices_.emplace_back(parse_device_uri(uri), events);
+    } catch (const std::exception& error) {
+      fail(error.what());
+      return nullptr;
+    }
+  }
+
+  void deviceClose(oni::driver::DeviceBase* device) override {
+    std::list<PlayedDevice> closed;
+    const std::scoped_lock lock(mutex_);
+    for (auto one = devices_.begin(); one != devices_.end(); ++one) {
+      if (&*one != device) continue;
+      closed.splice(closed.begin(), devices_, one);
+      return;
+    }
+  }
+
+  void shutdown() override {
+    const std::scoped_lock lock(mutex_);
+    devices_.clear();
+  }
+
+ private:
+  void fail(const char* what) { getServices().errorLoggerAppend("tofmap: %s", what); }
+
+  std::mutex mutex_;
+  std::list<PlayedDevice> devices_;
+};
+
+}  // namespace
+}  // namespace tofmap
+
+ONI_EXPORT_DRIVER(tofmap::Driver)

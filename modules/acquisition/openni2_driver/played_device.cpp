@@ -1,0 +1,283 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "played_device.hpp"
+
+#include "property_value.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include <tofmap/acquisition/openni2_properties.hpp>
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+float field_of_view_rad(int side_px, double focal_length_px) {
+  return static_cast<float>(2 * std::atan(side_px / (2 * focal_length_px)));
+}
+
+struct DepthFormat {
+  OniPixelFormat format;
+  double unit_m;
+};
+
+/// The finest first.
+constexpr DepthFormat depth_formats[] = {{ONI_PIXEL_FORMAT_DEPTH_100_UM, 1e-4},
+                                         {ONI_PIXEL_FORMAT_DEPTH_1_MM, 1e-3}};
+
+}  // namespace
+
+PlayedDevice::PlayedDevice(const DeviceRequest& request, Events events)
+    : request_(request),
+      events_(std::move(events)),
+      player_(request),
+      speed_(request.player.speed) {
+  const CameraModel& camera = player_.sensor().camera;
+  const bool is_stacked = request.player.layout == "stacked";
+  OniVideoMode mode;
+  mode.resolutionX = camera.width_px;
+  mode.resolutionY =
+      is_stacked ? 2 * camera.height_px + tag_rows(camera.width_px) : camera.height_px;
+  const double images_per_frame = is_stacked ? 1 : 2;
+  mode.fps = std::max(1, static_cast<int>(std::lround(images_per_frame / player_.period_s())));
+  for (const DepthFormat& format : depth_formats) {
+    try {
+      codecs_.emplace_back(player_.sensor(),
+                           RangeScale{format.unit_m, request.player.depth == "z"});
+    } catch (const UsageError&) {
+      continue;  // its 16 bits do not hold a wavelength
+    }
+    mode.pixelFormat = format.format;
+    depth_.modes.push_back(mode);
+  }
+  if (codecs_.empty()) throw InputError("no pixel format holds ranges up to a wavelength");
+  mode.pixelFormat = ONI_PIXEL_FORMAT_GRAY16;
+  infrared_.modes.push_back(mode);
+  depth_.horizontal_fov_rad = field_of_view_rad(camera.width_px, camera.fx_px);
+  depth_.vertical_fov_rad = field_of_view_rad(camera.height_px, camera.fy_px);
+  infrared_.horizontal_fov_rad = depth_.horizontal_fov_rad;
+  infrared_.vertical_fov_rad = depth_.vertical_fov_rad;
+  depth_.type = ONI_SENSOR_DEPTH;
+  infrared_.type = ONI_SENSOR_IR;
+  for (StreamDescription* stream : {&depth_, &infrared_}) {
+    sensors_.push_back(
+        {stream->type, static_cast<int>(stream->modes.size()), stream->modes.data()});
+  }
+  thread_ = std::thread([this] { play(); });
+}
+
+PlayedDevice::~PlayedDevice() {
+  update([this] { is_closing_ = true; });
+  thread_.join();
+}
+
+void PlayedDevice::update(const std::function<void()>& change) {
+  {
+    const std::scoped_lock lock(mutex_);
+    change();
+  }
+  changed_.notify_all();
+}
+
+OniStatus PlayedDevice::getSensorInfoList(OniSensorInfo** sensors, int* count) {
+  *sensors = sensors_.data();
+  *count = static_cast<int>(sensors_.size());
+  return ONI_STATUS_OK;
+}
+
+oni::driver::StreamBase* PlayedDevice::createStream(OniSensorType type) {
+  if (type != ONI_SENSOR_DEPTH && type != ONI_SENSOR_IR) return nullptr;
+  const std::scoped_lock lock(streams_mutex_);
+  return &streams_.emplace_back(type == ONI_SENSOR_DEPTH ? depth_ : infrared_,
+                                [this] { update([] {}); });
+}
+
+void PlayedDevice::destroyStream(oni::driver::StreamBase* stream) {
+  const std::scoped_lock lock(streams_mutex_);
+  streams_.remove_if([stream](const ImageStream& one) { return &one == stream; });
+}
+
+OniBool PlayedDevice::isPropertySupported(int id) {
+  switch (id) {
+    case ONI_DEVICE_PROPERTY_PLAYBACK_SPEED:
+    case ONI_DEVICE_PROPERTY_DRIVER_VERSION:
+    case openni2_property::frequency_a_hz:
+    case openni2_property::frequency_b_hz:
+    case openni2_property::layout:
+    case openni2_property::frames_delivered:
+      return TRUE;
+    default:
+      return FALSE;
+  }
+}
+
+OniStatus PlayedDevice::getProperty(int id, void* data, int* size) {
+  const Modulation& modulation = player_.sensor().modulation;
+  switch (id) {
+    case ONI_DEVICE_PROPERTY_PLAYBACK_SPEED: {
+      const std::scoped_lock lock(mutex_);
+      return answer(static_cast<float>(speed_), data, size);
+    }
+    case ONI_DEVICE_PROPERTY_DRIVER_VERSION:
+      return answer(OniVersion{TOFMAP_VERSION_MAJOR, TOFMAP_VERSION_MINOR, TOFMAP_VERSION_PATCH, 0},
+                    data, size);
+    case openni2_property::frequency_a_hz:
+      return answer(modulation.frequency_a_hz, data, size);
+    case openni2_property::frequency_b_hz:
+      return answer(modulation.frequency_b_hz, data, size);
+    case openni2_property::layout: {
+      const std::string& layout = request_.player.layout;
+      const auto needed = static_cast<int>(layout.size()) + 1;
+      if (*size < needed) return ONI_STATUS_BAD_PARAMETER;
+      std::memcpy(data, layout.c_str(), static_cast<std::size_t>(needed));
+      *size = needed;
+      return ONI_STATUS_OK;
+    }
+    case openni2_property::frames_delivered:
+      return answer(frames_.load(), data, size);
+    default:
+      return ONI_STATUS_NOT_SUPPORTED;
+  }
+}
+
+OniStatus PlayedDevice::setProperty(int id, const void* data, int size) {
+  if (id != ONI_DEVICE_PROPERTY_PLAYBACK_SPEED) return ONI_STATUS_NOT_SUPPORTED;
+  const auto* wanted = given<float>(data, size);
+  if (wanted == nullptr || !(*wanted >= 0 || *wanted == -1)) return ONI_STATUS_BAD_PARAMETER;
+  update([&] {
+    speed_ = double{*wanted};
+    beginning_.reset();
+  });
+  return ONI_STATUS_OK;
+}
+
+OniBool PlayedDevice::isCommandSupported(int id) { return id == openni2_property::unplug; }
+
+OniStatus PlayedDevice::invoke(int id, void* /*data*/, int /*size*/) {
+  if (id != openni2_property::unplug) return ONI_STATUS_NOT_SUPPORTED;
+  update([this] { is_unplugged_ = true; });
+  return ONI_STATUS_OK;
+}
+
+OniStatus PlayedDevice::tryManualTrigger() {
+  update([this] { is_triggered_ = true; });
+  return ONI_STATUS_OK;
+}
+
+bool PlayedDevice::has_running_stream() {
+  const std::scoped_lock lock(streams_mutex_);
+  return std::ranges::any_of(streams_, &ImageStream::is_running);
+}
+
+/// False if the device is to end instead.
+bool PlayedDevice::wait_for_stream() {
+  std::unique_lock lock(mutex_);
+  while (!is_closing_ && !is_unplugged_) {
+    lock.unlock();
+    const bool is_running = has_running_stream();
+    lock.lock();
+    if (is_running) return true;
+    beginning_.reset();                                // time stands still
+    constexpr std::chrono::milliseconds longest(100);  // a start in between was not heard
+    changed_.wait_for(lock, longest);
+  }
+  return false;
+}
+
+/// Until an image of this timestamp is due; false if the device is to end instead.
+bool PlayedDevice::wait_for_turn(double timestamp_s) {
+  std::unique_lock lock(mutex_);
+  while (!is_closing_ && !is_unplugged_) {
+    if (speed_ == 0 || (speed_ < 0 && is_triggered_)) return true;
+    if (speed_ < 0) {
+      constexpr std::chrono::milliseconds longest(100);
+      changed_.wait_for(lock, longest);
+      continue;
+    }
+    if (!beginning_) beginning_ = Beginning{Clock::now(), timestamp_s};
+    const std::chrono::duration<double> after((timestamp_s - beginning_->timestamp_s) / speed_);
+    const auto due = beginning_->moment + std::chrono::duration_cast<Clock::duration>(after);
+    if (Clock::now() >= due) return true;
+    changed_.wait_until(lock, due);
+  }
+  return false;
+}
+
+const DeviceImageCodec& PlayedDevice::codec() {
+  const std::scoped_lock lock(streams_mutex_);
+  const auto stream = std::ranges::find(streams_, ONI_SENSOR_DEPTH, &ImageStream::type);
+  if (stream == streams_.end()) return codecs_.front();
+  const auto mode =
+      std::ranges::find(depth_.modes, stream->mode().pixelFormat, &OniVideoMode::pixelFormat);
+  return codecs_[static_cast<std::size_t>(mode - depth_.modes.begin())];
+}
+
+void PlayedDevice::deliver_images(const ImageU16& range, const ImageU16& amplitude,
+                                  double timestamp_s) {
+  const auto timestamp_us = static_cast<std::uint64_t>(std::llround(1e6 * timestamp_s));
+  ++images_;
+  const int lose_every = request_.player.lose_every;
+  if (lose_every > 0 && images_ % lose_every == 0) return;
+  {
+    const std::scoped_lock lock(streams_mutex_);
+    for (ImageStream& stream : streams_) {
+      stream.deliver(stream.type() == ONI_SENSOR_DEPTH ? range : amplitude, timestamp_us, images_);
+    }
+  }
+  // Triggers that came meanwhile were for these images.
+  update([this] { is_triggered_ = false; });
+}
+
+void PlayedDevice::deliver(const DualFrequencyFrame& frame) {
+  if (request_.player.layout == "stacked") {
+    const StackedImages images = codec().stack(frame, static_cast<std::uint32_t>(frames_.load()));
+    if (wait_for_turn(frame.timestamp_s)) {
+      deliver_images(images.range, images.amplitude, frame.timestamp_s);
+    }
+    return;
+  }
+  const Modulation& modulation = player_.sensor().modulation;
+  const ImageU16 no_amplitude = ImageU16::Zero(frame.phase_a.rows(), frame.phase_a.cols());
+  const auto amplitude_of = [&](const ImageF& amplitude) {
+    return frame.has_amplitude() ? encode_amplitude(amplitude) : no_amplitude;
+  };
+  if (!wait_for_turn(frame.timestamp_s)) return;
+  deliver_images(codec().encode_range(frame.phase_a, modulation.wavelength_a_m()),
+                 amplitude_of(frame.amplitude_a), frame.timestamp_s);
+  const double b_timestamp_s = frame.timestamp_s + player_.period_s() / 2;
+  if (!wait_for_turn(b_timestamp_s)) return;
+  deliver_images(codec().encode_range(frame.phase_b, modulation.wavelength_b_m()),
+                 amplitude_of(frame.amplitude_b), b_timestamp_s);
+}
+
+void PlayedDevice::play() {
+  try {
+    while (wait_for_stream()) {
+      const int unplug_at = request_.player.unplug_at;
+      if (unplug_at > 0 && frames_ >= unplug_at) {
+        update([this] { is_unplugged_ = true; });
+        break;
+      }
+      const std::optional<DualFrequencyFrame> frame = player_.next();
+      if (!frame) {
+        events_.at_end();
+        return;
+      }
+      deliver(*frame);
+      ++frames_;
+    }
+    const bool is_unplugged = [this] {
+      const std::scoped_lock lock(mutex_);
+      return is_unplugged_ && !is_closing_;
+    }();
+    if (is_unplugged) events_.unplugged();
+  } catch (const std::exception& error) {
+    events_.failed(error.what());
+  }
+}
+
+}  // namespace tofmap

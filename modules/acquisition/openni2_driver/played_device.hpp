@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "frame_player.hpp"
+#include "image_stream.hpp"
+#include "oni_driver_api.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <list>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include <tofmap/acquisition/device_image.hpp>
+
+namespace tofmap {
+
+/// A device that plays frames, in a thread of its own, while one of its streams runs.
+class PlayedDevice final : public oni::driver::DeviceBase {
+ public:
+  /// What the device tells the driver.
+  struct Events {
+    std::function<void()> at_end;
+    std::function<void()> unplugged;
+    std::function<void(const char* what)> failed;
+  };
+
+  /// Throws UsageError or InputError if what is asked for cannot be played.
+  PlayedDevice(const DeviceRequest& request, Events events);
+  ~PlayedDevice() override;
+
+  OniStatus getSensorInfoList(OniSensorInfo** sensors, int* count) override;
+  oni::driver::StreamBase* createStream(OniSensorType type) override;
+  void destroyStream(oni::driver::StreamBase* stream) override;
+  OniStatus setProperty(int id, const void* data, int size) override;
+  OniStatus getProperty(int id, void* data, int* size) override;
+  OniBool isPropertySupported(int id) override;
+  OniStatus invoke(int id, void* data, int size) override;
+  OniBool isCommandSupported(int id) override;
+  OniStatus tryManualTrigger() override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// The moment of the clock at which a timestamp was due; later ones follow from it.
+  struct Beginning {
+    Clock::time_point moment;
+    double timestamp_s;
+  };
+
+  void play();
+  bool wait_for_stream();
+  bool wait_for_turn(double timestamp_s);
+  void deliver(const DualFrequencyFrame& frame);
+  void deliver_images(const ImageU16& range, const ImageU16& amplitude, double timestamp_s);
+  const DeviceImageCodec& codec();
+  bool has_running_stream();
+  void update(const std::function<void()>& change);
+
+  DeviceRequest request_;
+  Events events_;
+  FramePlayer player_;
+  std::vector<DeviceImageCodec> codecs_;  ///< one for each mode of the depth stream
+  StreamDescription depth_;
+  StreamDescription infrared_;
+  std::vector<OniSensorInfo> sensors_;
+
+  std::mutex streams_mutex_;
+  std::list<ImageStream> streams_;
+
+  std::mutex mutex_;  ///< of the five that follow
+  std::condition_variable changed_;
+  double speed_;
+  std::optional<Beginning> beginning_;  ///< none after the speed has changed
+  bool is_triggered_ = false;
+  bool is_unplugged_ = false;
+  bool is_closing_ = false;
+
+  std::atomic<int> frames_ = 0;  ///< played so far
+  int images_ = 0;               ///< of one stream; the thread's alone
+  std::thread thread_;           ///< last: it uses all the others
+};
+
+}  // namespace tofmap

@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/acquisition/device_image.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <boost/crc.hpp>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr double most_steps = 65535;
+
+/// "tofmap", and the layout of what follows.
+constexpr std::array<std::uint16_t, 4> magic = {0x6f74, 0x6d66, 0x7061, 1};
+
+/// Writes a tag as words of 16 bits, low ones first; numbers as their bits.
+class TagWriter {
+ public:
+  TagWriter() : words_(magic.begin(), magic.end()) {}
+
+  void add(std::uint64_t value, int words) {
+    for (int i = 0; i < words; ++i, value >>= 16) {
+      words_.push_back(static_cast<std::uint16_t>(value));
+    }
+  }
+  void add(double value) { add(std::bit_cast<std::uint64_t>(value), 4); }
+
+  const std::vector<std::uint16_t>& words() const { return words_; }
+
+ private:
+  std::vector<std::uint16_t> words_;
+};
+
+class TagReader {
+ public:
+  explicit TagReader(const std::vector<std::uint16_t>& words)
+      : word_(words.begin() + magic.size()) {}
+
+  std::uint64_t whole(int words) {
+    std::uint64_t value = 0;
+    for (int i = 0; i < words; ++i) value |= std::uint64_t{*word_++} << (16 * i);
+    return value;
+  }
+  double number() { return std::bit_cast<double>(whole(4)); }
+
+ private:
+  std::vector<std::uint16_t>::const_iterator word_;
+};
+
+std::uint32_t checksum(const std::vector<std::uint16_t>& words, std::size_t count) {
+  boost::crc_32_type crc;
+  for (std::size_t i = 0; i < count; ++i) {
+    crc.process_byte(static_cast<unsigned char>(words[i] & 0xff));
+    crc.process_byte(static_cast<unsigned char>(words[i] >> 8));
+  }
+  return crc.checksum();
+}
+
+constexpr int checksum_words = 2;
+
+std::vector<std::uint16_t> words_of(const FrameTag& tag) {
+  TagWriter out;
+  out.add(tag.number, 2);
+  out.add(tag.timestamp_s);
+  const CameraModel& camera = tag.sensor.camera;
+  out.add(static_cast<std::uint64_t>(camera.width_px), 1);
+  out.add(static_cast<std::uint64_t>(camera.height_px), 1);
+  for (const double value : {camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px})
+    out.add(value);
+  for (const double value : camera.distortion) out.add(value);
+  out.add(tag.sensor.modulation.frequency_a_hz);
+  out.add(tag.sensor.modulation.frequency_b_hz);
+  out.add(tag.sensor.max_range_m);
+  out.add(tag.sensor.saturation_amplitude);
+  out.add(tag.scale.unit_m);
+  out.add(tag.scale.is_z_depth ? 1 : 0, 1);
+  out.add(checksum(out.words(), out.words().size()), checksum_words);
+  return out.words();
+}
+
+FrameTag tag_of(const std::vector<std::uint16_t>& words) {
+  TagReader in(words);
+  FrameTag tag;
+  tag.number = static_cast<std::uint32_t>(in.whole(2));
+  tag.timestamp_s = in.number();
+  CameraModel& camera = tag.sensor.camera;
+  camera.width_px = static_cast<int>(in.whole(1));
+  camera.height_px = static_cast<int>(in.whole(1));
+  for (double* value : {&camera.fx_px, &camera.fy_px, &camera.cx_px, &camera.cy_px}) {
+    *value = in.number();
+  }
+  for (double& value : camera.distortion) value = in.number();
+  tag.sensor.modulation.frequency_a_hz = in.number();
+  tag.sensor.modulation.frequency_b_hz = in.number();
+  tag.sensor.max_range_m = in.number();
+  tag.sensor.saturation_amplitude = in.number();
+  tag.scale.unit_m = in.number();
+  tag.scale.is_z_depth = in.whole(1) != 0;
+  return tag;
+}
+
+std::size_t tag_words() {
+  static const std::size_t count = words_of({}).size();
+  return count;
+}
+
+void write_tag(ImageU16& image, const std::vector<std::uint16_t>& words) {
+  const Eigen::Index rows = tag_rows(static_cast<int>(image.cols()));
+  image.bottomRows(rows).setZero();
+  std::ranges::copy(words, image.row(image.rows() - rows).data());
+}
+
+}  // namespace
+
+int tag_rows(int width_px) {
+  const int words = static_cast<int>(tag_words());
+  return (words + width_px - 1) / width_px;
+}
+
+std::optional<FrameTag> read_tag(const ImageU16& image) {
+  if (image.cols() == 0) return std::nullopt;
+  const Eigen::Index rows = tag_rows(static_cast<int>(image.cols()));
+  if (image.rows() < rows) return std::nullopt;
+  const std::uint16_t* first = image.row(image.rows() - rows).data();
+  const std::vector<std::uint16_t> words(first, first + tag_words());
+  if (!std::equal(magic.begin(), magic.end(), words.begin())) return std::nullopt;
+  const std::size_t checked = words.size() - checksum_words;
+  const std::uint32_t sum = words[checked] | std::uint32_t{words[checked + 1]} << 16;
+  if (sum != checksum(words, checked)) return std::nullopt;
+  return tag_of(words);
+}
+
+DeviceImageCodec::DeviceImageCodec(const SensorModel& sensor, const RangeScale& scale)
+    : sensor_(sensor), scale_(scale) {
+  const double longest_m =
+      std::max(sensor.modulation.wavelength_a_m(), sensor.modulation.wavelength_b_m());
+  if (!(longest_m / scale.unit_m <= most_steps)) {
+    throw UsageError("ranges up to " + std::to_string(longest_m) +
+                     " m do not fit into 16 bits of " + std::to_string(1000 * scale.unit_m) +
+                     " mm; a coarser unit holds them");
+  }
+  steps_per_m_ = ImageF::Constant(sensor.camera.height_px, sensor.camera.width_px,
+                                  static_cast<float>(1 / scale.unit_m));
+  if (scale.is_z_depth) steps_per_m_ *= pixel_rays(sensor.camera).z;
+}
+
+ImageU16 DeviceImageCodec::encode_range(const ImageF& phase, double wavelength_m) const {
+  return phase.binaryExpr(steps_per_m_, [wavelength_m](float cycles, float steps_per_m) {
+    if (std::isnan(cycles)) return std::uint16_t{0};
+    const double wavelength_steps = wavelength_m * double{steps_per_m};
+    const double steps = std::round(double{cycles} * wavelength_steps);
+    return static_cast<std::uint16_t>(steps > 0 ? steps : std::round(wavelength_steps));
+  });
+}
+
+ImageF DeviceImageCodec::decode_range(const Eigen::Ref<const ImageU16>& range,
+                                      double wavelength_m) const {
+  if (!same_size(range, steps_per_m_)) throw UsageError("an image is not of the camera's size");
+  return range.cast<float>().binaryExpr(
+      steps_per_m_, [wavelength_m](float steps, float steps_per_m) {
+        constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+        if (steps == 0) return nan;
+        const double wavelength_steps = wavelength_m * double{steps_per_m};
+        if (double{steps} > std::round(wavelength_steps)) return nan;
+        const auto cycles = static_cast<float>(double{steps} / wavelength_steps);
+        return cycles < 1 ? cycles : 0.0F;
+      });
+}
+
+int DeviceImageCodec::count_beyond(const Eigen::Ref<const ImageU16>& range,
+                                   double wavelength_m) const {
+  const auto longest = (steps_per_m_.cast<double>() * wavelength_m).round();
+  return static_cast<int>((range.cast<double>() > longest).count());
+}
+
+StackedImages DeviceImageCodec::stack(const DualFrequencyFrame& frame, std::uint32_t number) const {
+  const Eigen::Index rows = sensor_.camera.height_px;
+  const Eigen::Index cols = sensor_.camera.width_px;
+  const Eigen::Index all_rows = 2 * rows + tag_rows(sensor_.camera.width_px);
+  StackedImages out{ImageU16(all_rows, cols), ImageU16::Zero(all_rows, cols)};
+  out.range.topRows(rows) = encode_range(frame.phase_a, sensor_.modulation.wavelength_a_m());
+  out.range.middleRows(rows, rows) =
+      encode_range(frame.phase_b, sensor_.modulation.wavelength_b_m());
+  if (frame.has_amplitude()) {
+    out.amplitude.topRows(rows) = encode_amplitude(frame.amplitude_a);
+    out.amplitude.middleRows(rows, rows) = encode_amplitude(frame.amplitude_b);
+  }
+  const auto words = words_of({number, frame.timestamp_s, sensor_, scale_});
+  write_tag(out.range, words);
+  write_tag(out.amplitude, words);
+  return out;
+}
+
+int DeviceImageCodec::rows_of_both(const ImageU16& image) const {
+  const CameraModel& camera = sensor_.camera;
+  const int both = 2 * camera.height_px;
+  const bool fits = image.cols() == camera.width_px &&
+                    (image.rows() == both || image.rows() == both + tag_rows(camera.width_px));
+  if (!fits) {
+    throw UsageError("an image of " + std::to_string(image.cols()) + " x " +
+                     std::to_string(image.rows()) + " pixels does not hold two of " +
+                     std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px));
+  }
+  return both / 2;
+}
+
+DualFrequencyFrame DeviceImageCodec::unstack(const ImageU16& range,
+                                             const ImageU16& amplitude) const {
+  const Eigen::Index rows = rows_of_both(range);
+  DualFrequencyFrame frame;
+  frame.phase_a = decode_range(range.topRows(rows), sensor_.modulation.wavelength_a_m());
+  frame.phase_b = decode_range(range.middleRows(rows, rows), sensor_.modulation.wavelength_b_m());
+  if (amplitude.size() > 0) {
+    rows_of_both(amplitude);
+    frame.amplitude_a = decode_amplitude(amplitude.topRows(rows));
+    frame.amplitude_b = decode_amplitude(amplitude.middleRows(rows, rows));
+  }
+  return frame;
+}
+
+ImageU16 encode_amplitude(const ImageF& amplitude) {
+  return amplitude.unaryExpr([](float value) {
+    if (!(value > 0)) return std::uint16_t{0};
+    return static_cast<std::uint16_t>(std::clamp(std::round(value), 1.0F, 65535.0F));
+  });
+}
+
+ImageF decode_amplitude(const Eigen::Ref<const ImageU16>& amplitude) {
+  return amplitude.cast<float>();
+}
+
+}  // namespace tofmap

@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "openni2_connection.hpp"
+
+#include <chrono>
+#include <cstring>
+#include <sstream>
+#include <thread>
+#include <utility>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+/// A speed of playback.
+constexpr float as_frames_are_asked_for = -1;
+
+/// What OpenNI2 has to say of the last failure, in one line.
+std::string last_error() {
+  std::istringstream words(openni::OpenNI::getExtendedError());
+  std::string text;
+  for (std::string word; words >> word;) text += (text.empty() ? "" : " ") + word;
+  return text.empty() ? "OpenNI2 does not say why" : text;
+}
+
+void check(openni::Status status, const std::string& what) {
+  if (status != openni::STATUS_OK) throw InputError(what + ": " + last_error());
+}
+
+double unit_of(openni::PixelFormat format) {
+  switch (format) {
+    case openni::PIXEL_FORMAT_DEPTH_100_UM:
+      return 1e-4;
+    case openni::PIXEL_FORMAT_DEPTH_1_MM:
+      return 1e-3;
+    default:
+      return 0;
+  }
+}
+
+/// OpenNI2 writes files in a thread of its own, and says neither when that has begun (images before
+/// are not recorded) nor when it has written all it was given (what it has not is dropped at the
+/// end). So waits until the file has something in it and has stopped growing.
+void wait_while_growing(const std::filesystem::path& file) {
+  using namespace std::chrono_literals;
+  constexpr auto still = 200ms;  // an image takes some milliseconds
+  constexpr auto longest = 30s;
+  std::uintmax_t last = 0;
+  for (const auto give_up = std::chrono::steady_clock::now() + longest;
+       std::chrono::steady_clock::now() < give_up;) {
+    std::this_thread::sleep_for(still);
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (!error && size > 0 && size == last) return;
+    last = error ? 0 : size;
+  }
+}
+
+}  // namespace
+
+OpenNi2Connection::Library::Library() { check(openni::OpenNI::initialize(), "OpenNI2"); }
+OpenNi2Connection::Library::~Library() { openni::OpenNI::shutdown(); }
+
+void OpenNi2Connection::Listener::onDeviceDisconnected(const openni::DeviceInfo* device) {
+  if (uri == device->getUri()) is_unplugged = true;
+}
+
+void OpenNi2Connection::Listener::onDeviceStateChanged(const openni::DeviceInfo* device,
+                                                       openni::DeviceState state) {
+  constexpr auto end_of_file = static_cast<openni::DeviceState>(ONI_DEVICE_STATE_EOF);
+  if (uri == device->getUri() && state == end_of_file) is_at_end = true;
+}
+
+OpenNi2Connection::OpenNi2Connection(const std::string& uri,
+                                     const std::filesystem::path& oni_file) {
+  openni::OpenNI::addDeviceDisconnectedListener(&listener_);
+  openni::OpenNI::addDeviceStateChangedListener(&listener_);
+  open(uri);
+  start(depth_, openni::SENSOR_DEPTH, uri);
+  if (device_.hasSensor(openni::SENSOR_IR)) start(infrared_, openni::SENSOR_IR, uri);
+  if (!oni_file.empty()) record(oni_file);
+  check(depth_.start(), uri + ": its depth stream does not start");
+  if (infrared_.isValid()) check(infrared_.start(), uri + ": its infrared stream does not start");
+}
+
+OpenNi2Connection::~OpenNi2Connection() {
+  if (recorder_.isValid()) end_recording();
+  depth_.stop();
+  depth_.destroy();
+  infrared_.stop();
+  infrared_.destroy();
+  device_.close();
+  openni::OpenNI::removeDeviceDisconnectedListener(&listener_);
+  openni::OpenNI::removeDeviceStateChangedListener(&listener_);
+}
+
+void OpenNi2Connection::open(const std::string& uri) {
+  const bool is_file = uri.find("://") == std::string::npos;
+  if (is_file && !std::filesystem::is_regular_file(uri)) {
+    throw InputError(uri + ": there is no such file");
+  }
+  check(device_.open(uri.c_str()),
+        uri + (is_file ? ": cannot be opened; is it an .oni file, and whole?"
+                       : ": cannot be opened; is it plugged in, and its driver there?"));
+  listener_.uri = device_.getDeviceInfo().getUri();
+  if (!device_.hasSensor(openni::SENSOR_DEPTH)) throw InputError(uri + ": has no depth stream");
+  if (openni::PlaybackControl* playback = device_.getPlaybackControl()) {
+    playback->setRepeatEnabled(false);
+    playback->setSpeed(as_frames_are_asked_for);
+  }
+}
+
+void OpenNi2Connection::start(openni::VideoStream& stream, openni::SensorType type,
+                              const std::string& uri) {
+  const std::string name = type == openni::SENSOR_DEPTH ? "depth" : "infrared";
+  check(stream.create(device_, type), uri + ": its " + name + " stream cannot be opened");
+  if (stream.getMirroringEnabled()) stream.setMirroringEnabled(false);
+}
+
+void OpenNi2Connection::record(const std::filesystem::path& oni_file) {
+  oni_file_ = oni_file;
+  check(recorder_.create(oni_file.c_str()), oni_file.string() + ": cannot be written");
+  check(recorder_.attach(depth_), oni_file.string() + ": depth cannot be recorded");
+  if (infrared_.isValid()) {
+    check(recorder_.attach(infrared_), oni_file.string() + ": infrared cannot be recorded");
+  }
+  check(recorder_.start(), oni_file.string() + ": cannot be written");
+  wait_while_growing(oni_file);
+}
+
+void OpenNi2Connection::end_recording() {
+  wait_while_growing(oni_file_);
+  recorder_.stop();
+  recorder_.destroy();
+}
+
+std::optional<RawImage> OpenNi2Connection::wait_for_image(int timeout_ms) {
+  openni::VideoStream* streams[] = {&depth_, &infrared_};
+  const int stream_count = infrared_.isValid() ? 2 : 1;
+  int ready = -1;
+  const openni::Status status =
+      openni::OpenNI::waitForAnyStream(streams, stream_count, &ready, timeout_ms);
+  if (status == openni::STATUS_TIME_OUT) return std::nullopt;
+  if (status != openni::STATUS_OK) {
+    if (is_unplugged() || is_at_end()) return std::nullopt;
+    throw InputError("waiting for images of " + listener_.uri + ": " + last_error());
+  }
+  return read(ready == 0 ? DeviceStream::range : DeviceStream::amplitude);
+}
+
+RawImage OpenNi2Connection::read(DeviceStream stream) {
+  openni::VideoFrameRef frame;
+  openni::VideoStream& source = stream == DeviceStream::range ? depth_ : infrared_;
+  check(source.readFrame(&frame), "reading an image of " + listener_.uri);
+  RawImage image;
+  image.stream = stream;
+  image.timestamp_us = static_cast<std::int64_t>(frame.getTimestamp());
+  const openni::PixelFormat format = frame.getVideoMode().getPixelFormat();
+  image.unit_m = unit_of(format);
+  const bool is_known =
+      stream == DeviceStream::range ? image.unit_m > 0 : format == openni::PIXEL_FORMAT_GRAY16;
+  if (!is_known) {
+    throw InputError(listener_.uri + ": its " +
+                     (stream == DeviceStream::range ? "depth" : "infrared") +
+                     " images are of pixel format " + std::to_string(format) +
+                     "; 16 bits of depth (mm or 0.1 mm) and of gray can be read");
+  }
+  image.pixels.resize(frame.getHeight(), frame.getWidth());
+  const auto* bytes = static_cast<const char*>(frame.getData());
+  const auto row_bytes = static_cast<std::size_t>(frame.getWidth()) * sizeof(std::uint16_t);
+  for (Eigen::Index row = 0; row < image.pixels.rows(); ++row) {
+    std::memcpy(image.pixels.row(row).data(), bytes + row * frame.getStrideInBytes(), row_bytes);
+  }
+  return image;
+}
+
+bool OpenNi2Connection::waits_for_reader() const {
+  float speed = 0;
+  return device_.isPropertySupported(openni::DEVICE_PROPERTY_PLAYBACK_SPEED) &&
+         device_.getProperty(openni::DEVICE_PROPERTY_PLAYBACK_SPEED, &speed) == openni::STATUS_OK &&
+         speed == as_frames_are_asked_for;
+}
+
+std::optional<double> OpenNi2Connection::number(int property) const {
+  if (!device_.isPropertySupported(property)) return std::nullopt;
+  double value = 0;
+  if (device_.getProperty(property, &value) != openni::STATUS_OK) return std::nullopt;
+  return value;
+}
+
+}  // namespace tofmap

@@ -1,0 +1,336 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/acquisition/openni2_source.hpp"
+
+#include "openni2_connection.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <deque>
+#include <mutex>
+#include <numbers>
+#include <utility>
+
+#include <tofmap/acquisition/device_image.hpp>
+#include <tofmap/acquisition/openni2_properties.hpp>
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Of an image, beyond a wavelength, that chance and noise do not explain.
+constexpr double telling_share = 0.001;
+constexpr int least_telling = 3;
+
+/// A device of which so many images made no frame is not what the options say.
+constexpr int most_fruitless_images = 200;
+
+bool has_beyond(int beyond, Eigen::Index pixels) {
+  return beyond >= std::max(least_telling * 1.0, telling_share * static_cast<double>(pixels));
+}
+
+/// Metres, as the options or the device itself say, of a device whose images carry no tag.
+SensorModel untagged_sensor(const std::string& uri, const OpenNi2Connection& device,
+                            const RawImage& image, const OpenNi2Source::Settings& settings) {
+  const DeviceOptions& options = settings.options;
+  SensorModel sensor;
+  const auto frequency = [&](double wanted_hz, int property) {
+    return wanted_hz > 0 ? wanted_hz : device.number(property).value_or(0);
+  };
+  sensor.modulation.frequency_a_hz =
+      frequency(options.frequency_a_hz, openni2_property::frequency_a_hz);
+  sensor.modulation.frequency_b_hz =
+      frequency(options.frequency_b_hz, openni2_property::frequency_b_hz);
+  sensor.max_range_m = options.max_range_m;
+  if (!(sensor.modulation.frequency_a_hz > 0 && sensor.modulation.frequency_b_hz > 0)) {
+    throw UsageError(uri + ": does not say at which frequencies it measures; set " +
+                     "device.frequency_a_hz and device.frequency_b_hz");
+  }
+  const int halves = options.layout == "stacked" ? 2 : 1;
+  const auto width = static_cast<int>(image.pixels.cols());
+  const auto height = static_cast<int>(image.pixels.rows()) / halves;
+  const double view_rad = device.horizontal_fov_rad();
+  if (settings.calibration.camera) {
+    sensor.camera = *settings.calibration.camera;
+  } else if (view_rad > 0 && view_rad < std::numbers::pi) {
+    sensor.camera = pinhole_camera(view_rad, width, height);
+  } else {
+    throw InputError(uri + ": does not say how wide its view is; a calibration with the camera's " +
+                     "intrinsics does (--calibration, docs/calibration.md)");
+  }
+  return sensor;
+}
+
+}  // namespace
+
+std::vector<OptionField<DeviceOptions>> DeviceOptions::fields() {
+  using D = DeviceOptions;
+  return {
+      {"layout", &D::layout, 0, 0, "",
+       "auto: as its images say; stacked: A above B in each image; alternating: A and B in turn",
+       "auto | stacked | alternating"},
+      {"frequency_a_hz", &D::frequency_a_hz, 0, 1e9, "Hz",
+       "of image A, if the images do not say; 0: as the device says"},
+      {"frequency_b_hz", &D::frequency_b_hz, 0, 1e9, "Hz",
+       "of image B, if the images do not say; 0: as the device says"},
+      {"depth", &D::depth, 0, 0, "",
+       "what depth images hold, if they do not say: z, along the optical axis, as OpenNI2 has it, "
+       "or "
+       "radial, along each pixel's ray",
+       "z | radial"},
+      {"max_range_m", &D::max_range_m, 0, 65.5, "m",
+       "how far the scene reaches, if the images do not say; 0: not known"},
+      {"first", &D::first, 0, 0, "",
+       "what the first image of an alternating device is; auto: ranges tell, as none is longer "
+       "than "
+       "its wavelength",
+       "auto | a | b"},
+      {"period_s", &D::period_s, 0, 10, "s",
+       "between two images of an alternating device; 0: by its frame rate"},
+      {"timeout_s", &D::timeout_s, 0.1, 3600, "s", "how long to wait for an image"},
+  };
+}
+
+bool is_device_uri(const std::string& text) {
+  return text.find("://") != std::string::npos || text.ends_with(".oni");
+}
+
+/// What the images of a device mean, and the frames that they make.
+class OpenNi2Source::Impl {
+ public:
+  Impl(const std::string& uri, Settings settings);
+
+  const SensorModel& sensor() const { return sensor_; }
+  std::optional<SourcedFrame> next();
+  End end() const { return end_; }
+  bool waits_for_reader() const { return device_.waits_for_reader(); }
+  PairingCounts counts() const {
+    const std::scoped_lock lock(mutex_);
+    return counts_;
+  }
+
+ private:
+  std::optional<RawImage> wait_for_image();
+  void take_as_tagged(const FrameTag& tag);
+  void take_as_configured(const RawImage& image);
+  void begin(const SensorModel& sensor, const RangeScale& scale, ImageKey key);
+  std::optional<DeviceImage> understand(RawImage image);
+  std::optional<DualFrequencyFrame> add(RawImage image);
+  std::optional<DualFrequencyFrame> frame_of(JoinedImages joined);
+  std::optional<DualFrequencyFrame> frame_of_pair(const AlternatingPair& pair) const;
+  SourcedFrame sourced(DualFrequencyFrame frame);
+  void check_fruit() const;
+
+  std::string uri_;
+  Settings settings_;
+  OpenNi2Connection device_;
+  SensorModel sensor_;
+  std::optional<FrameTag> first_tag_;
+  std::optional<DeviceImageCodec> codec_;
+  std::optional<StreamJoiner> joiner_;
+  std::optional<AlternatingPairer> alternating_;
+  std::deque<RawImage> early_;  ///< images that came before it was known what they mean
+  int index_ = 0;
+  int images_ = 0;
+  std::atomic<End> end_{End::none};
+  mutable std::mutex mutex_;
+  PairingCounts counts_;
+};
+
+OpenNi2Source::Impl::Impl(const std::string& uri, Settings settings)
+    : uri_(uri), settings_(std::move(settings)), device_(uri, settings_.oni_file) {
+  while (true) {
+    std::optional<RawImage> image = wait_for_image();
+    if (!image) {
+      if (end_ == End::asked) return;
+      throw InputError(uri_ + ": delivers no range images; is it the right device?");
+    }
+    early_.push_back(std::move(*image));
+    const RawImage& latest = early_.back();
+    if (latest.stream != DeviceStream::range) continue;
+    const std::optional<FrameTag> tag = read_tag(latest.pixels);
+    tag ? take_as_tagged(*tag) : take_as_configured(latest);
+    return;
+  }
+}
+
+void OpenNi2Source::Impl::begin(const SensorModel& sensor, const RangeScale& scale, ImageKey key) {
+  try {
+    validate(sensor.camera);
+    validate(sensor.modulation);
+  } catch (const InputError& error) {
+    throw InputError(uri_ + ": " + error.what());
+  }
+  codec_.emplace(sensor, scale);
+  joiner_.emplace(key, device_.has_amplitude());
+  sensor_ = calibrated(sensor, settings_.calibration);
+}
+
+void OpenNi2Source::Impl::take_as_tagged(const FrameTag& tag) {
+  if (settings_.options.layout == "alternating") {
+    throw InputError(uri_ + ": its images say that they hold both frequencies; leave out " +
+                     "device.layout=alternating");
+  }
+  first_tag_ = tag;
+  begin(tag.sensor, tag.scale, ImageKey::number);
+}
+
+void OpenNi2Source::Impl::take_as_configured(const RawImage& image) {
+  const DeviceOptions& options = settings_.options;
+  if (options.layout == "auto") {
+    throw UsageError(uri_ + ": its images do not say how they hold both frequencies; set " +
+                     "device.layout to stacked or alternating (docs/cameras.md)");
+  }
+  const SensorModel sensor = untagged_sensor(uri_, device_, image, settings_);
+  begin(sensor, {image.unit_m, options.depth == "z"}, ImageKey::time);
+  if (options.layout == "stacked") return;
+  AlternatingPairer::Settings pairing;
+  pairing.period_s = options.period_s > 0 ? options.period_s : 1.0 / device_.frame_rate_hz();
+  const Modulation& modulation = sensor.modulation;
+  pairing.longer = modulation.wavelength_a_m() > modulation.wavelength_b_m() ? Half::a : Half::b;
+  if (options.first == "a") pairing.first = Half::a;
+  if (options.first == "b") pairing.first = Half::b;
+  alternating_.emplace(pairing);
+}
+
+std::optional<RawImage> OpenNi2Source::Impl::wait_for_image() {
+  using Clock = std::chrono::steady_clock;
+  const auto give_up =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                         std::chrono::duration<double>(settings_.options.timeout_s));
+  while (true) {
+    if (settings_.keep_going && !settings_.keep_going()) {
+      end_ = End::asked;
+      return std::nullopt;
+    }
+    constexpr int slice_ms = 100;
+    std::optional<RawImage> image = device_.wait_for_image(slice_ms);
+    if (image) return image;
+    if (device_.is_unplugged()) end_ = End::unplugged;
+    if (device_.is_at_end()) end_ = End::of_recording;
+    if (end_ == End::none && Clock::now() > give_up) end_ = End::timeout;
+    if (end_ != End::none) return std::nullopt;
+  }
+}
+
+/// The instant of an image; nothing for one that is not as the others are.
+std::optional<DeviceImage> OpenNi2Source::Impl::understand(RawImage image) {
+  DeviceImage understood{image.stream, 1e-6 * static_cast<double>(image.timestamp_us),
+                         image.timestamp_us, std::move(image.pixels)};
+  if (!first_tag_) return understood;
+  const std::optional<FrameTag> tag = read_tag(understood.pixels);
+  const bool is_alike =
+      tag && tag->scale.unit_m == first_tag_->scale.unit_m &&
+      tag->scale.is_z_depth == first_tag_->scale.is_z_depth &&
+      tag->sensor.modulation.frequency_a_hz == first_tag_->sensor.modulation.frequency_a_hz &&
+      tag->sensor.modulation.frequency_b_hz == first_tag_->sensor.modulation.frequency_b_hz &&
+      tag->sensor.camera.width_px == first_tag_->sensor.camera.width_px &&
+      tag->sensor.camera.height_px == first_tag_->sensor.camera.height_px;
+  if (!is_alike) return std::nullopt;
+  understood.timestamp_s = tag->timestamp_s;
+  understood.key = tag->number;
+  return understood;
+}
+
+std::optional<DualFrequencyFrame> OpenNi2Source::Impl::frame_of_pair(
+    const AlternatingPair& pair) const {
+  const Modulation& modulation = sensor_.modulation;
+  DualFrequencyFrame frame;
+  frame.timestamp_s = pair.a.timestamp_s;
+  frame.phase_a = codec_->decode_range(pair.a.range, modulation.wavelength_a_m());
+  frame.phase_b = codec_->decode_range(pair.b.range, modulation.wavelength_b_m());
+  if (pair.a.has_amplitude() && pair.b.has_amplitude()) {
+    frame.amplitude_a = decode_amplitude(pair.a.amplitude);
+    frame.amplitude_b = decode_amplitude(pair.b.amplitude);
+  }
+  return frame;
+}
+
+std::optional<DualFrequencyFrame> OpenNi2Source::Impl::frame_of(JoinedImages joined) {
+  if (!alternating_) {
+    DualFrequencyFrame frame = codec_->unstack(joined.range, joined.amplitude);
+    frame.timestamp_s = joined.timestamp_s;
+    return frame;
+  }
+  const Modulation& modulation = sensor_.modulation;
+  const double shorter_m = std::min(modulation.wavelength_a_m(), modulation.wavelength_b_m());
+  const bool reaches_beyond =
+      has_beyond(codec_->count_beyond(joined.range, shorter_m), joined.range.size());
+  const auto pair = alternating_->add(std::move(joined), reaches_beyond, counts_);
+  return pair ? frame_of_pair(*pair) : std::nullopt;
+}
+
+std::optional<DualFrequencyFrame> OpenNi2Source::Impl::add(RawImage image) {
+  const std::scoped_lock lock(mutex_);
+  ++images_;
+  std::optional<DeviceImage> understood = understand(std::move(image));
+  if (!understood) {
+    ++counts_.unreadable;
+    return std::nullopt;
+  }
+  std::optional<JoinedImages> joined = joiner_->add(std::move(*understood), counts_);
+  if (!joined) return std::nullopt;
+  const int images = joined->has_amplitude() ? 2 : 1;
+  try {
+    return frame_of(std::move(*joined));
+  } catch (const UsageError&) {  // not of the camera's size
+    counts_.paired -= images;
+    counts_.unreadable += images;
+    return std::nullopt;
+  }
+}
+
+void OpenNi2Source::Impl::check_fruit() const {
+  if (index_ > 0 || images_ < most_fruitless_images) return;
+  throw InputError(uri_ + ": " + std::to_string(images_) +
+                   " images made no frame: " + std::to_string(counts_.half_missing) +
+                   " without their other half, " + std::to_string(counts_.undecided) +
+                   " undecided, " + std::to_string(counts_.unreadable) +
+                   " not as described; do device.layout, device.period_s, device.first and the "
+                   "frequencies fit the device?");
+}
+
+SourcedFrame OpenNi2Source::Impl::sourced(DualFrequencyFrame frame) {
+  SourcedFrame out;
+  out.index = index_;
+  out.timestamp_s = frame.timestamp_s;
+  frame.index = index_++;
+  calibrate(frame, sensor_.modulation, settings_.calibration);
+  out.frame = std::move(frame);
+  return out;
+}
+
+std::optional<SourcedFrame> OpenNi2Source::Impl::next() {
+  if (settings_.most_frames > 0 && index_ == settings_.most_frames) end_ = End::asked;
+  while (end_ == End::none) {
+    std::optional<RawImage> image;
+    if (early_.empty()) {
+      image = wait_for_image();
+    } else {
+      image = std::move(early_.front());
+      early_.pop_front();
+    }
+    if (!image) break;
+    std::optional<DualFrequencyFrame> frame = add(std::move(*image));
+    if (frame) return sourced(std::move(*frame));
+    check_fruit();
+  }
+  if (end_ == End::asked) return std::nullopt;  // what waits might have been completed
+  const std::scoped_lock lock(mutex_);
+  if (joiner_) joiner_->finish(counts_);
+  if (alternating_) alternating_->finish(counts_);
+  return std::nullopt;
+}
+
+OpenNi2Source::OpenNi2Source(const std::string& uri, Settings settings)
+    : impl_(std::make_unique<Impl>(uri, std::move(settings))) {}
+OpenNi2Source::~OpenNi2Source() = default;
+const SensorModel& OpenNi2Source::sensor() const { return impl_->sensor(); }
+std::optional<SourcedFrame> OpenNi2Source::next() { return impl_->next(); }
+OpenNi2Source::End OpenNi2Source::end() const { return impl_->end(); }
+bool OpenNi2Source::waits_for_reader() const { return impl_->waits_for_reader(); }
+PairingCounts OpenNi2Source::counts() const { return impl_->counts(); }
+
+}  // namespace tofmap

@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "program.hpp"
+
+#include <cmath>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <tofmap/acquisition/sequence.hpp>
+
+namespace tofmap::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// A recording that is played as a device, and what becomes of it.
+class Device : public testing::Test {
+ protected:
+  static constexpr int frame_count = 12;
+
+  Device() {
+    EXPECT_EQ(run_program({"simulate", "room", "--frames", std::to_string(frame_count), "--out",
+                           recording_.string(), "--set", "simulator.width_px=88",
+                           "simulator.height_px=72", "simulator.subpixels=2"})
+                  .status,
+              0);
+  }
+
+  /// Frames are made when they are asked for.
+  std::string uri(const std::string& options = "") const {
+    return "tofmap://" + recording_.string() + "?speed=-1" + (options.empty() ? "" : "&") + options;
+  }
+
+  Finished record(const std::string& from, std::vector<std::string> more = {}) {
+    fs::remove_all(out_);
+    std::vector<std::string> arguments = {"record", from, "--out", out_.string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments);
+  }
+
+  nlohmann::json images() const { return read_json(out_ / "report.json")["acquisition"]["images"]; }
+
+  /// Frames `first` … of what was recorded hold the ranges of the recording, to the step of the
+  /// format.
+  void expect_same_ranges(int count, int first = 0) const {
+    const SequenceReader original(recording_);
+    const SequenceReader copy(out_);
+    ASSERT_EQ(copy.frame_count(), count);
+    const Modulation& modulation = original.sensor().modulation;
+    EXPECT_EQ(copy.sensor().modulation.frequency_a_hz, modulation.frequency_a_hz);
+    EXPECT_EQ(copy.sensor().modulation.frequency_b_hz, modulation.frequency_b_hz);
+    for (int i = 0; i < count; ++i) {
+      const DualFrequencyFrame wanted = *original.read(first + i).frame;
+      const DualFrequencyFrame found = *copy.read(i).frame;
+      expect_same_phases(found.phase_a, wanted.phase_a, modulation.wavelength_a_m());
+      expect_same_phases(found.phase_b, wanted.phase_b, modulation.wavelength_b_m());
+      EXPECT_TRUE((found.amplitude_a == wanted.amplitude_a).all());
+      EXPECT_TRUE((found.amplitude_b == wanted.amplitude_b).all());
+      EXPECT_NEAR(
+          found.timestamp_s - copy.files()[0].timestamp_s,
+          wanted.timestamp_s - original.files()[static_cast<std::size_t>(first)].timestamp_s, 2e-6)
+          << "microseconds are OpenNI2's unit";
+    }
+  }
+
+  static void expect_same_phases(const ImageF& found, const ImageF& wanted, double wavelength_m) {
+    ASSERT_TRUE((found.isNaN() == wanted.isNaN()).all());
+    double worst_m = 0;
+    for (Eigen::Index i = 0; i < found.size(); ++i) {
+      const double cycles = double{found.data()[i]} - double{wanted.data()[i]};
+      if (std::isnan(cycles)) continue;
+      worst_m = std::max(worst_m, wavelength_m * std::abs(cycles - std::round(cycles)));
+    }
+    // Half a step of 0.1 mm, and half a step of a sequence's phase images.
+    EXPECT_LE(worst_m, 0.5e-4 + 0.5 * wavelength_m / 65535 + 1e-6);
+  }
+
+  TemporaryFolder folder_;
+  fs::path recording_ = folder_.path() / "recording";
+  fs::path out_ = folder_.path() / "out";
+};
+
+TEST_F(Device, IsRecordedToTheStepOfItsImages) {
+  const Finished finished = record(uri());
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  expect_same_ranges(frame_count);
+  EXPECT_EQ(images()["paired"], 2 * frame_count);
+  EXPECT_EQ(images()["lost"], 0);
+}
+
+TEST_F(Device, IsRecordedToAnOniFileThatPlaysTheSameRanges) {
+  const fs::path oni = folder_.path() / "device.oni";
+  ASSERT_EQ(record(uri(), {"--oni", oni.string()}).status, 0);
+  const Finished again = record(oni.string());
+  ASSERT_EQ(again.status, 0) << again.err;
+  expect_same_ranges(frame_count);
+  EXPECT_EQ(record(uri(), {"--oni", oni.string()}).status, 3) << "it is there already";
+}
+
+TEST_F(Device, EndsAfterAsManyFramesAsAreWanted) {
+  const fs::path oni = folder_.path() / "device.oni";
+  ASSERT_EQ(record(uri(), {"--frames", "5", "--oni", oni.string()}).status, 0);
+  expect_same_ranges(5);
+  ASSERT_EQ(record(oni.string()).status, 0);
+  expect_same_ranges(5);
+}
+
+TEST_F(Device, MayDeliverDepthAlongItsAxis) {
+  const Finished finished = record(uri("depth=z"), {"--frames", "2"});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const SequenceReader original(recording_);
+  const SequenceReader copy(out_);
+  const double wavelength_m = original.sensor().modulation.wavelength_a_m();
+  const ImageF wanted = original.read(1).frame->phase_a;
+  const ImageF found = copy.read(1).frame->phase_a;
+  for (Eigen::Index i = 0; i < found.size(); ++i) {
+    const double cycles = double{found.data()[i]} - double{wanted.data()[i]};
+    if (std::isnan(cycles)) continue;
+    // A step along the axis is up to 1.3 along a ray of this view.
+    EXPECT_LE(wavelength_m * std::abs(cycles - std::round(cycles)), 1.5e-4);
+  }
+}
+
+TEST_F(Device, EndsCleanlyWhenItIsUnplugged) {
+  const Finished finished = record(uri("unplug_at=7"));
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  expect_same_ranges(7);
+  EXPECT_THAT(read_text(out_ / "report.json"), HasSubstr("unplugged"));
+}
+
+TEST_F(Device, ThatTakesBothFrequenciesInTurnIsPaired) {
+  const std::vector<std::string> configured = {"--set", "device.layout=alternating",
+                                               "device.depth=radial"};
+  ASSERT_EQ(record(uri("layout=alternating"), configured).status, 0);
+  expect_same_ranges(frame_count);
+
+  // Every fifth image is lost: the fifth is A of the third frame, the tenth B of the fifth.
+  ASSERT_EQ(record(uri("layout=alternating&lose_every=5"), configured).status, 0);
+  const SequenceReader copy(out_);
+  EXPECT_EQ(copy.frame_count(), frame_count - 4);
+  EXPECT_EQ(images()["lost"], 4);
+  EXPECT_EQ(images()["half_missing"], 2 * 4);
+  EXPECT_EQ(images()["paired"], 4 * (frame_count - 4));
+}
+
+TEST_F(Device, ThatDoesNotSayHowItTakesBothFrequenciesMustBeConfigured) {
+  const Finished finished = record(uri("layout=alternating"));
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_THAT(finished.err, HasSubstr("device.layout"));
+  EXPECT_FALSE(fs::exists(out_));
+}
+
+TEST_F(Device, WhoseLossesAreCounted) {
+  ASSERT_EQ(record(uri("lose_every=4")).status, 0);
+  EXPECT_EQ(images()["paired"], 2 * (frame_count - 3));
+  EXPECT_EQ(images()["lost"], 2) << "the last one is followed by none that tells";
+}
+
+TEST_F(Device, ThatFallsSilentIsNotWaitedForForEver) {
+  const Finished finished =
+      record("tofmap://" + recording_.string() + "?speed=0.0001", {"--set", "device.timeout_s=1"});
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, HasSubstr("no image for 1 s"));
+  EXPECT_EQ(SequenceReader(out_).frame_count(), 1) << "what came before is kept";
+}
+
+TEST_F(Device, IsMappedAsItsRecordingIs) {
+  const fs::path from_device = folder_.path() / "from_device";
+  const Finished finished = run_program({"map", uri(), "--out", from_device.string()});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  ASSERT_EQ(record(uri()).status, 0);
+  const fs::path from_recording = folder_.path() / "from_recording";
+  ASSERT_EQ(run_program({"map", out_.string(), "--out", from_recording.string()}).status, 0);
+  const Trajectory one = read_trajectory(from_device / "trajectory.txt");
+  const Trajectory other = read_trajectory(from_recording / "trajectory.txt");
+  ASSERT_EQ(one.size(), other.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    const Pose difference = one[i].world_from_camera.inverse() * other[i].world_from_camera;
+    // Phase images of a sequence are rounded once more.
+    EXPECT_LT(difference.translation().norm(), 1e-3);
+  }
+  const auto report = read_json(from_device / "report.json");
+  EXPECT_EQ(report["acquisition"]["end"], "end of the recording");
+}
+
+TEST_F(Device, CannotBeResumed) {
+  const Finished finished = run_program({"map", uri(), "--out", out_.string(), "--resume"});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_THAT(finished.err, HasSubstr("tofmap record"));
+}
+
+struct BadUri {
+  std::string name;
+  std::string uri;
+  std::string complaint;
+};
+
+class BadDevice : public testing::TestWithParam<BadUri> {};
+
+TEST_P(BadDevice, IsNamedAndLeavesNothing) {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path() / "out";
+  const Finished finished = run_program({"record", GetParam().uri, "--out", out.string()});
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, HasSubstr(GetParam().uri));
+  EXPECT_THAT(finished.err, HasSubstr(GetParam().complaint));
+  EXPECT_FALSE(fs::exists(out));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Uris, BadDevice,
+    testing::Values(BadUri{"unknown_scene", "tofmap://nowhere", "there are: "},
+                    BadUri{"unknown_option", "tofmap://room?spee=1", "player.speed"},
+                    BadUri{"no_recording", "tofmap:///nowhere/at/all", "/nowhere/at/all"},
+                    BadUri{"no_driver", "freenect://1", "cannot be opened"},
+                    BadUri{"no_file", "nowhere.oni", "no such file"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(OniFile, ThatIsNoneOrTruncatedIsNamed) {
+  const TemporaryFolder folder;
+  const fs::path oni = folder.path() / "bad.oni";
+  std::ofstream(oni) << "no recording";
+  const Finished finished =
+      run_program({"record", oni.string(), "--out", (folder.path() / "out").string()});
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, HasSubstr("bad.oni"));
+}
+
+}  // namespace
+}  // namespace tofmap::test
