@@ -4,6 +4,7 @@
 #include "command.hpp"
 #include "interruption.hpp"
 #include "options.hpp"
+#include "output_file.hpp"
 #include "progress.hpp"
 #include "recording.hpp"
 
@@ -46,6 +47,28 @@ Reference reference_of(const CalibrationOptions& options, const SequenceReader& 
   return Reference::beat;
 }
 
+const char* name_of(Reference reference) {
+  switch (reference) {
+    case Reference::truth:
+      return "truth";
+    case Reference::wall:
+      return "wall";
+    case Reference::beat:
+      return "beat";
+  }
+  return "";
+}
+
+/// Throws InputError if distances are given for frames that the recording does not have.
+WallDistances wall_distances(const std::filesystem::path& file, const SequenceReader& source) {
+  WallDistances distances_m = read_wall_distances(file);
+  const int last = distances_m.rbegin()->first;
+  if (last < *source.frame_count()) return distances_m;
+  throw InputError(file.string() + ": has a distance for frame " + std::to_string(last) + ", but " +
+                   source.folder().string() + " has " + std::to_string(*source.frame_count()) +
+                   " frames, counted from 0");
+}
+
 /// The ranges of a reference, frame by frame.
 class ReferenceRanges {
  public:
@@ -54,7 +77,7 @@ class ReferenceRanges {
         source_(source),
         unwrapper_(source.sensor(), options.pipeline.unwrap) {
     if (reference_ == Reference::wall) {
-      wall_distances_m_ = read_wall_distances(options.calibration.wall_file);
+      wall_distances_m_ = wall_distances(options.calibration.wall_file, source);
     }
   }
 
@@ -114,12 +137,24 @@ void print_fit(const PhaseErrorFit& fit, Reference reference) {
               reference == Reference::beat ? "; motion between both images is in it" : "");
 }
 
+PhaseErrorFit fit_pairs(const std::vector<RangePair>& pairs, Reference reference,
+                        const SequenceReader& source, const PhaseErrorFitOptions& options) {
+  const Modulation& modulation = source.sensor().modulation;
+  try {
+    return reference == Reference::beat ? fit_to_beat(pairs, modulation, options)
+                                        : fit_to_references(pairs, modulation, options);
+  } catch (const InputError& error) {
+    throw InputError(source.folder().string() + ": " + error.what());
+  }
+}
+
 int run_calibrate(const CalibrateArguments& arguments) {
   ProgramOptions options;
   arguments.common.resolve("calibrate", options);
   const bool quiet = arguments.common.quiet;
   const SequenceReader source(arguments.sequence);
   const Reference reference = reference_of(options.calibration, source);
+  OutputFile out(arguments.out, is_calibration);
   const PhaseErrorFitOptions fit_options{
       .orders = harmonic_orders(options.calibration, reference != Reference::beat),
       .max_error_m = options.calibration.max_error_m};
@@ -127,15 +162,15 @@ int run_calibrate(const CalibrateArguments& arguments) {
   const std::vector<RangePair> pairs =
       collect_pairs(source, ranges, options.calibration.every_frame, quiet);
   if (is_interrupted()) return exit_status::interrupted;
-  const Modulation& modulation = source.sensor().modulation;
-  const PhaseErrorFit fit = reference == Reference::beat
-                                ? fit_to_beat(pairs, modulation, fit_options)
-                                : fit_to_references(pairs, modulation, fit_options);
+  const PhaseErrorFit fit = fit_pairs(pairs, reference, source, fit_options);
   CameraCalibration calibration;
   calibration.error_a = fit.error_a;
   calibration.error_b = fit.error_b;
   print_fit(fit, reference);
-  write_calibration(arguments.out, calibration);
+  write_calibration(out.path(), calibration,
+                    "found by " + std::string(name_of(reference)) + " in " +
+                        source.folder().string() + ", " + std::to_string(pairs.size()) + " pixels");
+  out.commit();
   if (!quiet) std::printf("calibration: %s\n", arguments.out.c_str());
   return exit_status::done;
 }

@@ -3,6 +3,7 @@
 
 #include "calibration_options.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 #include <tofmap/core/error.hpp>
@@ -24,7 +25,8 @@ std::vector<OptionField<CalibrationOptions>> CalibrationOptions::fields() {
       {"wall_file", &O::wall_file, 0, 0, "",
        "lines 'frame distance', metres from the camera along the wall's normal"},
       {"harmonics", &O::harmonics, 0, 0, "",
-       "orders of the periodic error over a wavelength; empty: 1 2 3 4 8 against known ranges, 4 8 "
+       "orders of the periodic error over a wavelength, 1 to 16, with blanks between; empty: 1 2 3 "
+       "4 8 against known ranges, 4 8 "
        "by the beat, in which motion feigns lower ones"},
       {"every_frame", &O::every_frame, 1, 100000, "", "every how manieth frame is looked at"},
       {"max_error_m", &O::max_error_m, 0.001, 1, "m",
@@ -45,6 +47,9 @@ std::vector<int> harmonic_orders(const CalibrationOptions& options, bool ranges_
     if (order < 1 || order > most) {
       throw UsageError("calibration.harmonics: '" + word + "' is no whole number from 1 to " +
                        std::to_string(most));
+    }
+    if (std::ranges::find(orders, order) != orders.end()) {
+      throw UsageError("calibration.harmonics: " + word + " is there twice");
     }
     orders.push_back(order);
   }

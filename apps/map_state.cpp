@@ -5,7 +5,9 @@
 
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <sstream>
+#include <string_view>
 
 #include <boost/crc.hpp>
 
@@ -16,7 +18,7 @@ namespace {
 
 constexpr const char* file_name = "state.bin";
 // The number after the comma is raised whenever what is stored changes between releases.
-constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 2";
+constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 3";
 
 /// What a run must have in common with the one it goes on from, a fact a line.
 std::vector<std::string> identity(const SensorModel& sensor, PipelineOptions options) {
@@ -75,22 +77,40 @@ void check_recording(const std::string& line, const SequenceReader& source,
                    "--resume");
 }
 
+std::string checksum_line(std::string_view text) {
+  boost::crc_32_type checksum;
+  checksum.process_bytes(text.data(), text.size());
+  return "\nchecksum: " + std::to_string(checksum.checksum());
+}
+
+/// What was written, its checksum taken off. Throws InputError if that does not fit.
+std::string read_checked(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::size_t end = text.rfind("\nchecksum: ");
+  const bool is_whole = end != std::string::npos &&
+                        text.compare(end, std::string::npos,
+                                     checksum_line(std::string_view(text).substr(0, end))) == 0;
+  if (!is_whole) throw InputError(file.string() + ": is damaged; start anew without --resume");
+  text.resize(end);
+  return text;
+}
+
 }  // namespace
 
 void write_map_state(const std::filesystem::path& folder, const MapRun& run,
                      const SequenceReader& source, PipelineOptions options) {
+  std::ostringstream state;
+  state << first_line << '\n';
+  for (const std::string& line : identity(source.sensor(), std::move(options))) {
+    state << line << '\n';
+  }
+  state << recording_line(source, static_cast<int>(run.frames().size())) << '\n';
+  run.save(state);
+  const std::string text = std::move(state).str();
   const std::filesystem::path file = folder / file_name;
   std::ofstream out(file, std::ios::binary);
-  out << first_line << '\n';
-  for (const std::string& line : identity(source.sensor(), std::move(options))) {
-    out << line << '\n';
-  }
-  out << recording_line(source, static_cast<int>(run.frames().size())) << '\n';
-  try {
-    run.save(out);
-  } catch (const std::exception&) {
-    out.setstate(std::ios::failbit);
-  }
+  out << text << checksum_line(text);
   out.close();
   if (!out) throw InputError(file.string() + ": cannot be written; is the disk full?");
 }
@@ -99,11 +119,11 @@ void take_up_map(const std::filesystem::path& folder, MapRun& run, SequenceReade
                  PipelineOptions options) {
   if (!std::filesystem::exists(folder)) return;
   const std::filesystem::path file = folder / file_name;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) {
+  if (!std::filesystem::is_regular_file(file)) {
     throw InputError(folder.string() +
                      ": holds no interrupted run to go on with; start anew without --resume");
   }
+  std::istringstream in(read_checked(file));
   std::string line;
   if (!std::getline(in, line) || line != first_line) {
     throw InputError(file.string() +
@@ -115,7 +135,7 @@ void take_up_map(const std::filesystem::path& folder, MapRun& run, SequenceReade
   try {
     run.load(in);
   } catch (const std::exception&) {
-    throw InputError(file.string() + ": is damaged; start anew without --resume");
+    throw InputError(file.string() + ": was written by another build; start anew without --resume");
   }
   source.start_at(static_cast<int>(run.frames().size()));
 }

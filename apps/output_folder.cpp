@@ -15,6 +15,7 @@ namespace {
 
 /// "results/" and "results" are one folder, "." is where we stand.
 fs::path normalised(const fs::path& folder) {
+  if (folder.empty()) throw UsageError("the output folder has no name");
   fs::path path = fs::absolute(folder).lexically_normal();
   if (!path.has_filename()) path = path.parent_path();
   return path;

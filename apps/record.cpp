@@ -5,6 +5,7 @@
 #include "interruption.hpp"
 #include "live_input.hpp"
 #include "options.hpp"
+#include "output_file.hpp"
 #include "output_folder.hpp"
 #include "progress.hpp"
 
@@ -29,43 +30,6 @@ struct RecordArguments {
   CommonArguments common;
 };
 
-/// An .oni file that appears when it is whole.
-class OniFile {
- public:
-  /// Throws InputError if there is such a file already. An empty path is no file.
-  explicit OniFile(const std::filesystem::path& file) : file_(file) {
-    if (file_.empty()) return;
-    if (std::filesystem::exists(file_)) {
-      throw InputError(file_.string() + ": exists; remove it, or choose another --oni");
-    }
-    partial_ = file_;
-    partial_ += ".part";
-  }
-  OniFile(const OniFile&) = delete;
-  OniFile& operator=(const OniFile&) = delete;
-  ~OniFile() {
-    std::error_code ignored;
-    if (!partial_.empty()) std::filesystem::remove(partial_, ignored);
-  }
-
-  const std::filesystem::path& path() const { return partial_; }
-
-  void commit() {
-    if (file_.empty()) return;
-    std::error_code error;
-    const auto size = std::filesystem::file_size(partial_, error);
-    if (error || size == 0) {
-      throw InputError(file_.string() + ": could not be written; is the disk full?");
-    }
-    std::filesystem::rename(partial_, file_);
-    partial_.clear();
-  }
-
- private:
-  std::filesystem::path file_;
-  std::filesystem::path partial_;
-};
-
 /// Writes frames until the device ends, the user ends it, or there are enough. Returns how many.
 int write_frames(LiveInput& input, SequenceWriter& writer, const RecordArguments& arguments) {
   Progress progress("recording frame",
@@ -82,9 +46,11 @@ int run_record(const RecordArguments& arguments) {
   ProgramOptions options;
   const OptionTable table = arguments.common.resolve("record", options);
   OutputFolder out(arguments.out, Replaces::recordings);
-  OniFile oni(arguments.oni);
+  std::optional<OutputFile> oni;
+  if (!arguments.oni.empty()) oni.emplace(arguments.oni, [](const auto&) { return false; });
   std::optional<LiveInput> input;
-  input.emplace(arguments.uri, options, LiveInput::Wanted{oni.path(), arguments.frames});
+  input.emplace(arguments.uri, options,
+                LiveInput::Wanted{oni ? oni->path() : "", arguments.frames});
   int written = 0;
   if (!is_interrupted()) {
     SequenceWriter writer(out.path(), input->sensor());
@@ -106,7 +72,7 @@ int run_record(const RecordArguments& arguments) {
   }
   const std::string silence = input->silence();
   input.reset();  // ends the .oni file
-  oni.commit();
+  if (oni) oni->commit();
   if (!silence.empty()) throw InputError(silence);
   return is_interrupted() ? exit_status::interrupted : exit_status::done;
 }

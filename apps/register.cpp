@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <tofmap/cloud/downsample.hpp>
 #include <tofmap/cloud/point_file.hpp>
 #include <tofmap/core/error.hpp>
 #include <tofmap/pipeline/cloud_registration.hpp>
@@ -39,6 +40,11 @@ Input read_clouds(const std::vector<std::filesystem::path>& files) {
   Input input;
   for (const std::filesystem::path& file : files) {
     input.clouds.push_back(read_points(file));
+    const std::size_t strays = remove_strays(input.clouds.back().points);
+    if (strays > 0) {
+      std::fprintf(stderr, "tofmap: %s: %zu points far off all others are left out\n", file.c_str(),
+                   strays);
+    }
     input.names.push_back(file.string());
   }
   return input;
@@ -157,12 +163,15 @@ int run_register(const RegisterArguments& arguments) {
   out.write_text("transforms.json", transforms_json(input, registration).dump(1) + "\n");
   out.write_text("report.json", report_json(input, registration).dump(1) + "\n");
   out.write_text("options.yaml", table.to_yaml(false));
-  write_labelled_points(out.path() / "merged.ply", merged(input, registration));
+  if (registration.placed() > 0) {
+    write_labelled_points(out.path() / "merged.ply", merged(input, registration));
+  }
   out.commit();
   if (!arguments.common.quiet) {
-    std::printf("%d of %zu clouds placed\nmerged: %s, transforms beside it\n",
-                registration.placed(), input.names.size(),
-                (out.final_path() / "merged.ply").c_str());
+    std::printf("%d of %zu clouds placed\n", registration.placed(), input.names.size());
+    if (registration.placed() > 0) {
+      std::printf("merged: %s, transforms beside it\n", (out.final_path() / "merged.ply").c_str());
+    }
   }
   if (registration.interrupted) return exit_status::interrupted;
   if (registration.placed() == 0) {

@@ -56,6 +56,7 @@ Viewpoint viewpoint_above(const Eigen::AlignedBox3d& box_m, double aspect) {
 View view_of_map(const ViewArguments& arguments, const fs::path& map_file,
                  const fs::path& trajectory_file) {
   const MapCloud map = read_map(map_file);
+  if (map.empty()) throw InputError(map_file.string() + ": holds no point; nothing to view");
   const Trajectory trajectory =
       fs::exists(trajectory_file) ? read_trajectory(trajectory_file) : Trajectory{};
   const LevelFrame frame = level_frame(map, trajectory);
@@ -127,9 +128,10 @@ View make_view(const ViewArguments& arguments, const ProgramOptions& options) {
   if (fs::exists(path / "map.ply")) {
     return view_of_map(arguments, path / "map.ply", path / "trajectory.txt");
   }
+  if (fs::exists(path / "merged.ply")) return view_of_map(arguments, path / "merged.ply", {});
   if (fs::exists(path / "sequence.yaml")) return view_of_frame(arguments, options);
   throw InputError(path.string() +
-                   ": holds neither a map.ply nor a sequence.yaml; nothing to view");
+                   ": holds no map.ply, merged.ply or sequence.yaml; nothing to view");
 }
 
 void open_window(const View& view, const std::string& title) {

@@ -77,7 +77,7 @@ TEST_F(BadSequence, FolderIsMissing) {
 TEST_F(BadSequence, FolderIsAFile) {
   std::filesystem::remove_all(folder_);
   std::ofstream(folder_) << "x";
-  expect_refusal({"seq", "no such folder"});
+  expect_refusal({"seq", "is a file; give its folder"});
 }
 
 TEST_F(BadSequence, HeaderIsMissing) {

@@ -81,9 +81,9 @@ TEST(FitToReferences, LeavesOutWhatIsFarOff) {
 }
 
 TEST(FitToReferences, NeedsPhasesAllOverTheCycle) {
-  EXPECT_THROW(fit_to_references({}, modulation, orders({4})), UsageError);
+  EXPECT_THROW(fit_to_references({}, modulation, orders({4})), InputError);
   const std::vector<RangePair> alike(1000, {2.01F, 2, 2});
-  EXPECT_THROW(fit_to_references(alike, modulation, orders({4})), UsageError);
+  EXPECT_THROW(fit_to_references(alike, modulation, orders({4})), InputError);
 }
 
 TEST(FitToBeat, FindsHarmonicsWithoutKnownRanges) {

@@ -68,5 +68,23 @@ TEST(VoxelForCount, HasAnAnswerForOnePoint) {
   EXPECT_GT(voxel_for_count(Points{}, 10), 0);
 }
 
+TEST(RemoveStrays, TakesOutWhatIsFarOffAllOthers) {
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < 1000; ++i) points.emplace_back(0.01 * i + 500, 3, -2);  // ten metres
+  points.emplace_back(1e7, 0, 0);
+  points.emplace_back(500, 1e300, 0);
+  points.emplace_back(560, 3, -2);  // a far wall seen through a door
+  EXPECT_EQ(remove_strays(points), 2U);
+  EXPECT_EQ(points.size(), 1001U);
+  EXPECT_EQ(remove_strays(points), 0U);
+}
+
+TEST(RemoveStrays, LeavesWhatHasNoExtent) {
+  std::vector<Eigen::Vector3d> none;
+  EXPECT_EQ(remove_strays(none), 0U);
+  std::vector<Eigen::Vector3d> alike(10, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(remove_strays(alike), 0U);
+}
+
 }  // namespace
 }  // namespace tofmap

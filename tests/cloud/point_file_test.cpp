@@ -51,6 +51,24 @@ TEST_F(PointFile, MayHoldDoublesAndOtherFields) {
   EXPECT_EQ(points.points[0], Eigen::Vector3d(4500000.25, 2, 3));
 }
 
+TEST_F(PointFile, OfAnyKindMayBeEmptyForeignOrCut) {
+  for (const char* name : {"a.pcd", "a.ply", "a.vtk", "a.vtp"}) {
+    for (const char* text : {"", "no cloud", "\x89PNG\r\n", "FIELDS x y z\n", "DATA ascii\n"}) {
+      EXPECT_THROW(read_points(write(name, text)), InputError) << name << ": " << text;
+    }
+  }
+}
+
+TEST_F(PointFile, IsLookedAtWithoutPointsThatAreNowhere) {
+  const MapCloud map =
+      read_map(write("organised.pcd",
+                     "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n"
+                     "COUNT 1 1 1\nWIDTH 2\nHEIGHT 2\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 4\n"
+                     "DATA ascii\nnan nan nan\n1 0 0\n2 inf 0\n3 0 0\n"));
+  ASSERT_EQ(map.size(), 2U);
+  EXPECT_EQ(map[1].x, 3);
+}
+
 TEST_F(PointFile, LeavesOutWhatIsNoReturn) {
   const PointSet points =
       read_points(write("a.pcd",

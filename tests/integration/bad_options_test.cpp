@@ -79,6 +79,14 @@ TEST_F(BadOptions, ConfigurationThatIsMissingIsBadInput) {
   EXPECT_THAT(finished.err, HasSubstr("/no/such/file.yaml"));
 }
 
+TEST_F(BadOptions, ConfigurationThatIsAFolderIsBadInput) {
+  for (const std::string option : {"--config", "--calibration"}) {
+    const Finished finished = run("map", {option, folder_.path().string()});
+    EXPECT_EQ(finished.status, 3) << option;
+    EXPECT_THAT(finished.err, HasSubstr(folder_.path().string() + ": is a folder")) << option;
+  }
+}
+
 TEST_F(BadOptions, ConfigurationThatIsNoYamlIsBadInput) {
   const Finished finished = run("map", {"--config", config("unwrap: [1, 2\n")});
   EXPECT_EQ(finished.status, 3);

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <tofmap/acquisition/png_image.hpp>
 #include <tofmap/core/trajectory.hpp>
@@ -187,6 +188,24 @@ TEST_F(BadRecording, FrameOfWrongSizeIsSkippedAndNamed) {
 TEST_F(BadRecording, FrameOf8BitsIsSkippedAndNamed) {
   write_png(phase_a(1), ImageU8(ImageU8::Constant(36, 44, 7)));
   expect_frame_1_skipped("must be a gray PNG of 16 bits, but has 8 bits");
+}
+
+TEST_F(BadRecording, FrameThatIsAPipeIsNotWaitedFor) {
+  fs::remove(phase_a(1));
+  ASSERT_EQ(mkfifo(phase_a(1).c_str(), 0600), 0);
+  expect_frame_1_skipped("is no regular file");
+}
+
+TEST_F(BadRecording, WithAFolderInPlaceOfAFileIsNamed) {
+  fs::remove(sequence_ / "sequence.yaml");
+  fs::create_directory(sequence_ / "sequence.yaml");
+  expect_refusal("sequence.yaml", "is a folder");
+}
+
+TEST_F(BadRecording, ThatIsAFileIsTold) {
+  const Finished finished = run_program({"info", (sequence_ / "frames.txt").string()});
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, HasSubstr("is a file; give its folder"));
 }
 
 TEST_F(BadRecording, HalfDamagedIsStillMapped) {

@@ -107,29 +107,56 @@ TEST_F(Calibrate, IsWrittenIntoTheOptionsOfWhatUsesIt) {
 TEST_F(Calibrate, LeavesOutFramesThatNoWallFills) {
   const fs::path wall = folder_.path() / "wall.txt";
   std::ofstream(wall) << "0 2.5\n";  // a corner of the furnished room
-  const Finished finished = run_program({"calibrate", sequence_.string(), "--out", "c.yaml",
-                                         "--set", "calibration.wall_file=" + wall.string()});
-  EXPECT_EQ(finished.status, 2);
+  const Finished finished =
+      run_program({"calibrate", sequence_.string(), "--out", (folder_.path() / "c.yaml").string(),
+                   "--set", "calibration.wall_file=" + wall.string()});
+  EXPECT_EQ(finished.status, 3);
   EXPECT_THAT(finished.err, testing::HasSubstr("no flat wall fills it"));
+  EXPECT_THAT(finished.err, testing::HasSubstr(sequence_.string()));
   EXPECT_THAT(finished.err, testing::HasSubstr("too few pixels"));
+}
+
+TEST_F(Calibrate, DoesNotReplaceWhatIsNoCalibration) {
+  const fs::path header = sequence_ / "sequence.yaml";
+  const std::string before = read_text(header);
+  const Finished finished =
+      run_program({"calibrate", sequence_.string(), "--out", header.string()});
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, testing::HasSubstr("is there already"));
+  EXPECT_EQ(read_text(header), before);
+  calibrate("truth");
+  calibrate("truth");  // but an earlier one is replaced
+}
+
+TEST_F(Calibrate, NamesFramesThatTheRecordingDoesNotHave) {
+  const fs::path wall = folder_.path() / "wall.txt";
+  std::ofstream(wall) << "0 2.5\n999 3\n";
+  const Finished finished =
+      run_program({"calibrate", sequence_.string(), "--out", (folder_.path() / "c.yaml").string(),
+                   "--set", "calibration.wall_file=" + wall.string()});
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, testing::HasSubstr("frame 999"));
 }
 
 TEST_F(Calibrate, SaysWhatIsMissing) {
   fs::remove_all(sequence_ / "range_truth");
-  const Finished none = run_program(
-      {"calibrate", sequence_.string(), "--out", "c.yaml", "--set", "calibration.reference=truth"});
+  const Finished none =
+      run_program({"calibrate", sequence_.string(), "--out", (folder_.path() / "c.yaml").string(),
+                   "--set", "calibration.reference=truth"});
   EXPECT_EQ(none.status, 3);
   EXPECT_THAT(none.err, testing::HasSubstr("range_truth"));
   const Finished wrong = run_program(
       {"info", sequence_.string(), "--calibration", (sequence_ / "sequence.yaml").string()});
   EXPECT_EQ(wrong.status, 3);
   EXPECT_THAT(wrong.err, testing::HasSubstr("tofmap-camera"));
-  const Finished wall = run_program(
-      {"calibrate", sequence_.string(), "--out", "c.yaml", "--set", "calibration.reference=wall"});
+  const Finished wall =
+      run_program({"calibrate", sequence_.string(), "--out", (folder_.path() / "c.yaml").string(),
+                   "--set", "calibration.reference=wall"});
   EXPECT_EQ(wall.status, 2);
   EXPECT_THAT(wall.err, testing::HasSubstr("calibration.wall_file"));
-  const Finished order = run_program(
-      {"calibrate", sequence_.string(), "--out", "c.yaml", "--set", "calibration.harmonics=0"});
+  const Finished order =
+      run_program({"calibrate", sequence_.string(), "--out", (folder_.path() / "c.yaml").string(),
+                   "--set", "calibration.harmonics=0"});
   EXPECT_EQ(order.status, 2);
   EXPECT_THAT(order.err, testing::HasSubstr("calibration.harmonics"));
 }

@@ -167,6 +167,14 @@ TEST_F(InterruptedMap, DoesNotGoOnFromADamagedState) {
     EXPECT_EQ(resumed.status, 3) << size;
     EXPECT_THAT(resumed.err, testing::HasSubstr("start anew without --resume"));
   }
+  for (const std::size_t at : {std::size_t{3}, std::size_t{400}, state.size() / 2}) {
+    std::string flipped = state;
+    flipped[at] = static_cast<char>(flipped[at] ^ 1);
+    std::ofstream(out_ / "state.bin", std::ios::binary) << flipped;
+    const Finished resumed = resume();
+    EXPECT_EQ(resumed.status, 3) << at;
+    EXPECT_THAT(resumed.err, testing::HasSubstr("is damaged")) << at;
+  }
 }
 
 TEST_F(InterruptedMap, ThatIsFinishedOrNotBegunIsNoneToGoOnWith) {

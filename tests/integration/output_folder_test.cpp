@@ -58,6 +58,12 @@ TEST_F(OutputFolder, ThatCannotBeMadeIsNamedBeforeWorkBegins) {
   }
 }
 
+TEST_F(OutputFolder, MustHaveAName) {
+  const Finished finished = run_program({"unwrap", sequence_.string(), "--out", ""});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_THAT(finished.err, HasSubstr("has no name"));
+}
+
 TEST_F(OutputFolder, ThatIsAFileIsKept) {
   std::ofstream(out_) << "mine";
   expect_refusal(out_, "is a file");

@@ -138,8 +138,19 @@ CameraCalibration read_calibration(const std::filesystem::path& file) {
   return calibration;
 }
 
-void write_calibration(const std::filesystem::path& file, const CameraCalibration& calibration) {
+bool is_calibration(const std::filesystem::path& file) {
+  try {
+    check_format(load_yaml(file, ""), format_name, format_version);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+void write_calibration(const std::filesystem::path& file, const CameraCalibration& calibration,
+                       const std::string& comment) {
   std::ofstream out(file);
+  if (!comment.empty()) out << "# " << comment << '\n';
   out << "format: " << format_name << "\nversion: " << format_version << '\n';
   if (calibration.camera) out << "camera:\n" << camera_text(*calibration.camera);
   write_error(out, "error_a", calibration.error_a);

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/input_file.hpp>
 
 namespace tofmap {
 namespace {
@@ -49,6 +50,7 @@ void fail_to_read(const std::filesystem::path& file, const std::string& what) {
 }
 
 std::string read_bytes(const std::filesystem::path& file) {
+  refuse_no_file(file);
   std::ifstream in(file, std::ios::binary);
   std::ostringstream bytes;
   bytes << in.rdbuf();

@@ -46,14 +46,14 @@ class LeastSquares {
     double residual_rms = 0;
   };
 
-  /// Throws UsageError if the samples do not determine all unknowns.
+  /// Throws InputError if the samples do not determine all unknowns.
   Solution solve() const {
     const Eigen::MatrixXd information = information_.selfadjointView<Eigen::Lower>();
     const Eigen::LDLT<Eigen::MatrixXd> solver(information);
     constexpr double least_share = 1e-6;  // of what one sample tells
     if (samples_ == 0 || !solver.isPositive() ||
         solver.vectorD().minCoeff() <= least_share * samples_) {
-      throw UsageError("too few pixels, or too much alike, to tell an offset and " +
+      throw InputError("too few pixels, or too much alike, to tell an offset and " +
                        std::to_string((gradient_.size() - 1) / 2) + " harmonics");
     }
     const Eigen::VectorXd values = solver.solve(gradient_);

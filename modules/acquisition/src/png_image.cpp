@@ -17,6 +17,7 @@
 #include <png.h>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/input_file.hpp>
 
 namespace tofmap {
 namespace {
@@ -125,6 +126,7 @@ Image<Pixel> read_png(const std::filesystem::path& path) {
   const auto fail = [&](const std::string& what) -> void {
     throw InputError(path.string() + ": " + what);
   };
+  refuse_no_file(path);
   const File file(std::fopen(path.c_str(), "rb"));
   if (!file) fail("cannot be read: " + error_text(errno));
 

@@ -11,6 +11,7 @@
 #include <tofmap/acquisition/png_image.hpp>
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/input_file.hpp>
 
 namespace tofmap {
 namespace {
@@ -74,6 +75,7 @@ void mark_times_that_stand_still(std::vector<SequenceFrameFiles>& frames,
 }
 
 std::vector<SequenceFrameFiles> read_frame_list(const std::filesystem::path& file) {
+  refuse_no_file(file);
   std::ifstream in(file);
   if (!in) {
     throw InputError(file.string() +
@@ -113,8 +115,11 @@ SequenceReader::SequenceReader(std::filesystem::path folder, CameraCalibration c
     : folder_(std::move(folder)), calibration_(std::move(calibration)) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder_, ignored)) {
+    const bool is_file = std::filesystem::exists(folder_, ignored);
     throw InputError(folder_.string() +
-                     ": no such folder; a sequence is a folder with sequence.yaml in it");
+                     (is_file ? ": is a file; give its folder, with "
+                              : ": no such folder; a sequence is a folder with ") +
+                     "sequence.yaml in it");
   }
   sensor_ = read_sequence_header(folder_ / "sequence.yaml");
   constexpr double end_of_scale = 65535;  // more than that may have been meant

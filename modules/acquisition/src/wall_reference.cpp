@@ -14,6 +14,7 @@
 #include <Eigen/Cholesky>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/input_file.hpp>
 #include <tofmap/core/median.hpp>
 
 namespace tofmap {
@@ -71,6 +72,7 @@ double median_of_known(const std::vector<double>& values) {
 }  // namespace
 
 WallDistances read_wall_distances(const std::filesystem::path& file) {
+  refuse_no_file(file);
   std::ifstream in(file);
   if (!in) throw InputError(file.string() + ": cannot be read; it holds lines 'frame distance_m'");
   WallDistances distances;

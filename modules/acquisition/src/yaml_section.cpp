@@ -6,6 +6,8 @@
 #include <charconv>
 #include <sstream>
 
+#include <tofmap/core/input_file.hpp>
+
 namespace tofmap {
 
 namespace {
@@ -15,6 +17,7 @@ constexpr int max_side_px = 16384;
 }  // namespace
 
 YamlSection load_yaml(const std::filesystem::path& file, const std::string& hint) {
+  refuse_no_file(file);
   try {
     return {file, "", YAML::LoadFile(file.string())};
   } catch (const YAML::BadFile&) {

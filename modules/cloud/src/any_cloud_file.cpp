@@ -13,6 +13,7 @@
 #include <pcl/io/ply_io.h>
 #include <pcl/point_types.h>
 #include <vtkDataSetReader.h>
+#include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkObject.h>
 #include <vtkPointSet.h>
@@ -21,9 +22,25 @@
 #include <vtkXMLPolyDataReader.h>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/input_file.hpp>
 
 namespace tofmap {
 namespace {
+
+/// VTK prints to the terminal on its own account; our callers get errors instead.
+class QuietVtk {
+ public:
+  QuietVtk() {
+    vtkObject::GlobalWarningDisplayOff();
+    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  }
+  QuietVtk(const QuietVtk&) = delete;
+  QuietVtk& operator=(const QuietVtk&) = delete;
+  ~QuietVtk() {
+    vtkObject::GlobalWarningDisplayOn();
+    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_INFO);
+  }
+};
 
 /// Three doubles a point.
 pcl::PCLPointCloud2 cloud_of(vtkPoints* points) {
@@ -53,7 +70,7 @@ pcl::PCLPointCloud2 cloud_of(vtkPoints* points) {
 
 template <class Reader>
 pcl::PCLPointCloud2 read_with(const std::filesystem::path& file) {
-  vtkObject::GlobalWarningDisplayOff();  // callers get errors instead
+  const QuietVtk quiet;
   vtkNew<Reader> reader;
   reader->SetFileName(file.c_str());
   reader->Update();
@@ -88,6 +105,19 @@ double value_at(const std::uint8_t* bytes, std::uint8_t datatype) {
     default:
       return number_at<double>(bytes);
   }
+}
+
+/// PCL crashes on files that have no header of a PCD file.
+bool has_pcd_header(const std::filesystem::path& file) {
+  constexpr int most_lines = 100;  // of a header; comments are among them
+  std::ifstream in(file, std::ios::binary);
+  bool has_fields = false;
+  std::string line;
+  for (int number = 0; number < most_lines && std::getline(in, line); ++number) {
+    if (line.starts_with("FIELDS") || line.starts_with("COLUMNS")) has_fields = true;
+    if (line.starts_with("DATA")) return has_fields;
+  }
+  return false;
 }
 
 constexpr bool with_camera = false;
@@ -153,7 +183,8 @@ AnyCloud read_any_cloud(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file)) {
     throw InputError(file.string() + ": is a folder; name the clouds in it");
   }
-  if (!std::filesystem::is_regular_file(file)) {
+  refuse_no_file(file);
+  if (!std::filesystem::exists(file)) {
     throw InputError(file.string() + ": no such file");
   }
   const QuietPcl quiet;
@@ -166,7 +197,9 @@ AnyCloud read_any_cloud(const std::filesystem::path& file) {
   if (kind == ".ply") {
     status = pcl::PLYReader().read(file.string(), cloud.data, origin, orientation, version);
   } else if (kind == ".pcd") {
-    status = pcl::PCDReader().read(file.string(), cloud.data, origin, orientation, version);
+    status = has_pcd_header(file)
+                 ? pcl::PCDReader().read(file.string(), cloud.data, origin, orientation, version)
+                 : -1;
   } else if (kind == ".vtk") {
     cloud.data = read_with<vtkDataSetReader>(file);
   } else if (kind == ".vtp") {

@@ -5,6 +5,7 @@
 
 #include "any_cloud_file.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include <pcl/conversions.h>
@@ -45,6 +46,11 @@ MapCloud read_map(const std::filesystem::path& file) {
   }
   const QuietPcl quiet;
   pcl::fromPCLPointCloud2(cloud, map);
+  std::erase_if(map.points, [](const MapPoint& p) {
+    return !std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z);
+  });
+  map.width = static_cast<std::uint32_t>(map.points.size());
+  map.height = 1;
   const auto is_stored = [&](const char* field) { return find_field(cloud, field) != nullptr; };
   const bool has_normals = is_stored("normal_x");
   const bool has_confidence = is_stored("confidence");

@@ -3,6 +3,7 @@
 
 #include "tofmap/cloud/downsample.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -12,6 +13,7 @@
 #include <Eigen/Geometry>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/median.hpp>
 
 namespace tofmap {
 namespace {
@@ -64,6 +66,24 @@ std::vector<Eigen::Vector3d> downsample(std::span<const Eigen::Vector3d> points,
   }
   for (std::size_t i = 0; i < out.size(); ++i) out[i] += sums[i].offset / sums[i].count;
   return out;
+}
+
+std::size_t remove_strays(std::vector<Eigen::Vector3d>& points) {
+  constexpr double most_times = 20;
+  if (points.empty()) return 0;
+  Eigen::Vector3d middle;
+  std::vector<double> values(points.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    std::ranges::transform(points, values.begin(), [axis](const auto& p) { return p[axis]; });
+    middle[axis] = median(values);
+  }
+  std::ranges::transform(points, values.begin(),
+                         [&](const auto& p) { return (p - middle).norm(); });
+  const auto outermost = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 19 / 20);
+  std::ranges::nth_element(values, outermost);
+  const double limit = most_times * *outermost;
+  if (!(limit > 0)) return 0;
+  return std::erase_if(points, [&](const auto& p) { return (p - middle).norm() > limit; });
 }
 
 double voxel_for_count(std::span<const Eigen::Vector3d> points, std::size_t count) {

@@ -17,7 +17,9 @@ PointSet read_points(const std::filesystem::path& file) {
   PointSet out;
   out.points = finite_positions(cloud.data);
   if (out.points.empty()) {
-    throw InputError(file.string() + ": holds no point that is finite; is it the right file?");
+    throw InputError(
+        file.string() +
+        ": holds no point, those at (0, 0, 0) and not finite aside; is it the right file?");
   }
   if (!cloud.viewpoint.isZero(0)) out.viewpoint = cloud.viewpoint;
   return out;

@@ -12,6 +12,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/input_file.hpp>
 #include <tofmap/core/text.hpp>
 
 namespace tofmap {
@@ -144,6 +145,7 @@ void OptionTable::load(const std::filesystem::path& file, const OptionTable& oth
                        error.what());
     }
   };
+  refuse_no_file(file);
   YAML::Node root;
   try {
     root = YAML::LoadFile(file.string());

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/input_file.hpp>
 
 namespace tofmap {
 
@@ -55,6 +56,7 @@ std::optional<Pose> pose_at(const Trajectory& trajectory, double timestamp_s, do
 }
 
 Trajectory read_trajectory(const std::filesystem::path& file) {
+  refuse_no_file(file);
   std::ifstream in(file);
   if (!in) throw InputError(file.string() + ": cannot be read; is it there?");
   Trajectory trajectory;

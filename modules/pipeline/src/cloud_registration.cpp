@@ -21,6 +21,10 @@
 namespace tofmap {
 namespace {
 
+/// Voxels that are finer than those which leave some thousand points by more than this leave
+/// hundreds of times as many.
+constexpr double most_refinement = 20;
+
 /// What registration may be off beyond its covariance, in the finest voxels.
 constexpr double slack_voxels = 0.5;
 
@@ -47,6 +51,9 @@ class Registration {
         levels_(clouds.size()) {
     out_.clouds.resize(clouds.size());
     out_.voxel_m = options.voxel_m > 0 ? options.voxel_m : common_voxel();
+    const double least_m = common_voxel() / most_refinement;
+    if (out_.voxel_m >= least_m) return;
+    throw UsageError(too_fine(out_.voxel_m, least_m));
   }
 
   CloudRegistration run() {

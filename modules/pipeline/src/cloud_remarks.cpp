@@ -50,4 +50,10 @@ std::string other_unit(const LengthUnit& unit, const std::string& name_of_fittin
          " it fits " + name_of_fitting;
 }
 
+std::string too_fine(double voxel_m, double least_m) {
+  return "register.voxel_m: " + rounded(voxel_m) +
+         " m is too fine for clouds of this extent; allowed: 0 to let it be found, or at least " +
+         rounded(least_m) + " m";
+}
+
 }  // namespace tofmap

@@ -23,4 +23,7 @@ std::string odd_size(double ratio);
 
 std::string other_unit(const LengthUnit& unit, const std::string& name_of_fitting);
 
+/// That the voxels wanted are too fine, and how fine they may be.
+std::string too_fine(double voxel_m, double least_m);
+
 }  // namespace tofmap

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <tofmap/core/frame.hpp>
@@ -42,9 +43,13 @@ struct CameraCalibration {
 /// what is expected.
 CameraCalibration read_calibration(const std::filesystem::path& file);
 
-/// Writes it so that every number reads back as the same bits. Throws InputError if it cannot be
-/// written whole.
-void write_calibration(const std::filesystem::path& file, const CameraCalibration& calibration);
+/// Writes it so that every number reads back as the same bits, with a comment of one line at the
+/// top unless it is empty. Throws InputError if it cannot be written whole.
+void write_calibration(const std::filesystem::path& file, const CameraCalibration& calibration,
+                       const std::string& comment = "");
+
+/// Whether a file is a calibration, whatever it says.
+bool is_calibration(const std::filesystem::path& file);
 
 /// The sensor with what the calibration knows better. Throws InputError if its camera is of another
 /// size.

@@ -42,7 +42,7 @@ struct PhaseErrorFitOptions {
 };
 
 /// Finds offsets and harmonics of both frequencies from references that are known ranges. Harmonics
-/// below four standard deviations are left out. Throws UsageError if the pairs do not tell all
+/// below four standard deviations are left out. Throws InputError if the pairs do not tell all
 /// unknowns: there are too few, or their phases do not cover the cycle.
 PhaseErrorFit fit_to_references(std::span<const RangePair> pairs, const Modulation& modulation,
                                 const PhaseErrorFitOptions& options);

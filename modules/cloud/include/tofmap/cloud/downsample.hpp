@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -18,5 +19,9 @@ std::vector<Eigen::Vector3d> downsample(std::span<const Eigen::Vector3d> points,
 /// The size of voxels, within a tenth, that leaves about so many of the points, however many there
 /// are: found by halving intervals. Fewer points than that give the smallest voxels that merge any.
 double voxel_for_count(std::span<const Eigen::Vector3d> points, std::size_t count);
+
+/// Takes out points that lie so far off, twenty times as far from the middle as the outermost
+/// twentieth begins, that they are none of what was recorded. Returns how many.
+std::size_t remove_strays(std::vector<Eigen::Vector3d>& points);
 
 }  // namespace tofmap

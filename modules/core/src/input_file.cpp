@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/core/input_file.hpp"
+
+#include "tofmap/core/error.hpp"
+
+namespace tofmap {
+
+void refuse_no_file(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return;
+  throw InputError(path.string() + (std::filesystem::is_directory(status)
+                                        ? ": is a folder, where a file is wanted"
+                                        : ": is no regular file"));
+}
+
+}  // namespace tofmap
