@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 
 #include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/pipeline/recording_survey.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -20,33 +21,6 @@ struct InfoArguments {
   RecordingArguments recording;
   CommonArguments common;
 };
-
-/// What a look at every frame tells.
-struct FrameSurvey {
-  int damaged = 0;
-  int without_amplitude = 0;
-  double pixels = 0;
-  double without_return = 0;
-  std::vector<std::string> damages;
-};
-
-FrameSurvey survey_frames(const SequenceReader& source) {
-  FrameSurvey survey;
-  for (int i = 0; i < *source.frame_count() && !is_interrupted(); ++i) {
-    const SourcedFrame sourced = source.read(i);
-    if (!sourced.frame) {
-      ++survey.damaged;
-      survey.damages.push_back(sourced.damage);
-      continue;
-    }
-    const DualFrequencyFrame& frame = *sourced.frame;
-    survey.without_amplitude += frame.has_amplitude() ? 0 : 1;
-    survey.pixels += static_cast<double>(frame.phase_a.size());
-    survey.without_return +=
-        static_cast<double>((frame.phase_a.isNaN() || frame.phase_b.isNaN()).count());
-  }
-  return survey;
-}
 
 void print_sensor(const SensorModel& sensor) {
   const CameraModel& camera = sensor.camera;
@@ -61,13 +35,12 @@ void print_sensor(const SensorModel& sensor) {
   if (sensor.max_range_m > 0) std::printf("the scene reaches to: %.2f m\n", sensor.max_range_m);
 }
 
-void print_frames(const SequenceReader& source, const FrameSurvey& survey) {
+void print_frames(const SequenceReader& source, const RecordingSurvey& survey) {
   const auto& files = source.files();
   std::printf("frames: %zu over %.2f s\n", files.size(),
               files.back().timestamp_s - files.front().timestamp_s);
-  if (survey.pixels > 0) {
-    std::printf("pixels without a return: %.2f %%\n", 100 * survey.without_return / survey.pixels);
-  }
+  std::printf("pixels without a return: %.2f %%, saturated: %.2f %%\n",
+              100 * survey.no_return_share, 100 * survey.saturated_share);
   const bool has_poses = !source.ground_truth().empty();
   std::printf("ground truth: poses %s, ranges %s\n", has_poses ? "yes" : "no",
               source.range_truth(0) ? "yes" : "no");
@@ -75,20 +48,12 @@ void print_frames(const SequenceReader& source, const FrameSurvey& survey) {
     std::printf("frames without amplitudes: %d (noise is taken as uniform)\n",
                 survey.without_amplitude);
   }
-  std::printf("damaged frames: %d\n", survey.damaged);
+  if (survey.beat) {
+    std::printf("both frequencies: A measures %+.1f mm more than B, single pixels within %.0f mm\n",
+                1000 * survey.beat->offset_m, 1000 * survey.beat->spread_m);
+  }
+  std::printf("damaged frames: %zu\n", survey.damages.size());
   for (const std::string& damage : survey.damages) std::printf("  %s\n", damage.c_str());
-}
-
-/// What unwrapping cannot make good.
-void print_doubts(const SensorModel& sensor, const FrameSurvey& survey) {
-  if (sensor.max_range_m > combined_range_m(sensor.modulation)) {
-    std::printf(
-        "doubtful: the scene reaches farther than this pair of frequencies can tell apart; "
-        "are they right?\n");
-  }
-  if (survey.pixels > 0 && survey.without_return == survey.pixels) {
-    std::printf("doubtful: no pixel has a return; are the phase images mislabelled?\n");
-  }
 }
 
 int run_info(const InfoArguments& arguments) {
@@ -96,10 +61,12 @@ int run_info(const InfoArguments& arguments) {
   OptionTable table = arguments.common.resolve("info", options);
   arguments.recording.apply(table);
   const SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
-  const FrameSurvey survey = survey_frames(source);
+  const RecordingSurvey survey = survey_recording(source, [] { return !is_interrupted(); });
   print_sensor(source.sensor());
   print_frames(source, survey);
-  print_doubts(source.sensor(), survey);
+  for (const std::string& doubt : doubts_about(survey, source.sensor())) {
+    std::printf("doubtful: %s\n", doubt.c_str());
+  }
   return is_interrupted() ? exit_status::interrupted : exit_status::done;
 }
 
