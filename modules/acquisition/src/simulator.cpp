@@ -4,8 +4,10 @@
 #include "tofmap/acquisition/simulator.hpp"
 
 #include "noise.hpp"
+#include "sensor_effects.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -91,6 +93,12 @@ double noise_strength(const SimulatorOptions& options, const Modulation& modulat
   return reference_amplitude * two_pi * options.range_noise_m / modulation.wavelength_a_m();
 }
 
+SensorEffects sensor_effects(const SimulatorOptions& options, const Modulation& modulation) {
+  return {.harmonic = two_pi * options.wiggle_m / modulation.wavelength_a_m(),
+          .dark_level = options.dark_level,
+          .full_well = options.full_well};
+}
+
 /// Cycles in [0, 1), also after rounding to float.
 float wrapped_cycles(double angle_rad) {
   const double cycles = angle_rad / two_pi;
@@ -116,6 +124,16 @@ std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
       {"range_noise_m", &S::range_noise_m, 0, 10, "m",
        "standard deviation of A's range at 5 m on a surface of reflectance 0.5 facing the camera"},
       {"subpixels", &S::subpixels, 1, 16, "", "rays a pixel, along each of its sides"},
+      {"wiggle_m", &S::wiggle_m, 0, 0.2, "m",
+       "how far A's ranges swing about the true ones four times a wavelength; B's as many degrees"},
+      {"multipath_rays", &S::multipath_rays, 0, 4096, "",
+       "rays a pixel for light that comes by way of one other surface; 0: there is none"},
+      {"dark_level", &S::dark_level, 0, 65535, "",
+       "charge of a sample without light, in units of the amplitude; its shot noise comes on top"},
+      {"full_well", &S::full_well, 0, 1e6, "",
+       "charge that a sample can hold, in units of the amplitude; 0: any"},
+      {"exposure_share", &S::exposure_share, 0, 1, "",
+       "how long the four samples of an image take, as a share of a frame period"},
       {"b_delay_share", &S::b_delay_share, 0, 1, "", "B follows A by this share of a frame period"},
       {"frames", &S::frames, 0, 1000000, "", "frames to record; 0: as many as the path needs"},
       {"frame_rate_hz", &S::frame_rate_hz, 0.01, 10000, "Hz", "frames a second"},
@@ -148,13 +166,14 @@ std::optional<SourcedFrame> Simulator::next() {
   return sourced;
 }
 
-/// What one image needs: where from, at which wavelength, the key of its noise, and whether its
-/// pixels are wanted with labels.
+/// What one image needs.
 struct Simulator::Exposure {
-  Pose world_from_camera;
+  /// Where the camera is at each of the four samples; the same pose four times if it is so short
+  /// that the camera stands still.
+  std::array<Pose, 4> world_from_camera;
+  bool stands_still = true;
   double wavelength_m = 0;
   std::uint64_t noise_key = 0;
-  bool with_labels = false;
 };
 
 struct Simulator::Exposed {
@@ -174,7 +193,6 @@ SimulatedFrame Simulator::simulate(int index) const {
                      "to " + std::to_string(*frame_count() - 1));
   }
   const StampedPose& at_a = motion_.at_a[static_cast<std::size_t>(index)];
-  const StampedPose& at_b = motion_.at_b[static_cast<std::size_t>(index)];
   const auto key = [&](int image) {
     return mix(mix(static_cast<std::uint64_t>(options_.seed)) + 2 * static_cast<unsigned>(index) +
                static_cast<unsigned>(image));
@@ -183,8 +201,12 @@ SimulatedFrame Simulator::simulate(int index) const {
   DualFrequencyFrame& frame = simulated.frame;
   frame.index = index;
   frame.timestamp_s = at_a.timestamp_s;
-  Exposed a = expose({at_a.world_from_camera, sensor_.modulation.wavelength_a_m(), key(0), true});
-  Exposed b = expose({at_b.world_from_camera, sensor_.modulation.wavelength_b_m(), key(1), false});
+  const Modulation& modulation = sensor_.modulation;
+  constexpr bool with_labels = true;
+  Exposed a =
+      expose(exposure_of(motion_.at_a, index, modulation.wavelength_a_m(), key(0)), with_labels);
+  Exposed b =
+      expose(exposure_of(motion_.at_b, index, modulation.wavelength_b_m(), key(1)), !with_labels);
   frame.phase_a = std::move(a.phase);
   frame.amplitude_a = std::move(a.amplitude);
   frame.phase_b = std::move(b.phase);
@@ -199,42 +221,87 @@ SimulatedFrame Simulator::simulate(int index) const {
   return simulated;
 }
 
-Simulator::Exposed Simulator::expose(const Exposure& exposure) const {
+/// The four samples share the exposure evenly, about the instant of the image.
+Simulator::Exposure Simulator::exposure_of(const Trajectory& poses, int index, double wavelength_m,
+                                           std::uint64_t noise_key) const {
+  Exposure exposure;
+  exposure.wavelength_m = wavelength_m;
+  exposure.noise_key = noise_key;
+  const auto i = static_cast<std::size_t>(index);
+  exposure.world_from_camera.fill(poses[i].world_from_camera);
+  if (options_.exposure_share == 0 || poses.size() == 1) return exposure;
+  exposure.stands_still = false;
+  const bool is_last = i + 1 == poses.size();
+  const Pose& from = poses[is_last ? i - 1 : i].world_from_camera;
+  const Pose& to = poses[is_last ? i : i + 1].world_from_camera;
+  for (int k = 0; k < 4; ++k) {
+    const double share = (is_last ? 1 : 0) + options_.exposure_share * (k - 1.5) / 4;
+    exposure.world_from_camera[static_cast<std::size_t>(k)] = interpolate(from, to, share);
+  }
+  return exposure;
+}
+
+/// The light of one pixel from one pose; `rays` are left with what they met.
+PixelLight Simulator::light_of(std::size_t pixel, const Exposure& exposure,
+                               const Pose& world_from_camera, std::vector<SubRay>& rays) const {
+  const Eigen::Matrix3d turn = world_from_camera.linear();
+  const Eigen::Vector3d origin = world_from_camera.translation();
+  PixelLight light;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    SubRay& ray = rays[i];
+    ray.direction = turn * rays_[pixel * rays.size() + i].cast<double>();
+    ray.hit = ray_scene_.cast(origin, ray.direction, sensor_.max_range_m);
+    if (!ray.hit) continue;
+    const RayHit& hit = *ray.hit;
+    const double strength =
+        amplitude_unit * hit.reflectance * hit.cos_incidence / (hit.range_m * hit.range_m);
+    light += light_from(strength, hit.range_m, exposure.wavelength_m);
+  }
+  light = light / static_cast<double>(rays.size());
+  const SubRay& middle = rays[rays.size() / 2];
+  if (options_.multipath_rays > 0 && middle.hit) {
+    const std::uint64_t key = mix(exposure.noise_key ^ mix(pixel));
+    const Lamp lamp{sensor_.camera, world_from_camera, sensor_.max_range_m};
+    light += indirect_light(ray_scene_, lamp, middle.direction, *middle.hit,
+                            options_.multipath_rays, key, exposure.wavelength_m);
+  }
+  return light;
+}
+
+Simulator::Exposed Simulator::expose(const Exposure& exposure, bool with_labels) const {
   const int rows = sensor_.camera.height_px;
   const int cols = sensor_.camera.width_px;
-  const int rays_per_pixel = options_.subpixels * options_.subpixels;
-  const Eigen::Matrix3d turn = exposure.world_from_camera.linear();
-  const Eigen::Vector3d origin = exposure.world_from_camera.translation();
+  const auto rays_per_pixel = static_cast<std::size_t>(options_.subpixels * options_.subpixels);
+  const SensorEffects effects = sensor_effects(options_, sensor_.modulation);
+  const double noise_sigma = std::hypot(noise_sigma_, dark_noise_sigma(effects));
   Exposed out{ImageF::Constant(rows, cols, nan), ImageF::Zero(rows, cols),
               ImageU8::Zero(rows, cols)};
 
 #pragma omp parallel for schedule(dynamic)
   for (int v = 0; v < rows; ++v) {
-    std::vector<SubRay> rays(static_cast<std::size_t>(rays_per_pixel));
+    std::vector<SubRay> rays(rays_per_pixel);
     for (int u = 0; u < cols; ++u) {
       const std::size_t pixel = static_cast<std::size_t>(v) * cols + u;
-      std::complex<double> signal = 0;
-      bool any_hit = false;
-      for (int i = 0; i < rays_per_pixel; ++i) {
-        SubRay& ray = rays[static_cast<std::size_t>(i)];
-        ray.direction = turn * rays_[pixel * rays_per_pixel + i].cast<double>();
-        ray.hit = ray_scene_.cast(origin, ray.direction, sensor_.max_range_m);
-        if (!ray.hit) continue;
-        any_hit = true;
-        const RayHit& hit = *ray.hit;
-        const double strength =
-            amplitude_unit * hit.reflectance * hit.cos_incidence / (hit.range_m * hit.range_m);
-        signal += std::polar(strength, two_pi * hit.range_m / exposure.wavelength_m);
+      std::array<PixelLight, 4> samples;
+      samples.fill(light_of(pixel, exposure, exposure.world_from_camera[0], rays));
+      for (std::size_t k = 1; k < samples.size() && !exposure.stands_still; ++k) {
+        samples[k] = light_of(pixel, exposure, exposure.world_from_camera[k], rays);
       }
+      const bool any_hit =
+          std::ranges::any_of(rays, [](const SubRay& ray) { return ray.hit.has_value(); }) ||
+          std::ranges::any_of(samples, [](const PixelLight& light) { return light.level > 0; });
       if (!any_hit) continue;
-      signal = signal / static_cast<double>(rays_per_pixel) +
-               noise_sigma_ * complex_noise(exposure.noise_key, pixel);
+      const std::complex<double> ideal = effects.are_none() && exposure.stands_still
+                                             ? samples[0].first
+                                             : demodulate(samples, effects);
+      const std::complex<double> signal =
+          ideal + noise_sigma * complex_noise(exposure.noise_key, pixel);
       const double modulus = std::abs(signal);
       if (modulus < 0.5) continue;  // rounds to zero: no return
       out.amplitude(v, u) = static_cast<float>(std::min(modulus, max_amplitude));
       out.phase(v, u) = wrapped_cycles(std::arg(signal));
-      if (!exposure.with_labels) continue;
-      const double sigma_m = noise_sigma_ / modulus * exposure.wavelength_m / two_pi;
+      if (!with_labels) continue;
+      const double sigma_m = noise_sigma / modulus * exposure.wavelength_m / two_pi;
       out.label(v, u) = static_cast<std::uint8_t>(
           label_pixel(rays, out.phase(v, u), exposure.wavelength_m, sigma_m));
     }

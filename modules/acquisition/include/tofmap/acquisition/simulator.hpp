@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -28,6 +29,11 @@ struct SimulatorOptions {
   double frequency_b_hz = 31e6;
   double range_noise_m = 0.02;
   int subpixels = 3;
+  double wiggle_m = 0;
+  int multipath_rays = 0;
+  double dark_level = 0;
+  double full_well = 0;
+  double exposure_share = 0;
   double b_delay_share = 0.1;
   int frames = 0;
   double frame_rate_hz = 15;
@@ -54,13 +60,17 @@ struct SimulatedFrame {
   ImageU8 label;           ///< PixelLabel as a number
 };
 
+struct PixelLight;
+struct SubRay;
+
 /// A dual-frequency time-of-flight camera on a path through a scene (docs/simulator.md).
 ///
 /// Each pixel is the mean of the complex signals of a grid of rays over its area, at each
 /// frequency, plus complex Gaussian noise of one strength: phase noise goes as 1 / amplitude,
 /// and pixels on an edge mix the surfaces on both sides, as in a real sensor. No ray hits, or
-/// an amplitude that rounds to zero: no return. The same scene, options and seed give the
-/// same bits, whatever the number of threads.
+/// an amplitude that rounds to zero: no return. Harmonics of the correlation function, light by way
+/// of other surfaces, dark charge, full wells and motion during an exposure come in by options. The
+/// same scene, options and seed give the same bits, whatever the number of threads.
 class Simulator final : public FrameSource {
  public:
   /// Throws UsageError if an option is not allowed, InputError if the trajectory cannot be read.
@@ -86,7 +96,11 @@ class Simulator final : public FrameSource {
  private:
   struct Exposure;
   struct Exposed;
-  Exposed expose(const Exposure& exposure) const;
+  Exposure exposure_of(const Trajectory& poses, int index, double wavelength_m,
+                       std::uint64_t noise_key) const;
+  Exposed expose(const Exposure& exposure, bool with_labels) const;
+  PixelLight light_of(std::size_t pixel, const Exposure& exposure, const Pose& world_from_camera,
+                      std::vector<SubRay>& rays) const;
   struct Truth;
   Truth cast_truth(const Pose& world_from_camera) const;
 
