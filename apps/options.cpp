@@ -30,7 +30,10 @@ OptionTable option_table(const std::string& command, ProgramOptions& options) {
   if (command == "unwrap") options.pipeline.filters.chain = smoothing_chain();
   OptionTable table;
   table.bind("", options.run);
-  if (is_any_of({"simulate"})) table.bind("simulator", options.simulator);
+  if (is_any_of({"simulate"})) {
+    table.bind("simulator", options.simulator);
+    table.bind("tum", options.tum);
+  }
   if (is_any_of({"record", "info", "unwrap", "map", "evaluate", "view"})) {
     table.bind("camera", options.camera);
   }

@@ -10,6 +10,7 @@
 
 #include <tofmap/acquisition/openni2_source.hpp>
 #include <tofmap/acquisition/simulator.hpp>
+#include <tofmap/acquisition/tum_recording.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/filters/view_fusion.hpp>
 #include <tofmap/pipeline/cloud_registration.hpp>
@@ -36,6 +37,7 @@ struct LiveOptions {
 struct ProgramOptions {
   RunOptions run;
   SimulatorOptions simulator;
+  TumOptions tum;
   CameraOptions camera;
   DeviceOptions device;
   LiveOptions live;

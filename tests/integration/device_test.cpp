@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <tofmap/acquisition/png_image.hpp>
 #include <tofmap/acquisition/sequence.hpp>
 
 namespace tofmap::test {
@@ -219,6 +220,23 @@ INSTANTIATE_TEST_SUITE_P(
                     BadUri{"no_driver", "freenect://1", "cannot be opened"},
                     BadUri{"no_file", "nowhere.oni", "no such file"}),
     [](const auto& test) { return test.param.name; });
+
+TEST(TumRecording, IsWrappedAndRead) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path() / "depth");
+  write_png(folder.path() / "depth" / "1.png", ImageU16(ImageU16::Constant(48, 64, 20000)));
+  std::ofstream(folder.path() / "depth.txt") << "1.5 depth/1.png\n";
+  const fs::path out = folder.path() / "out";
+  const Finished finished = run_program({"simulate", "--from-tum", folder.path().string(), "--out",
+                                         out.string(), "--set", "tum.cx_px=31.5", "tum.cy_px=23.5",
+                                         "tum.fx_px=60", "tum.fy_px=60", "tum.every_pixel=1"});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const SequenceReader reader(out);
+  EXPECT_EQ(reader.frame_count(), 1);
+  EXPECT_NEAR((*reader.range_truth(0))(23, 31), 4, 0.002);
+  EXPECT_EQ(run_program({"simulate", "room", "--from-tum", "x", "--out", out.string()}).status, 2);
+  EXPECT_EQ(run_program({"simulate", "--out", out.string()}).status, 2);
+}
 
 TEST(OniFile, ThatIsNoneOrTruncatedIsNamed) {
   const TemporaryFolder folder;

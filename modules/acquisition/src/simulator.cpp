@@ -4,6 +4,7 @@
 #include "tofmap/acquisition/simulator.hpp"
 
 #include "noise.hpp"
+#include "pixel_signal.hpp"
 #include "sensor_effects.hpp"
 
 #include <algorithm>
@@ -23,7 +24,6 @@ namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr double max_amplitude = 65535;
 
 /// Checks every option as the command line would, for those who fill the struct in code.
 SimulatorOptions checked(SimulatorOptions options) {
@@ -86,24 +86,10 @@ CameraMotion camera_motion(const Scene& scene, const SimulatorOptions& options) 
                      options.b_delay_share);
 }
 
-/// The noise that gives `range_noise_m` at A on a surface of reflectance 0.5 that faces the
-/// camera at 5 m: σ_φ = 2π σ_r / λ_A = σ_n / a (docs/simulator.md, equation 4).
-double noise_strength(const SimulatorOptions& options, const Modulation& modulation) {
-  constexpr double reference_amplitude = amplitude_unit * 0.5 / (5.0 * 5.0);
-  return reference_amplitude * two_pi * options.range_noise_m / modulation.wavelength_a_m();
-}
-
 SensorEffects sensor_effects(const SimulatorOptions& options, const Modulation& modulation) {
   return {.harmonic = two_pi * options.wiggle_m / modulation.wavelength_a_m(),
           .dark_level = options.dark_level,
           .full_well = options.full_well};
-}
-
-/// Cycles in [0, 1), also after rounding to float.
-float wrapped_cycles(double angle_rad) {
-  const double cycles = angle_rad / two_pi;
-  const auto wrapped = static_cast<float>(cycles - std::floor(cycles));
-  return wrapped < 1 ? wrapped : 0;
 }
 
 }  // namespace
@@ -155,7 +141,7 @@ Simulator::Simulator(Scene scene, const SimulatorOptions& options)
       ray_scene_(scene_.surface),
       motion_(camera_motion(scene_, options_)),
       rays_(subpixel_rays(sensor_.camera, options_.subpixels)),
-      noise_sigma_(noise_strength(options_, sensor_.modulation)) {}
+      noise_sigma_(noise_strength(options_.range_noise_m, sensor_.modulation)) {}
 
 std::optional<SourcedFrame> Simulator::next() {
   if (next_index_ >= *frame_count()) return std::nullopt;
@@ -296,12 +282,12 @@ Simulator::Exposed Simulator::expose(const Exposure& exposure, bool with_labels)
                                              : demodulate(samples, effects);
       const std::complex<double> signal =
           ideal + noise_sigma * complex_noise(exposure.noise_key, pixel);
-      const double modulus = std::abs(signal);
-      if (modulus < 0.5) continue;  // rounds to zero: no return
-      out.amplitude(v, u) = static_cast<float>(std::min(modulus, max_amplitude));
-      out.phase(v, u) = wrapped_cycles(std::arg(signal));
+      const auto measured = measure(signal);
+      if (!measured) continue;
+      out.amplitude(v, u) = measured->amplitude;
+      out.phase(v, u) = measured->phase_cycles;
       if (!with_labels) continue;
-      const double sigma_m = noise_sigma / modulus * exposure.wavelength_m / two_pi;
+      const double sigma_m = noise_sigma / std::abs(signal) * exposure.wavelength_m / two_pi;
       out.label(v, u) = static_cast<std::uint8_t>(
           label_pixel(rays, out.phase(v, u), exposure.wavelength_m, sigma_m));
     }

@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/acquisition/tum_recording.hpp"
+
+#include "noise.hpp"
+#include "pixel_signal.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include <tofmap/acquisition/png_image.hpp>
+#include <tofmap/core/error.hpp>
+#include <tofmap/core/input_file.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+/// Truth images hold millimetres in 16 bits.
+constexpr float longest_range_m = 65.5F;
+
+struct Line {
+  double timestamp_s = 0;
+  std::string file;
+};
+
+std::vector<Line> read_list(const std::filesystem::path& file) {
+  refuse_no_file(file);
+  std::ifstream in(file);
+  if (!in) {
+    throw InputError(file.string() +
+                     ": cannot be read; a recording of the TUM RGB-D benchmark has depth.txt with "
+                     "lines 'timestamp file'");
+  }
+  std::vector<Line> lines;
+  std::string text;
+  for (int number = 1; std::getline(in, text); ++number) {
+    const std::size_t first = text.find_first_not_of(" \t\r");
+    if (first == std::string::npos || text[first] == '#') continue;
+    std::istringstream words(text);
+    Line line;
+    if (!(words >> line.timestamp_s >> line.file)) {
+      throw InputError(file.string() + ":" + std::to_string(number) + ": '" + text +
+                       "' is no time and file");
+    }
+    if (!lines.empty() && line.timestamp_s <= lines.back().timestamp_s) {
+      throw InputError(file.string() + ":" + std::to_string(number) +
+                       ": its time is not later than that of the line before");
+    }
+    lines.push_back(std::move(line));
+  }
+  if (lines.empty()) throw InputError(file.string() + ": lists no image");
+  return lines;
+}
+
+/// Every n-th pixel of an image, n - 1 of them left out on either side of it.
+ImageU16 thinned(const ImageU16& image, int n) {
+  return image(Eigen::seq(n / 2, Eigen::last, n), Eigen::seq(n / 2, Eigen::last, n));
+}
+
+CameraModel thinned_camera(const TumOptions& options, const ImageU16& first) {
+  const int n = options.every_pixel;
+  CameraModel camera;
+  camera.width_px = static_cast<int>(first.cols());
+  camera.height_px = static_cast<int>(first.rows());
+  camera.fx_px = options.fx_px / n;
+  camera.fy_px = options.fy_px / n;
+  camera.cx_px = (options.cx_px - n / 2) / n;
+  camera.cy_px = (options.cy_px - n / 2) / n;
+  return camera;
+}
+
+}  // namespace
+
+std::vector<OptionField<TumOptions>> TumOptions::fields() {
+  using T = TumOptions;
+  return {
+      {"fx_px", &T::fx_px, 1, 1e5, "px", "focal length of the depth images"},
+      {"fy_px", &T::fy_px, 1, 1e5, "px", "focal length of the depth images"},
+      {"cx_px", &T::cx_px, -1e5, 1e5, "px", "their optical centre"},
+      {"cy_px", &T::cy_px, -1e5, 1e5, "px", "their optical centre"},
+      {"steps_per_m", &T::steps_per_m, 1, 1e6, "", "what depth images count in a metre"},
+      {"every_pixel", &T::every_pixel, 1, 16, "", "every how manieth pixel is taken, in both axes"},
+      {"reflectance", &T::reflectance, 0.01, 1, "", "of all surfaces"},
+      {"max_pose_gap_s", &T::max_pose_gap_s, 0, 10, "s",
+       "a pose farther than this from an image in time is none of it"},
+  };
+}
+
+TumRecording::TumRecording(std::filesystem::path folder, const TumOptions& options,
+                           const SimulatorOptions& simulator)
+    : folder_(std::move(folder)), options_(options), seed_(simulator.seed) {
+  for (Line& line : read_list(folder_ / "depth.txt")) {
+    images_.push_back({line.timestamp_s, folder_ / line.file});
+  }
+  const std::filesystem::path poses = folder_ / "groundtruth.txt";
+  if (std::filesystem::exists(poses)) poses_ = read_trajectory(poses);
+  sensor_.camera =
+      thinned_camera(options_, thinned(read_png_16(images_.front().file), options_.every_pixel));
+  sensor_.modulation = {simulator.frequency_a_hz, simulator.frequency_b_hz};
+  sensor_.max_range_m = simulator.max_range_m;
+  validate(sensor_.camera);
+  validate(sensor_.modulation);
+  rays_ = pixel_rays(sensor_.camera);
+  noise_sigma_ = noise_strength(simulator.range_noise_m, sensor_.modulation);
+}
+
+TumRecording::Frame TumRecording::read(int index) const {
+  const DepthImage& image = images_.at(static_cast<std::size_t>(index));
+  const ImageU16 depth = thinned(read_png_16(image.file), options_.every_pixel);
+  if (!same_size(depth, rays_.z)) {
+    throw InputError(image.file.string() + ": is not of the size of the first image");
+  }
+  Frame out;
+  out.world_from_camera = pose_at(poses_, image.timestamp_s, options_.max_pose_gap_s);
+  DualFrequencyFrame& frame = out.frame;
+  frame.index = index;
+  frame.timestamp_s = image.timestamp_s;
+  const ImageF nothing = ImageF::Constant(depth.rows(), depth.cols(), nan);
+  out.range_truth_m = frame.phase_a = frame.phase_b = nothing;
+  frame.amplitude_a = frame.amplitude_b = ImageF::Zero(depth.rows(), depth.cols());
+  const auto key = mix(static_cast<std::uint64_t>(seed_)) + 2 * static_cast<std::uint64_t>(index);
+  for (Eigen::Index i = 0; i < depth.size(); ++i) {
+    if (depth.data()[i] == 0) continue;
+    const float range_m =
+        static_cast<float>(depth.data()[i] / options_.steps_per_m) / rays_.z.data()[i];
+    if (range_m > longest_range_m) continue;
+    out.range_truth_m.data()[i] = range_m;
+    const double strength = amplitude_unit * options_.reflectance / (double{range_m} * range_m);
+    const auto at = [&](double wavelength_m, std::uint64_t image_key) {
+      const double angle = 2 * std::numbers::pi * range_m / wavelength_m;
+      return measure(std::polar(strength, angle) +
+                     noise_sigma_ * complex_noise(mix(image_key), static_cast<std::uint64_t>(i)));
+    };
+    const auto a = at(sensor_.modulation.wavelength_a_m(), key);
+    const auto b = at(sensor_.modulation.wavelength_b_m(), key + 1);
+    if (!a || !b) continue;
+    frame.phase_a.data()[i] = a->phase_cycles;
+    frame.amplitude_a.data()[i] = a->amplitude;
+    frame.phase_b.data()[i] = b->phase_cycles;
+    frame.amplitude_b.data()[i] = b->amplitude;
+  }
+  return out;
+}
+
+}  // namespace tofmap
