@@ -42,6 +42,28 @@ bool is_same(const ImageF& one, const ImageF& other) {
   return same_size(one, other) && (one == other || (one.isNaN() && other.isNaN())).all();
 }
 
+bool is_without_return(const DualFrequencyFrame& frame) {
+  return (frame.phase_a.isNaN() || frame.phase_b.isNaN()).all();
+}
+
+/// Pixels of all frames.
+struct PixelTotals {
+  double all = 0;
+  double without_return = 0;  ///< at either frequency
+  double saturated = 0;       ///< at either frequency
+
+  void add(const DualFrequencyFrame& frame, double saturation_amplitude) {
+    all += static_cast<double>(frame.phase_a.size());
+    without_return += static_cast<double>((frame.phase_a.isNaN() || frame.phase_b.isNaN()).count());
+    if (!frame.has_amplitude() || saturation_amplitude <= 0) return;
+    const auto limit = static_cast<float>(saturation_amplitude);
+    saturated +=
+        static_cast<double>((frame.amplitude_a >= limit || frame.amplitude_b >= limit).count());
+  }
+
+  double share(double of) const { return all > 0 ? of / all : 0; }
+};
+
 /// By how much A measures more than B, in single pixels.
 std::vector<float> differences_m(const std::vector<DualFrequencyFrame>& frames,
                                  const SensorModel& sensor) {
@@ -99,6 +121,54 @@ std::string text(const char* format, Values... values) {
   return buffer;
 }
 
+void doubt_returns(const RecordingSurvey& survey, std::vector<std::string>& doubts) {
+  constexpr double most_without_return = 0.5;
+  const int whole = survey.frames - static_cast<int>(survey.damages.size());
+  if (whole > 0 && survey.without_return == whole) {
+    doubts.emplace_back("no pixel has a return; are the phase images mislabelled?");
+  } else if (survey.without_return > 0) {
+    doubts.push_back(
+        text("%d frames have no return at all; was the camera covered?", survey.without_return));
+  } else if (survey.no_return_share > most_without_return) {
+    doubts.push_back(
+        text("%.0f %% of the pixels have no return; is the exposure too short, or the "
+             "scene out of reach?",
+             100 * survey.no_return_share));
+  }
+  constexpr double most_saturated = 0.05;
+  if (survey.saturated_share > most_saturated) {
+    doubts.push_back(
+        text("%.0f %% of the pixels are saturated, and left out; a shorter exposure "
+             "would keep them",
+             100 * survey.saturated_share));
+  }
+}
+
+void doubt_images(const RecordingSurvey& survey, std::vector<std::string>& doubts) {
+  if (!survey.constant_images.empty()) {
+    doubts.push_back(
+        text("%zu images hold one phase everywhere, %s the first; they are no "
+             "measurement",
+             survey.constant_images.size(), survey.constant_images.front().c_str()));
+  }
+  if (survey.repeated > 0) {
+    doubts.push_back(
+        text("%d frames repeat the one before; did the camera stand still in its software?",
+             survey.repeated));
+  }
+}
+
+void doubt_times(const RecordingSurvey& survey, std::vector<std::string>& doubts) {
+  constexpr double most_periods = 5;
+  if (survey.longest_gap_s > most_periods * survey.median_period_s) {
+    doubts.push_back(
+        text("after frame %d nothing was recorded for %.2f s, %.0f frame periods; the "
+             "camera may be lost there",
+             survey.frame_before_gap, survey.longest_gap_s,
+             survey.longest_gap_s / survey.median_period_s));
+  }
+}
+
 void doubt_beat(const BeatSurvey& beat, std::vector<std::string>& doubts) {
   constexpr double telling_ratio = 0.5;
   if (beat.swapped_spread_m < telling_ratio * beat.spread_m) {
@@ -120,15 +190,13 @@ void doubt_beat(const BeatSurvey& beat, std::vector<std::string>& doubts) {
 
 RecordingSurvey survey_recording(const SequenceReader& recording,
                                  const std::function<bool()>& keep_going) {
-  RecordingSurvey survey;
   const SensorModel& sensor = recording.sensor();
   const int count = *recording.frame_count();
   const int every = 1 + (count - 1) / beat_frames;
-  const double saturation =
-      sensor.saturation_amplitude > 0 ? sensor.saturation_amplitude : HUGE_VAL;
+  RecordingSurvey survey;
+  PixelTotals totals;
   std::vector<DualFrequencyFrame> some;
   ImageF last_phase;
-  double pixels = 0;
   for (int i = 0; i < count; ++i) {
     if (keep_going && !keep_going()) break;
     ++survey.frames;
@@ -138,29 +206,18 @@ RecordingSurvey survey_recording(const SequenceReader& recording,
       continue;
     }
     DualFrequencyFrame& frame = *sourced.frame;
-    const auto no_return = (frame.phase_a.isNaN() || frame.phase_b.isNaN()).count();
-    pixels += static_cast<double>(frame.phase_a.size());
-    survey.no_return_share += static_cast<double>(no_return);
-    survey.without_return += no_return == frame.phase_a.size() ? 1 : 0;
-    if (frame.has_amplitude()) {
-      survey.saturated_share +=
-          static_cast<double>((frame.amplitude_a.cast<double>() >= saturation ||
-                               frame.amplitude_b.cast<double>() >= saturation)
-                                  .count());
-    } else {
-      ++survey.without_amplitude;
-    }
+    totals.add(frame, sensor.saturation_amplitude);
+    survey.without_amplitude += frame.has_amplitude() ? 0 : 1;
+    survey.without_return += is_without_return(frame) ? 1 : 0;
+    survey.repeated += is_same(frame.phase_a, last_phase) ? 1 : 0;
     const SequenceFrameFiles& files = recording.files()[static_cast<std::size_t>(i)];
     if (is_constant(frame.phase_a)) survey.constant_images.push_back(files.phase_a.string());
     if (is_constant(frame.phase_b)) survey.constant_images.push_back(files.phase_b.string());
-    survey.repeated += is_same(frame.phase_a, last_phase) ? 1 : 0;
     last_phase = frame.phase_a;
     if (i % every == 0) some.push_back(std::move(frame));
   }
-  if (pixels > 0) {
-    survey.no_return_share /= pixels;
-    survey.saturated_share /= pixels;
-  }
+  survey.no_return_share = totals.share(totals.without_return);
+  survey.saturated_share = totals.share(totals.saturated);
   survey_times(recording.files(), survey);
   survey.beat = survey_beat(some, sensor);
   return survey;
@@ -172,44 +229,9 @@ std::vector<std::string> doubts_about(const RecordingSurvey& survey, const Senso
     doubts.emplace_back(
         "the scene reaches farther than this pair of frequencies can tell apart; are they right?");
   }
-  const int whole = survey.frames - static_cast<int>(survey.damages.size());
-  if (whole > 0 && survey.without_return == whole) {
-    doubts.emplace_back("no pixel has a return; are the phase images mislabelled?");
-  } else if (survey.without_return > 0) {
-    doubts.push_back(
-        text("%d frames have no return at all; was the camera covered?", survey.without_return));
-  } else if (survey.no_return_share > 0.5) {
-    doubts.push_back(
-        text("%.0f %% of the pixels have no return; is the exposure too short, or the "
-             "scene out of reach?",
-             100 * survey.no_return_share));
-  }
-  if (!survey.constant_images.empty()) {
-    doubts.push_back(
-        text("%zu images hold one phase everywhere, %s the first; they are no "
-             "measurement",
-             survey.constant_images.size(), survey.constant_images.front().c_str()));
-  }
-  if (survey.repeated > 0) {
-    doubts.push_back(
-        text("%d frames repeat the one before; did the camera stand still in its software?",
-             survey.repeated));
-  }
-  constexpr double most_saturated = 0.05;
-  if (survey.saturated_share > most_saturated) {
-    doubts.push_back(
-        text("%.0f %% of the pixels are saturated, and left out; a shorter exposure "
-             "would keep them",
-             100 * survey.saturated_share));
-  }
-  constexpr double most_periods = 5;
-  if (survey.longest_gap_s > most_periods * survey.median_period_s) {
-    doubts.push_back(
-        text("after frame %d nothing was recorded for %.2f s, %.0f frame periods; the "
-             "camera may be lost there",
-             survey.frame_before_gap, survey.longest_gap_s,
-             survey.longest_gap_s / survey.median_period_s));
-  }
+  doubt_returns(survey, doubts);
+  doubt_images(survey, doubts);
+  doubt_times(survey, doubts);
   if (survey.beat) doubt_beat(*survey.beat, doubts);
   return doubts;
 }
