@@ -106,7 +106,8 @@ TEST_F(Device, EndsAfterAsManyFramesAsAreWanted) {
   const fs::path oni = folder_.path() / "device.oni";
   ASSERT_EQ(record(uri(), {"--frames", "5", "--oni", oni.string()}).status, 0);
   expect_same_ranges(5);
-  ASSERT_EQ(record(oni.string()).status, 0);
+  // OpenNI2 records what the device delivers, which may be more than was read.
+  ASSERT_EQ(record(oni.string(), {"--frames", "5"}).status, 0);
   expect_same_ranges(5);
 }
 

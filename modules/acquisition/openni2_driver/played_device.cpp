@@ -192,8 +192,9 @@ bool PlayedDevice::wait_for_stream() {
 bool PlayedDevice::wait_for_turn(double timestamp_s) {
   std::unique_lock lock(mutex_);
   while (!is_closing_ && !is_unplugged_) {
-    if (speed_ == 0 || (speed_ < 0 && is_triggered_)) return true;
+    if (speed_ == 0) return true;
     if (speed_ < 0) {
+      if (std::exchange(is_triggered_, false)) return true;
       constexpr std::chrono::milliseconds longest(100);
       changed_.wait_for(lock, longest);
       continue;
@@ -228,16 +229,19 @@ void PlayedDevice::deliver_images(const ImageU16& range, const ImageU16& amplitu
       stream.deliver(stream.type() == ONI_SENSOR_DEPTH ? range : amplitude, timestamp_us, images_);
     }
   }
-  // Triggers that came meanwhile were for these images.
-  update([this] { is_triggered_ = false; });
+  // A client that reads both streams may have asked between the two: before it is given more, it
+  // has time to read what it has, for the next image would take its place.
+  std::unique_lock lock(mutex_);
+  constexpr std::chrono::milliseconds to_read(2);
+  if (is_triggered_) changed_.wait_for(lock, to_read, [this] { return is_closing_; });
 }
 
 void PlayedDevice::deliver(const DualFrequencyFrame& frame) {
+  if (!wait_for_turn(frame.timestamp_s)) return;
+  // Only now: the mode of a stream, and with it the unit, may have changed meanwhile.
   if (request_.player.layout == "stacked") {
     const StackedImages images = codec().stack(frame, static_cast<std::uint32_t>(frames_.load()));
-    if (wait_for_turn(frame.timestamp_s)) {
-      deliver_images(images.range, images.amplitude, frame.timestamp_s);
-    }
+    deliver_images(images.range, images.amplitude, frame.timestamp_s);
     return;
   }
   const Modulation& modulation = player_.sensor().modulation;
@@ -245,7 +249,6 @@ void PlayedDevice::deliver(const DualFrequencyFrame& frame) {
   const auto amplitude_of = [&](const ImageF& amplitude) {
     return frame.has_amplitude() ? encode_amplitude(amplitude) : no_amplitude;
   };
-  if (!wait_for_turn(frame.timestamp_s)) return;
   deliver_images(codec().encode_range(frame.phase_a, modulation.wavelength_a_m()),
                  amplitude_of(frame.amplitude_a), frame.timestamp_s);
   const double b_timestamp_s = frame.timestamp_s + player_.period_s() / 2;

@@ -86,10 +86,10 @@ OpenNi2Connection::OpenNi2Connection(const std::string& uri,
 }
 
 OpenNi2Connection::~OpenNi2Connection() {
-  if (recorder_.isValid()) end_recording();
   depth_.stop();
-  depth_.destroy();
   infrared_.stop();
+  if (recorder_.isValid()) end_recording();
+  depth_.destroy();
   infrared_.destroy();
   device_.close();
   openni::OpenNI::removeDeviceDisconnectedListener(&listener_);
