@@ -140,12 +140,10 @@ void print_fit(const PhaseErrorFit& fit, Reference reference) {
 PhaseErrorFit fit_pairs(const std::vector<RangePair>& pairs, Reference reference,
                         const SequenceReader& source, const PhaseErrorFitOptions& options) {
   const Modulation& modulation = source.sensor().modulation;
-  try {
+  return naming(source.folder().string(), [&] {
     return reference == Reference::beat ? fit_to_beat(pairs, modulation, options)
                                         : fit_to_references(pairs, modulation, options);
-  } catch (const InputError& error) {
-    throw InputError(source.folder().string() + ": " + error.what());
-  }
+  });
 }
 
 int run_calibrate(const CalibrateArguments& arguments) {

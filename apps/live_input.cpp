@@ -67,15 +67,13 @@ LiveInput::LiveInput(const std::string& uri, const ProgramOptions& options, cons
 
 std::string LiveInput::losses() const {
   const PairingCounts counts = source_.counts();
-  const int images = counts.half_missing + counts.duplicates + counts.out_of_order +
-                     counts.unreadable + counts.undecided;
   std::string text;
   const auto add = [&](int count, const char* what) {
     if (count == 0) return;
     text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + what;
   };
   add(queue_.dropped(), "frames late");
-  add(images, "images unpaired");
+  add(counts.dropped(), "images unpaired");
   add(counts.lost, "lost");
   return text;
 }

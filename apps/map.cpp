@@ -80,7 +80,7 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
   std::printf("map: %s, mesh and pictures beside it\n", (folder / "map.ply").c_str());
 }
 
-/// Puts the map in place, with pictures of it.
+/// Puts the map in place.
 RoomMap finish_map(MapRun& run, OutputFolder& out, const MapOutput& output) {
   RoomMap map = run.finish();
   check_result(map);

@@ -31,11 +31,6 @@ double memory_mb() {
   return 1e-6 * static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-int lost(const tofmap::PairingCounts& counts) {
-  return counts.half_missing + counts.duplicates + counts.out_of_order + counts.unreadable +
-         counts.undecided;
-}
-
 void soak(const std::string& uri, int frames) {
   using Clock = std::chrono::steady_clock;
   tofmap::OpenNi2Source source(uri, {});
@@ -53,7 +48,8 @@ void soak(const std::string& uri, int frames) {
     const double rate = frames / lines / std::chrono::duration<double>(now - last).count();
     last = now;
     const tofmap::PairingCounts counts = source.counts();
-    std::printf("%8d %10.1f %12d %12d %10.1f\n", i, rate, lost(counts), counts.lost, memory_mb());
+    std::printf("%8d %10.1f %12d %12d %10.1f\n", i, rate, counts.dropped(), counts.lost,
+                memory_mb());
     std::fflush(stdout);
   }
 }

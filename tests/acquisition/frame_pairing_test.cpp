@@ -19,11 +19,6 @@ DeviceImage image_of(int instant, DeviceStream stream) {
           ImageU16::Constant(1, 1, static_cast<std::uint16_t>(instant))};
 }
 
-int dropped(const PairingCounts& counts) {
-  return counts.half_missing + counts.duplicates + counts.out_of_order + counts.unreadable +
-         counts.undecided;
-}
-
 TEST(StreamJoiner, JoinsTheImagesOfOneInstant) {
   StreamJoiner joiner(ImageKey::number, true);
   PairingCounts counts;
@@ -39,7 +34,7 @@ TEST(StreamJoiner, JoinsTheImagesOfOneInstant) {
     EXPECT_EQ(joined->timestamp_s, 0.1 * i);
   }
   EXPECT_EQ(counts.paired, 20);
-  EXPECT_EQ(dropped(counts), 0);
+  EXPECT_EQ(counts.dropped(), 0);
 }
 
 TEST(StreamJoiner, PassesRangesOnWhereThereAreNoAmplitudes) {
@@ -136,7 +131,7 @@ TEST_P(UnderFaults, StreamsAreJoinedRightAndEveryImageIsCounted) {
   }
   joiner.finish(counts);
   EXPECT_EQ(counts.paired, 2 * joined_count);
-  EXPECT_EQ(counts.paired + dropped(counts), static_cast<int>(arriving.size()));
+  EXPECT_EQ(counts.paired + counts.dropped(), static_cast<int>(arriving.size()));
 
   std::vector<bool> came(instants, false);
   for (const DeviceImage& image : arriving) came[static_cast<std::size_t>(image.key)] = true;
@@ -188,7 +183,7 @@ TEST_P(UnderFaults, ImagesTakenInTurnArePairedRightAndEveryOneIsCounted) {
   }
   pairer.finish(counts);
   EXPECT_EQ(counts.paired, 2 * pairs);
-  EXPECT_EQ(counts.paired + dropped(counts), static_cast<int>(arriving.size()));
+  EXPECT_EQ(counts.paired + counts.dropped(), static_cast<int>(arriving.size()));
   EXPECT_EQ(counts.lost, 1 + arriving.back().instant - arriving.front().instant -
                              static_cast<int>(arriving.size()));
   // No whole pair is given away, but for those before content has told which is which.

@@ -222,7 +222,10 @@ void PlayedDevice::deliver_images(const ImageU16& range, const ImageU16& amplitu
   const auto timestamp_us = static_cast<std::uint64_t>(std::llround(1e6 * timestamp_s));
   ++images_;
   const int lose_every = request_.player.lose_every;
-  if (lose_every > 0 && images_ % lose_every == 0) return;
+  if (lose_every > 0 && images_ % lose_every == 0) {
+    update([this] { is_triggered_ = true; });  // whoever asked for it is waiting still
+    return;
+  }
   {
     const std::scoped_lock lock(streams_mutex_);
     for (ImageStream& stream : streams_) {

@@ -118,11 +118,7 @@ CameraCalibration read_calibration(const std::filesystem::path& file) {
   CameraCalibration calibration;
   if (root.has("camera")) {
     calibration.camera = read_camera(root.section("camera"));
-    try {
-      validate(*calibration.camera);
-    } catch (const InputError& error) {
-      throw InputError(file.string() + ": " + error.what());
-    }
+    naming(file.string(), [&] { validate(*calibration.camera); });
   }
   calibration.error_a = read_error(root, "error_a");
   calibration.error_b = read_error(root, "error_b");

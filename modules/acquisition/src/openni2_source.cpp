@@ -119,7 +119,7 @@ class OpenNi2Source::Impl {
   std::optional<DeviceImage> understand(RawImage image);
   std::optional<DualFrequencyFrame> add(RawImage image);
   std::optional<DualFrequencyFrame> frame_of(JoinedImages joined);
-  std::optional<DualFrequencyFrame> frame_of_pair(const AlternatingPair& pair) const;
+  DualFrequencyFrame frame_of_pair(const AlternatingPair& pair) const;
   SourcedFrame sourced(DualFrequencyFrame frame);
   void check_fruit() const;
 
@@ -157,12 +157,10 @@ OpenNi2Source::Impl::Impl(const std::string& uri, Settings settings)
 }
 
 void OpenNi2Source::Impl::begin(const SensorModel& sensor, const RangeScale& scale, ImageKey key) {
-  try {
+  naming(uri_, [&] {
     validate(sensor.camera);
     validate(sensor.modulation);
-  } catch (const InputError& error) {
-    throw InputError(uri_ + ": " + error.what());
-  }
+  });
   codec_.emplace(sensor, scale);
   joiner_.emplace(key, device_.has_amplitude());
   sensor_ = calibrated(sensor, settings_.calibration);
@@ -234,8 +232,7 @@ std::optional<DeviceImage> OpenNi2Source::Impl::understand(RawImage image) {
   return understood;
 }
 
-std::optional<DualFrequencyFrame> OpenNi2Source::Impl::frame_of_pair(
-    const AlternatingPair& pair) const {
+DualFrequencyFrame OpenNi2Source::Impl::frame_of_pair(const AlternatingPair& pair) const {
   const Modulation& modulation = sensor_.modulation;
   DualFrequencyFrame frame;
   frame.timestamp_s = pair.a.timestamp_s;
@@ -259,7 +256,7 @@ std::optional<DualFrequencyFrame> OpenNi2Source::Impl::frame_of(JoinedImages joi
   const bool reaches_beyond =
       has_beyond(codec_->count_beyond(joined.range, shorter_m), joined.range.size());
   const auto pair = alternating_->add(std::move(joined), reaches_beyond, counts_);
-  return pair ? frame_of_pair(*pair) : std::nullopt;
+  return pair ? std::optional(frame_of_pair(*pair)) : std::nullopt;
 }
 
 std::optional<DualFrequencyFrame> OpenNi2Source::Impl::add(RawImage image) {

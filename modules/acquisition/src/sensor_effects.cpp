@@ -55,8 +55,8 @@ double charge(const PixelLight& light, int k, const SensorEffects& effects) {
 }  // namespace
 
 PixelLight light_from(double strength, double range_m, double wavelength_m) {
-  const double phase = two_pi * range_m / wavelength_m;
-  return {std::polar(strength, phase), std::polar(strength, 3 * phase), strength};
+  const std::complex<double> turn = std::polar(1.0, two_pi * range_m / wavelength_m);
+  return {strength * turn, strength * (turn * turn * turn), strength};
 }
 
 std::complex<double> demodulate(const std::array<PixelLight, 4>& samples,

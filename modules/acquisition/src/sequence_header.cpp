@@ -39,12 +39,10 @@ SensorModel read_sensor(const YamlSection& root) {
 SensorModel read_sequence_header(const std::filesystem::path& file) {
   const SensorModel sensor =
       read_sensor(load_yaml(file, "a sequence folder holds sequence.yaml and frames.txt"));
-  try {
+  naming(file.string(), [&] {
     validate(sensor.camera);
     validate(sensor.modulation);
-  } catch (const InputError& error) {
-    throw InputError(file.string() + ": " + error.what());
-  }
+  });
   return sensor;
 }
 

@@ -21,6 +21,9 @@ struct PairingCounts {
   int unreadable = 0;    ///< of a wrong size, or with a damaged tag
   int undecided = 0;     ///< nothing told whether they were A's or B's
   int lost = 0;          ///< instants of which no image came, as numbers or times tell
+
+  /// Images that came and became part of no frame.
+  int dropped() const { return half_missing + duplicates + out_of_order + unreadable + undecided; }
 };
 
 enum class DeviceStream : std::uint8_t { range, amplitude };

@@ -21,4 +21,14 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Runs a step, and puts the name of what it works on before the message of an InputError.
+template <class Step>
+auto naming(const std::string& origin, const Step& step) {
+  try {
+    return step();
+  } catch (const InputError& error) {
+    throw InputError(origin + ": " + error.what());
+  }
+}
+
 }  // namespace tofmap
