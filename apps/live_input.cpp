@@ -33,14 +33,13 @@ LateFrames policy(const LiveOptions& options, const OpenNi2Source& source) {
 
 const char* end_name(OpenNi2Source::End end) {
   switch (end) {
-    case OpenNi2Source::End::none:
-      return "still running";
     case OpenNi2Source::End::of_recording:
       return "end of the recording";
     case OpenNi2Source::End::unplugged:
       return "unplugged";
     case OpenNi2Source::End::timeout:
       return "no image came any more";
+    case OpenNi2Source::End::none:  // nobody reads on
     case OpenNi2Source::End::asked:
       return "as asked";
   }

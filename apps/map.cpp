@@ -5,6 +5,7 @@
 #include "frame_report.hpp"
 #include "interruption.hpp"
 #include "live_input.hpp"
+#include "live_view.hpp"
 #include "map_state.hpp"
 #include "options.hpp"
 #include "output_folder.hpp"
@@ -33,6 +34,7 @@ struct MapArguments {
   std::string method;
   bool resume = false;
   bool pcd = false;
+  bool view = false;
   CommonArguments common;
 };
 
@@ -94,14 +96,28 @@ int status_of(const RoomMap& map) {
   return map.interrupted ? exit_status::interrupted : exit_status::done;
 }
 
-/// Until the recording ends, or the user ends it. `remark` tells what is not told by the number of
-/// frames.
-void follow_camera(MapRun& run, FrameSource& source, bool quiet,
+/// A window for the map, if it is wanted.
+std::unique_ptr<LiveView> open_view(const MapArguments& arguments) {
+  if (!arguments.view) return nullptr;
+  return std::make_unique<LiveView>("tofmap " + arguments.recording.sequence.string());
+}
+
+/// How mapping goes, in a few words.
+std::string status_line(const MapRun& run) {
+  if (run.frames().empty()) return "";
+  return std::string(status_name(run.frames().back().tracking.status)) + ", " +
+         std::to_string(run.mapper().voxel_count()) + " voxels";
+}
+
+/// Takes frames until the recording ends, or the user ends it. `remark` tells what is not told by
+/// the number of frames.
+void follow_camera(MapRun& run, FrameSource& source, bool quiet, LiveView* view,
                    const std::function<std::string()>& remark) {
   Progress progress("mapping frame", source.frame_count(), quiet);
   MapHooks hooks;
   hooks.keep_going = [&](int done) {
     progress.show(done, remark());
+    if (view) view->update(run, std::to_string(done) + " frames, " + status_line(run));
     return !is_interrupted();
   };
   run.advance(source, hooks);
@@ -111,11 +127,16 @@ int map_recording(const MapArguments& arguments, const ProgramOptions& options,
                   const OptionTable& table) {
   SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
   OutputFolder out(arguments.out);
+  const std::unique_ptr<LiveView> view = open_view(arguments);
   MapRun run(source.sensor(), options.pipeline);
   if (arguments.resume) take_up_map(arguments.out, run, source, options.pipeline);
-  follow_camera(run, source, arguments.common.quiet, [] { return std::string(); });
-  if (run.is_interrupted()) write_map_state(out.path(), run, source, options.pipeline);
-  const RoomMap map = finish_map(run, out, {arguments, options, table.to_yaml(false), {}});
+  RoomMap map;
+  accompany(view.get(), [&] {
+    follow_camera(run, source, arguments.common.quiet, view.get(),
+                  [&] { return status_line(run); });
+    if (run.is_interrupted()) write_map_state(out.path(), run, source, options.pipeline);
+    map = finish_map(run, out, {arguments, options, table.to_yaml(false), {}});
+  });
   if (map.interrupted && !arguments.common.quiet) {
     std::printf("interrupted; --resume goes on from here\n");
   }
@@ -124,15 +145,8 @@ int map_recording(const MapArguments& arguments, const ProgramOptions& options,
     if (map.interrupted) return;
     write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures);
   });
+  if (view) view->show_result(map);
   return status_of(map);
-}
-
-/// How mapping goes, in one line.
-std::string live_status(const MapRun& run, const LiveInput& input) {
-  if (run.frames().empty()) return "";
-  const std::string losses = input.losses();
-  return std::string(status_name(run.frames().back().tracking.status)) + ", " +
-         std::to_string(run.voxel_count()) + " voxels" + (losses.empty() ? "" : ", " + losses);
 }
 
 int map_device(const MapArguments& arguments, const ProgramOptions& options,
@@ -143,13 +157,19 @@ int map_device(const MapArguments& arguments, const ProgramOptions& options,
                      " does not come again. 'tofmap record' makes a recording of it");
   }
   OutputFolder out(arguments.out);
+  const std::unique_ptr<LiveView> view = open_view(arguments);
   LiveInput input(uri, options, {});
   if (is_interrupted()) return exit_status::interrupted;
   MapRun run(input.sensor(), options.pipeline);
-  follow_camera(run, input.frames(), arguments.common.quiet,
-                [&] { return live_status(run, input); });
-  const RoomMap map =
-      finish_map(run, out, {arguments, options, table.to_yaml(false), input.report()});
+  const auto remark = [&] {
+    const std::string losses = input.losses();
+    return status_line(run) + (losses.empty() ? "" : ", " + losses);
+  };
+  RoomMap map;
+  accompany(view.get(), [&] {
+    follow_camera(run, input.frames(), arguments.common.quiet, view.get(), remark);
+    map = finish_map(run, out, {arguments, options, table.to_yaml(false), input.report()});
+  });
   const std::string losses = input.losses();
   if (!losses.empty() && !arguments.common.quiet) {
     std::printf("not mapped: %s; see report.json\n", losses.c_str());
@@ -157,6 +177,7 @@ int map_device(const MapArguments& arguments, const ProgramOptions& options,
   add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
     write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
   });
+  if (view) view->show_result(map);
   const std::string silence = input.silence();
   if (!silence.empty()) throw InputError(silence);
   return status_of(map);
@@ -183,6 +204,7 @@ void add_map_command(CLI::App& program, Outcome& outcome) {
   app->add_option("--method", arguments->method, "how to unwrap: " + unwrap_method_names(", "));
   app->add_flag("--resume", arguments->resume,
                 "go on where an interrupted run with this --out ended");
+  app->add_flag("--view", arguments->view, "show the map in a window as it grows");
   app->add_flag("--pcd", arguments->pcd, "write map.pcd, too");
   arguments->common.add_to(*app);
   app->callback([arguments, &outcome] { outcome.status = run_map(*arguments); });

@@ -42,6 +42,18 @@ int write_frames(LiveInput& input, SequenceWriter& writer, const RecordArguments
   return writer.count();
 }
 
+/// OpenNI2 does not tell when it could not write its file, so that is read once more.
+void check_oni(const std::filesystem::path& file, const DeviceOptions& options, int frames) {
+  int played = 0;
+  naming("the recording cannot be read back, was the disk full?", [&] {
+    OpenNi2Source copy(file.string(), {.options = options});
+    while (played < frames && copy.next()) ++played;
+  });
+  if (played == frames) return;
+  throw InputError(file.string() + ": plays only " + std::to_string(played) + " of " +
+                   std::to_string(frames) + " frames; was the disk full?");
+}
+
 int run_record(const RecordArguments& arguments) {
   ProgramOptions options;
   const OptionTable table = arguments.common.resolve("record", options);
@@ -72,7 +84,10 @@ int run_record(const RecordArguments& arguments) {
   }
   const std::string silence = input->silence();
   input.reset();  // ends the .oni file
-  if (oni) oni->commit();
+  if (oni) {
+    check_oni(oni->path(), options.device, written);
+    oni->commit();
+  }
   if (!silence.empty()) throw InputError(silence);
   return is_interrupted() ? exit_status::interrupted : exit_status::done;
 }

@@ -18,7 +18,7 @@
 #include <tofmap/filters/filter_chain.hpp>
 #include <tofmap/visualization/cloud_pictures.hpp>
 #include <tofmap/visualization/map_pictures.hpp>
-#include <tofmap/visualization/viewer.hpp>
+#include <tofmap/visualization/window.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -136,7 +136,11 @@ View make_view(const ViewArguments& arguments, const ProgramOptions& options) {
 
 void open_window(const View& view, const std::string& title) {
   try {
-    show(view.drawing, view.viewpoint, title);
+    Window window(title);
+    window.show(view.drawing);
+    window.look_from(view.viewpoint);
+    window.set_text("", "left button: turn, middle: shift, wheel: zoom, q: close");
+    window.run();
   } catch (const DrawingError& error) {
     throw UsageError(std::string(error.what()) + "; --screenshot FILE.png needs none");
   }

@@ -111,7 +111,7 @@ TEST(DeviceImageCodec, RefusesImagesOfAnotherSize) {
 }
 
 TEST(FrameTag, SaysAllThatIsFixed) {
-  for (const int width_px : {8, 40, 200}) {  // over several rows, and in one
+  for (const int width_px : {8, 40, 400}) {  // over several rows, and in one
     const SensorModel model = sensor(width_px);
     const DeviceImageCodec codec(model, {1e-3, true});
     const StackedImages images = codec.stack(random_frame(model.camera), 4'000'000'000U);
@@ -132,6 +132,18 @@ TEST(FrameTag, SaysAllThatIsFixed) {
       EXPECT_TRUE(tag->scale.is_z_depth);
     }
   }
+}
+
+TEST(FrameTag, HoldsNoPixelsThatOniFilesLose) {
+  const SensorModel model = sensor();
+  const DeviceImageCodec codec(model, {});
+  DualFrequencyFrame frame = random_frame(model.camera);
+  frame.timestamp_s = 4 - 1e-15;  // most of its bits are ones, so words of 16 would be 65535
+  const StackedImages images = codec.stack(frame, 0xffffffff);
+  const Eigen::Index rows = tag_rows(model.camera.width_px);
+  EXPECT_LE(images.range.bottomRows(rows).maxCoeff(), 255);
+  EXPECT_EQ(read_tag(images.range)->timestamp_s, frame.timestamp_s);
+  EXPECT_EQ(read_tag(images.range)->number, 0xffffffff);
 }
 
 TEST(FrameTag, IsNotReadWhereItIsDamagedOrMissing) {

@@ -3,13 +3,13 @@
 
 #include <atomic>
 #include <chrono>
-#include <functional>
 #include <stdexcept>
 #include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <support/waiting.hpp>
 
 #include <tofmap/acquisition/queued_source.hpp>
 #include <tofmap/core/error.hpp>
@@ -42,12 +42,6 @@ class Counter final : public FrameSource {
   std::atomic<int> asked_ = 0;
 };
 
-void wait_until(const std::function<bool()>& holds) {
-  using namespace std::chrono_literals;
-  for (int i = 0; i < 2000 && !holds(); ++i) std::this_thread::sleep_for(1ms);
-  ASSERT_TRUE(holds());
-}
-
 std::vector<int> all_of(QueuedSource& queue) {
   std::vector<int> indices;
   while (const auto frame = queue.next()) indices.push_back(frame->index);
@@ -57,7 +51,8 @@ std::vector<int> all_of(QueuedSource& queue) {
 TEST(QueuedSource, BlocksTheSourceAndLosesNothing) {
   Counter source(50);
   QueuedSource queue(source, 3, LateFrames::block);
-  wait_until([&] { return source.asked() == 4; });  // three wait, and one is held
+  EXPECT_TRUE(
+      test::comes_true([&] { return source.asked() == 4; }));  // three wait, and one is held
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_EQ(source.asked(), 4);
   const std::vector<int> indices = all_of(queue);
@@ -69,7 +64,7 @@ TEST(QueuedSource, BlocksTheSourceAndLosesNothing) {
 TEST(QueuedSource, DropsTheOldestAndCountsThem) {
   Counter source(50);
   QueuedSource queue(source, 3, LateFrames::drop_oldest);
-  wait_until([&] { return source.asked() == 50 && queue.dropped() == 47; });
+  EXPECT_TRUE(test::comes_true([&] { return source.asked() == 50 && queue.dropped() == 47; }));
   EXPECT_THAT(all_of(queue), testing::ElementsAre(47, 48, 49));
 }
 
@@ -87,7 +82,7 @@ TEST(QueuedSource, CanBeGivenUpWhileTheSourceIsBlocked) {
   Counter source(50);
   {
     QueuedSource queue(source, 1, LateFrames::block);
-    wait_until([&] { return source.asked() == 2; });
+    EXPECT_TRUE(test::comes_true([&] { return source.asked() == 2; }));
   }
   EXPECT_EQ(source.asked(), 2);
 }

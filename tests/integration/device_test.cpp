@@ -3,11 +3,15 @@
 
 #include "program.hpp"
 
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <fstream>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
+#include <support/waiting.hpp>
 
 #include <tofmap/acquisition/png_image.hpp>
 #include <tofmap/acquisition/sequence.hpp>
@@ -100,6 +104,59 @@ TEST_F(Device, IsRecordedToAnOniFileThatPlaysTheSameRanges) {
   ASSERT_EQ(again.status, 0) << again.err;
   expect_same_ranges(frame_count);
   EXPECT_EQ(record(uri(), {"--oni", oni.string()}).status, 3) << "it is there already";
+}
+
+TEST_F(Device, IsKeptAsASequenceWhereTheDiskIsTooFullForAnOniFile) {
+  const fs::path oni = folder_.path() / "device.oni";
+  const Finished finished =
+      run_program({"record", uri(), "--out", out_.string(), "--oni", oni.string()},
+                  {.max_file_bytes = 200'000});
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, HasSubstr("was the disk full?"));
+  expect_same_ranges(frame_count);
+  EXPECT_EQ(names_in(folder_.path()), (std::vector<std::string>{"out", "recording"}));
+}
+
+TEST_F(Device, IsNotRecordedToAFullDisk) {
+  const Finished finished =
+      run_program({"record", uri(), "--out", out_.string()}, {.max_file_bytes = 1000});
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, HasSubstr("cannot be written"));
+  EXPECT_EQ(names_in(folder_.path()), std::vector<std::string>{"recording"});
+}
+
+/// A device that goes on until somebody ends it.
+class EndlessDevice : public Device {
+ protected:
+  Finished interrupt(const std::string& command, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {command, uri("repeat=0"), "--out", out_.string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    RunningProgram program(arguments);
+    EXPECT_TRUE(comes_true([&] { return !unfinished_result(folder_.path()).empty(); }));
+    std::this_thread::sleep_for(std::chrono::seconds(3));  // some frames, even under sanitizers
+    program.send(SIGINT);
+    return program.wait();
+  }
+};
+
+TEST_F(EndlessDevice, IsRecordedUntilInterrupted) {
+  const fs::path oni = folder_.path() / "device.oni";
+  const Finished finished = interrupt("record", {"--oni", oni.string()});
+  EXPECT_EQ(finished.status, 130) << finished.err;
+  const int recorded = *SequenceReader(out_).frame_count();
+  EXPECT_GT(recorded, 0);
+  EXPECT_EQ(images()["half_missing"], 0);
+  EXPECT_EQ(record(oni.string()).status, 0);
+  EXPECT_GE(SequenceReader(out_).frame_count(), recorded);
+}
+
+TEST_F(EndlessDevice, IsMappedUntilInterrupted) {
+  const Finished finished = interrupt("map");
+  EXPECT_EQ(finished.status, 130) << finished.err;
+  const auto report = read_json(out_ / "report.json");
+  EXPECT_EQ(report["acquisition"]["end"], "as asked");
+  EXPECT_FALSE(read_trajectory(out_ / "trajectory.txt").empty());
+  EXPECT_TRUE(fs::exists(out_ / "map.ply"));
 }
 
 TEST_F(Device, EndsAfterAsManyFramesAsAreWanted) {

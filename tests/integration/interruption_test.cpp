@@ -10,6 +10,7 @@
 #include <thread>
 
 #include <gmock/gmock.h>
+#include <support/waiting.hpp>
 
 namespace tofmap::test {
 namespace {
@@ -37,21 +38,14 @@ class Interruption : public WithRecording {
     }
   }
 
-  fs::path partial_folder() const {
-    for (const std::string& name : names_in(folder_.path())) {
-      if (name.starts_with("out.partial-")) return folder_.path() / name;
-    }
-    return {};
-  }
+  fs::path partial_folder() const { return unfinished_result(folder_.path()); }
 
   /// Waits until unwrapping has written a frame; false if it never does.
   bool has_begun(RunningProgram& program) const {
-    for (int i = 0; i < 6000 && !program.has_ended(); ++i) {
-      const fs::path folder = partial_folder();
-      if (fs::exists(folder / "range" / "000000.png")) return true;
-      std::this_thread::sleep_for(10ms);
-    }
-    return false;
+    return comes_true([&] {
+             return program.has_ended() || fs::exists(partial_folder() / "range" / "000000.png");
+           }) &&
+           !program.has_ended();
   }
 
   std::vector<std::string> unwrap_arguments() const {
@@ -85,7 +79,7 @@ class InterruptedMap : public Interruption {
   void SetUp() override {
     Interruption::SetUp();
     RunningProgram program(map_arguments(out_));
-    for (int i = 0; i < 3000 && partial_folder().empty(); ++i) std::this_thread::sleep_for(10ms);
+    EXPECT_TRUE(comes_true([&] { return !partial_folder().empty(); }));
     std::this_thread::sleep_for(300ms);  // some frames; none would do as well
     program.send(SIGINT);
     finished_ = program.wait();

@@ -97,6 +97,13 @@ std::vector<std::string> names_in(const fs::path& folder) {
   return names;
 }
 
+fs::path unfinished_result(const fs::path& folder) {
+  for (const std::string& name : names_in(folder)) {
+    if (name.starts_with("out.partial-")) return folder / name;
+  }
+  return {};
+}
+
 void WithRecording::SetUp() {
   const Finished simulated = run_program(
       {"simulate", "room", "--out", sequence_.string(), "--frames", std::to_string(frames), "--set",

@@ -53,6 +53,9 @@ nlohmann::json read_json(const std::filesystem::path& file);
 /// Names of what a folder holds, sorted.
 std::vector<std::string> names_in(const std::filesystem::path& folder);
 
+/// The folder that a run whose result is to be `out` there fills meanwhile; empty if there is none.
+std::filesystem::path unfinished_result(const std::filesystem::path& folder);
+
 /// A small simulated recording of a room, and a place for results beside it.
 class WithRecording : public testing::Test {
  protected:

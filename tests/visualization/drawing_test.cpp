@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <tofmap/visualization/drawing.hpp>
-#include <tofmap/visualization/viewer.hpp>
+#include <tofmap/visualization/window.hpp>
 
 namespace tofmap {
 namespace {
@@ -90,9 +90,9 @@ TEST(Drawing, IsTheSameEveryTime) {
   EXPECT_EQ(draw(drawing, ahead(), 64, 48).pixels, draw(drawing, ahead(), 64, 48).pixels);
 }
 
-TEST(Viewer, SaysSoWhereThereIsNoDisplay) {
+TEST(Window, SaysSoWhereThereIsNoDisplay) {
   unsetenv("DISPLAY");
-  EXPECT_THROW(show({}, {}, "nothing"), DrawingError);
+  EXPECT_THROW(Window("a wall"), DrawingError);
 }
 
 }  // namespace

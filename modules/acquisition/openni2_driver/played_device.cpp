@@ -184,8 +184,19 @@ bool PlayedDevice::wait_for_stream() {
     beginning_.reset();                                // time stands still
     constexpr std::chrono::milliseconds longest(100);  // a start in between was not heard
     changed_.wait_for(lock, longest);
+    is_starting_ = true;
   }
   return false;
+}
+
+/// OpenNI2 takes images only once it has noted that a stream was started, and a client may start
+/// another one.
+void PlayedDevice::let_start() {
+  std::unique_lock lock(mutex_);
+  constexpr std::chrono::milliseconds ample(50);
+  if (std::exchange(is_starting_, false)) {
+    changed_.wait_for(lock, ample, [this] { return is_closing_ || is_unplugged_; });
+  }
 }
 
 /// Until an image of this timestamp is due; false if the device is to end instead.
@@ -263,6 +274,7 @@ void PlayedDevice::deliver(const DualFrequencyFrame& frame) {
 void PlayedDevice::play() {
   try {
     while (wait_for_stream()) {
+      let_start();
       const int unplug_at = request_.player.unplug_at;
       if (unplug_at > 0 && frames_ >= unplug_at) {
         update([this] { is_unplugged_ = true; });

@@ -55,6 +55,7 @@ class PlayedDevice final : public oni::driver::DeviceBase {
 
   void play();
   bool wait_for_stream();
+  void let_start();
   bool wait_for_turn(double timestamp_s);
   void deliver(const DualFrequencyFrame& frame);
   void deliver_images(const ImageU16& range, const ImageU16& amplitude, double timestamp_s);
@@ -73,9 +74,10 @@ class PlayedDevice final : public oni::driver::DeviceBase {
   std::mutex streams_mutex_;
   std::list<ImageStream> streams_;
 
-  std::mutex mutex_;  ///< of the five that follow
+  std::mutex mutex_;  ///< of the six that follow
   std::condition_variable changed_;
   double speed_;
+  bool is_starting_ = true;             ///< no image since the first stream was started
   std::optional<Beginning> beginning_;  ///< none after the speed has changed
   bool is_triggered_ = false;
   bool is_unplugged_ = false;

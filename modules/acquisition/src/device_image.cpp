@@ -18,7 +18,7 @@
 namespace tofmap {
 namespace {
 
-constexpr double most_steps = 65535;
+constexpr double most_steps = 65534;  // .oni files lose the depth 65535, it comes back as 1
 
 /// "tofmap", and the layout of what follows.
 constexpr std::array<std::uint16_t, 4> magic = {0x6f74, 0x6d66, 0x7061, 1};
@@ -114,25 +114,39 @@ std::size_t tag_words() {
   return count;
 }
 
+constexpr int pixels_per_word = 2;  // a byte each: .oni files do not keep every depth
+
 void write_tag(ImageU16& image, const std::vector<std::uint16_t>& words) {
   const Eigen::Index rows = tag_rows(static_cast<int>(image.cols()));
   image.bottomRows(rows).setZero();
-  std::ranges::copy(words, image.row(image.rows() - rows).data());
+  std::uint16_t* pixel = image.row(image.rows() - rows).data();
+  for (const std::uint16_t word : words) {
+    *pixel++ = word & 0xff;
+    *pixel++ = word >> 8;
+  }
+}
+
+std::vector<std::uint16_t> words_at(const std::uint16_t* pixel) {
+  std::vector<std::uint16_t> words(tag_words());
+  for (std::uint16_t& word : words) {
+    word = static_cast<std::uint16_t>(pixel[0] | pixel[1] << 8);
+    pixel += pixels_per_word;
+  }
+  return words;
 }
 
 }  // namespace
 
 int tag_rows(int width_px) {
-  const int words = static_cast<int>(tag_words());
-  return (words + width_px - 1) / width_px;
+  const int pixels = pixels_per_word * static_cast<int>(tag_words());
+  return (pixels + width_px - 1) / width_px;
 }
 
 std::optional<FrameTag> read_tag(const ImageU16& image) {
   if (image.cols() == 0) return std::nullopt;
   const Eigen::Index rows = tag_rows(static_cast<int>(image.cols()));
   if (image.rows() < rows) return std::nullopt;
-  const std::uint16_t* first = image.row(image.rows() - rows).data();
-  const std::vector<std::uint16_t> words(first, first + tag_words());
+  const std::vector<std::uint16_t> words = words_at(image.row(image.rows() - rows).data());
   if (!std::equal(magic.begin(), magic.end(), words.begin())) return std::nullopt;
   const std::size_t checked = words.size() - checksum_words;
   const std::uint32_t sum = words[checked] | std::uint32_t{words[checked + 1]} << 16;

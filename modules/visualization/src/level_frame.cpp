@@ -94,19 +94,11 @@ LevelFrame turned_by_a_quarter(const LevelFrame& frame) {
 
 }  // namespace
 
-LevelFrame level_frame(const MapCloud& map, const Trajectory& trajectory) {
-  LevelFrame frame;
-  if (map.empty()) return frame;
-  const Eigen::Vector3d up = upward_of_room(map, upward_of_cameras(trajectory));
-  frame.level_from_map =
-      Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  frame.level_from_map =
-      Eigen::AngleAxisd(-wall_angle_rad(map, frame.level_from_map), Eigen::Vector3d::UnitZ()) *
-      frame.level_from_map;
-
+Eigen::AlignedBox3d level_box(const MapCloud& map, const Eigen::Matrix3d& level_from_map) {
+  if (map.empty()) return {};
   std::array<std::vector<double>, 3> coordinates;
   for (const MapPoint& point : map) {
-    const Eigen::Vector3d p = frame.level_from_map * point.getVector3fMap().cast<double>();
+    const Eigen::Vector3d p = level_from_map * point.getVector3fMap().cast<double>();
     for (int axis = 0; axis < 3; ++axis) {
       coordinates[static_cast<std::size_t>(axis)].push_back(p[axis]);
     }
@@ -117,7 +109,19 @@ LevelFrame level_frame(const MapCloud& map, const Trajectory& trajectory) {
     std::tie(low[axis], high[axis]) =
         limits(std::move(coordinates[static_cast<std::size_t>(axis)]));
   }
-  frame.box_m = Eigen::AlignedBox3d(low, high);
+  return {low, high};
+}
+
+LevelFrame level_frame(const MapCloud& map, const Trajectory& trajectory) {
+  LevelFrame frame;
+  if (map.empty()) return frame;
+  const Eigen::Vector3d up = upward_of_room(map, upward_of_cameras(trajectory));
+  frame.level_from_map =
+      Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  frame.level_from_map =
+      Eigen::AngleAxisd(-wall_angle_rad(map, frame.level_from_map), Eigen::Vector3d::UnitZ()) *
+      frame.level_from_map;
+  frame.box_m = level_box(map, frame.level_from_map);
   return frame.box_m.sizes().y() > frame.box_m.sizes().x() ? turned_by_a_quarter(frame) : frame;
 }
 

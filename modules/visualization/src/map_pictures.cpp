@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace tofmap {
 namespace {
@@ -95,6 +96,22 @@ Drawing map_drawing(const MapCloud& map, const Trajectory& trajectory, const Lev
         (frame.level_from_map * pose.world_from_camera.translation()).cast<float>());
   }
   return {{std::move(layer)}, {std::move(path)}, {}};
+}
+
+LineLayer camera_outline(const Pose& level_from_camera) {
+  LineLayer outline{{}, colors::path, 2.5F};
+  const auto go_to = [&](double x_m, double y_m, double z_m) {
+    outline.points_m.push_back((level_from_camera * Eigen::Vector3d(x_m, y_m, z_m)).cast<float>());
+  };
+  // One line: each side of the base, then in to the eye and out again.
+  for (const auto& [x_m, y_m] :
+       {std::pair(-0.25, -0.2), std::pair(0.25, -0.2), std::pair(0.25, 0.2), std::pair(-0.25, 0.2),
+        std::pair(-0.25, -0.2)}) {
+    go_to(x_m, y_m, 0.5);
+    go_to(0, 0, 0);
+    go_to(x_m, y_m, 0.5);
+  }
+  return outline;
 }
 
 Viewpoint viewpoint_outside(const Eigen::AlignedBox3d& box_m) {

@@ -134,7 +134,9 @@ vtkSmartPointer<vtkActor> mesh_actor(const MeshLayer& layer) {
   return actor;
 }
 
-void set_camera(vtkRenderer& renderer, const Viewpoint& viewpoint) {
+}  // namespace
+
+void look_from(vtkRenderer& renderer, const Viewpoint& viewpoint) {
   vtkCamera* camera = renderer.GetActiveCamera();
   camera->SetPosition(viewpoint.eye_m.data());
   camera->SetFocalPoint(viewpoint.target_m.data());
@@ -147,25 +149,29 @@ void set_camera(vtkRenderer& renderer, const Viewpoint& viewpoint) {
   renderer.ResetCameraClippingRange();
 }
 
-}  // namespace
+void replace_drawing(vtkRenderer& renderer, const Drawing& drawing) {
+  renderer.RemoveAllViewProps();
+  for (const PointLayer& layer : drawing.points) {
+    if (layer.points_m.empty()) continue;
+    renderer.AddActor(layer.normals.empty() ? dots_actor(layer) : squares_actor(layer));
+  }
+  for (const LineLayer& layer : drawing.lines) {
+    if (layer.points_m.size() > 1) renderer.AddActor(line_actor(layer));
+  }
+  for (const MeshLayer& layer : drawing.meshes) {
+    if (!layer.triangles.empty()) renderer.AddActor(mesh_actor(layer));
+  }
+  renderer.ResetCameraClippingRange();
+}
 
 vtkSmartPointer<vtkRenderer> make_renderer(const Drawing& drawing, const Viewpoint& viewpoint) {
   auto renderer = vtkSmartPointer<vtkRenderer>::New();
   renderer->SetBackground(1, 1, 1);
-  for (const PointLayer& layer : drawing.points) {
-    if (layer.points_m.empty()) continue;
-    renderer->AddActor(layer.normals.empty() ? dots_actor(layer) : squares_actor(layer));
-  }
-  for (const LineLayer& layer : drawing.lines) {
-    if (layer.points_m.size() > 1) renderer->AddActor(line_actor(layer));
-  }
-  for (const MeshLayer& layer : drawing.meshes) {
-    if (!layer.triangles.empty()) renderer->AddActor(mesh_actor(layer));
-  }
   vtkNew<vtkLight> light;
   light->SetLightTypeToHeadlight();
   renderer->AddLight(light);
-  set_camera(*renderer, viewpoint);
+  replace_drawing(*renderer, drawing);
+  look_from(*renderer, viewpoint);
   return renderer;
 }
 

@@ -41,7 +41,7 @@ std::optional<FrameTag> read_tag(const ImageU16& image);
 /// phase that rounds to a range of 0 is written as a whole wavelength, which is the same.
 class DeviceImageCodec {
  public:
-  /// Throws UsageError if 16 bits of the scale's unit do not hold both wavelengths.
+  /// Throws UsageError if 65534 steps of the scale's unit do not hold both wavelengths.
   DeviceImageCodec(const SensorModel& sensor, const RangeScale& scale);
 
   /// Both halves and the tag.

@@ -63,7 +63,7 @@ class RoomMapper {
   Trajectory trajectory() const;  ///< every frame that was placed, as it is believed now
   Trajectory keyframe_trajectory() const;
   MapCloud surface() const;
-  std::size_t voxel_count() const;  ///< of all parts of the map
+  std::size_t voxel_count() const;  ///< those with too few points to be written among them
   const std::vector<Loop>& loops() const { return loops_; }
 
   /// Puts all that was found out aside, to go on from there later: a mapper that was made with the

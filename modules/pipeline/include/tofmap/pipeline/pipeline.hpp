@@ -111,8 +111,8 @@ class MapRun {
   const std::vector<FrameRecord>& frames() const { return frames_; }
   bool is_interrupted() const { return is_interrupted_; }
 
-  /// Of the map so far, voxels with too few points to be written among them.
-  std::size_t voxel_count() const { return mapper_.voxel_count(); }
+  /// The map so far.
+  const RoomMapper& mapper() const { return mapper_; }
 
   /// All that is needed to go on; a run of the same sensor and options that loads it comes to the
   /// same result, to the bit. Only the build that wrote it can read it. Reading throws

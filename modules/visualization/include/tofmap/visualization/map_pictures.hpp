@@ -23,8 +23,14 @@ struct LevelFrame {
 /// upward direction is −y of the map. Deterministic.
 LevelFrame level_frame(const MapCloud& map, const Trajectory& trajectory);
 
+/// The box of a level frame that was found before, of a map that has grown since.
+Eigen::AlignedBox3d level_box(const MapCloud& map, const Eigen::Matrix3d& level_from_map);
+
 /// The map in its level frame, coloured by height above the lowest surface, and the camera's path.
 Drawing map_drawing(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame);
+
+/// The pyramid that a camera sees, as far as half a metre.
+LineLayer camera_outline(const Pose& level_from_camera);
 
 /// From outside and above a corner, so that all of the box is in the picture.
 Viewpoint viewpoint_outside(const Eigen::AlignedBox3d& box_m);
