@@ -42,6 +42,15 @@ int write_frames(LiveInput& input, SequenceWriter& writer, const RecordArguments
   return writer.count();
 }
 
+/// The folder is replaced as a whole at the end.
+void refuse_inside(const std::filesystem::path& oni, const OutputFolder& out) {
+  if (oni.empty()) return;
+  const auto file = std::filesystem::absolute(oni).lexically_normal();
+  const auto inside = file.lexically_relative(out.final_path());
+  if (inside.empty() || *inside.begin() == "..") return;
+  throw UsageError("--oni " + oni.string() + " lies in the folder of --out; put it elsewhere");
+}
+
 /// OpenNI2 does not tell when it could not write its file, so that is read once more.
 void check_oni(const std::filesystem::path& file, const DeviceOptions& options, int frames) {
   int played = 0;
@@ -57,7 +66,8 @@ void check_oni(const std::filesystem::path& file, const DeviceOptions& options, 
 int run_record(const RecordArguments& arguments) {
   ProgramOptions options;
   const OptionTable table = arguments.common.resolve("record", options);
-  OutputFolder out(arguments.out, Replaces::recordings);
+  OutputFolder out(arguments.out);
+  refuse_inside(arguments.oni, out);
   std::optional<OutputFile> oni;
   if (!arguments.oni.empty()) oni.emplace(arguments.oni, [](const auto&) { return false; });
   std::optional<LiveInput> input;
@@ -69,8 +79,15 @@ int run_record(const RecordArguments& arguments) {
     written = write_frames(*input, writer, arguments);
   }
   if (written == 0) {
-    if (is_interrupted()) return exit_status::interrupted;
-    throw InputError(arguments.uri + ": delivered no whole frame; nothing was written");
+    if (is_interrupted()) {
+      std::fputs("tofmap: interrupted before the first frame; nothing was written\n", stderr);
+      return exit_status::interrupted;
+    }
+    const std::string losses = input->losses();
+    throw InputError(arguments.uri + ": delivered no whole frame" +
+                     (losses.empty() ? "" : " (" + losses + ")") +
+                     "; nothing was written. Do device.layout, device.depth, device.first and the "
+                     "frequencies fit the device?");
   }
   const nlohmann::ordered_json report = {{"frames", written}, {"acquisition", input->report()}};
   out.write_text("report.json", report.dump(1) + "\n");
@@ -104,7 +121,7 @@ void add_record_command(CLI::App& program, Outcome& outcome) {
   app->add_option("--out", arguments->out, "folder for the recording")->required();
   app->add_option("--oni", arguments->oni, ".oni file to record to, too");
   app->add_option("--frames", arguments->frames, "end after so many frames; 0: at the end")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, 100'000'000));
   arguments->common.add_to(*app);
   app->callback([arguments, &outcome] { outcome.status = run_record(*arguments); });
 }

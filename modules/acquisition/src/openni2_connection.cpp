@@ -98,8 +98,12 @@ OpenNi2Connection::~OpenNi2Connection() {
 
 void OpenNi2Connection::open(const std::string& uri) {
   const bool is_file = uri.find("://") == std::string::npos;
+  if (is_file && std::filesystem::is_directory(uri)) {
+    throw InputError(uri + ": is a folder; tofmap://" + std::filesystem::absolute(uri).string() +
+                     " plays it as a camera if it is a recording");
+  }
   if (is_file && !std::filesystem::is_regular_file(uri)) {
-    throw InputError(uri + ": there is no such file");
+    throw InputError(uri + ": there is no such file; a device has a URI with ://");
   }
   check(device_.open(uri.c_str()),
         uri + (is_file ? ": cannot be opened; is it an .oni file, and whole?"

@@ -86,10 +86,10 @@ class Window::Impl {
     window_->SetSize(width_px, height_px);
     window_->SetWindowName(title.c_str());
     window_->SetMultiSamples(0);
-    renderer_ = make_renderer({}, {});
-    window_->AddRenderer(renderer_);
     hang(*upper_, 1);
     hang(*lower_, 0);
+    show({});
+    window_->AddRenderer(renderer_);
     interactor_->SetRenderWindow(window_);
     interactor_->SetInteractorStyle(style_);
     style_->on_key = [this](const std::string& key) { take_key(key); };
@@ -137,7 +137,7 @@ class Window::Impl {
 
   OpenDisplay display_ = open_display();
   vtkNew<vtkRenderWindow> window_;
-  vtkSmartPointer<vtkRenderer> renderer_;
+  vtkSmartPointer<vtkRenderer> renderer_ = make_renderer({}, {});
   vtkNew<vtkRenderWindowInteractor> interactor_;
   vtkNew<WindowStyle> style_;
   vtkNew<vtkTextActor> upper_;
