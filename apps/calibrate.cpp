@@ -18,6 +18,9 @@
 #include <tofmap/acquisition/phase_error_fit.hpp>
 #include <tofmap/acquisition/wall_reference.hpp>
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/image.hpp>
+#include <tofmap/core/text.hpp>
+#include <tofmap/pipeline/beat_survey.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap::app {
@@ -62,6 +65,13 @@ const char* name_of(Reference reference) {
 /// Throws InputError if distances are given for frames that the recording does not have.
 WallDistances wall_distances(const std::filesystem::path& file, const SequenceReader& source) {
   WallDistances distances_m = read_wall_distances(file);
+  constexpr double farthest_m = 100;  // no wall fills an image from there
+  for (const auto& [frame, distance_m] : distances_m) {
+    if (distance_m <= farthest_m) continue;
+    throw InputError(file.string() +
+                     formatted(": has a wall at %g m in frame %d; are its distances metres?",
+                               distance_m, frame));
+  }
   const int last = distances_m.rbegin()->first;
   if (last < *source.frame_count()) return distances_m;
   throw InputError(file.string() + ": has a distance for frame " + std::to_string(last) + ", but " +
@@ -99,50 +109,88 @@ class ReferenceRanges {
   WallDistances wall_distances_m_;
 };
 
-/// Pixels of all frames that are looked at, as many as tell enough; fewer if the user ends it.
-std::vector<RangePair> collect_pairs(const SequenceReader& source, ReferenceRanges& reference,
-                                     int every_frame, bool quiet) {
-  constexpr long most_pairs = 2'000'000;
+/// Pixels of the frames that were looked at.
+struct CollectedSamples {
+  std::vector<RangeSample> samples;
+  std::size_t frames = 0;
+  std::vector<DualFrequencyFrame> first;  ///< of the frames
+  std::size_t repeated = 0;  ///< frames that say what the one before said, and were left out
+};
+
+/// As many as tell enough; fewer if the user ends it.
+CollectedSamples collect_samples(const SequenceReader& source, ReferenceRanges& reference,
+                                 int every_frame, bool quiet) {
+  constexpr long most_samples = 2'000'000;
   const CameraModel& camera = source.sensor().camera;
   const int frames = *source.frame_count();
   const long pixels = 1L * camera.width_px * camera.height_px * (1 + (frames - 1) / every_frame);
-  const int stride = static_cast<int>(1 + (pixels - 1) / most_pairs);
-  std::vector<RangePair> pairs;
+  const int stride = static_cast<int>(1 + (pixels - 1) / most_samples);
+  CollectedSamples collected;
+  ImageF last_phase;
   Progress progress("comparing ranges, frame", frames, quiet);
   for (int i = 0; i < frames && !is_interrupted(); i += every_frame) {
     progress.show(i);
     const SourcedFrame sourced = source.read(i);
     if (!sourced.frame) continue;
+    const bool is_repeated = same_values(sourced.frame->phase_a, last_phase);
+    last_phase = sourced.frame->phase_a;
+    collected.repeated += is_repeated ? 1 : 0;
+    if (is_repeated) continue;
     const std::optional<ImageF> reference_m = reference.of(*sourced.frame);
     if (!reference_m) continue;
-    append_range_pairs(*sourced.frame, source.sensor().modulation, *reference_m, i % stride, stride,
-                       pairs);
+    append_range_samples(*sourced.frame, source.sensor(), *reference_m, i % stride, stride,
+                         collected.samples);
+    ++collected.frames;
+    constexpr std::size_t enough = 12;
+    if (collected.first.size() < enough) collected.first.push_back(*sourced.frame);
   }
-  return pairs;
+  return collected;
 }
 
-void print_error(const char* name, const PhaseError& error) {
-  std::printf("%s: offset %+.1f mm", name, 1000 * error.offset_m);
-  for (const WiggleHarmonic& harmonic : error.harmonics) {
-    std::printf(", harmonic %d %.1f mm", harmonic.order,
-                1000 * std::hypot(harmonic.cosine_m, harmonic.sine_m));
+void print_error(const char* name, const PhaseError& error, double offset_sigma_m) {
+  std::vector<std::string> parts;
+  if (offset_sigma_m > 0) {
+    parts.push_back(formatted("offset %+.1f mm (within %.1f mm)", 1000 * error.offset_m,
+                              1000 * offset_sigma_m));
   }
-  std::printf("%s\n", error.harmonics.empty() ? ", no wiggling above its uncertainty" : "");
+  for (const WiggleHarmonic& harmonic : error.harmonics) {
+    parts.push_back(formatted("harmonic %d %.1f mm", harmonic.order,
+                              1000 * std::hypot(harmonic.cosine_m, harmonic.sine_m)));
+  }
+  if (error.harmonics.empty()) parts.emplace_back("no wiggling above its uncertainty");
+  std::printf("%s: %s\n", name, joined(parts, ", ").c_str());
+}
+
+void print_samples(const CollectedSamples& collected, const SensorModel& sensor) {
+  std::printf("from %zu pixels of %s\n", collected.samples.size(),
+              counted(collected.frames, "frame").c_str());
+  if (collected.repeated > 0) {
+    std::printf("doubtful: %s repeated the one before, and told nothing\n",
+                counted(collected.repeated, "frame").c_str());
+  }
+  const std::optional<BeatSurvey> beat = survey_beat(collected.first, sensor);
+  if (const auto doubt = beat ? pairing_doubt(*beat) : std::nullopt) print_doubts({*doubt});
+  constexpr std::size_t some = 5;
+  if (collected.frames < some) {
+    std::printf("doubtful: in so few frames errors of single surfaces do not average out\n");
+  }
 }
 
 void print_fit(const PhaseErrorFit& fit, Reference reference) {
-  print_error("A", fit.error_a);
-  print_error("B", fit.error_b);
-  std::printf("A measures %+.1f mm more than B%s\n", 1000 * fit.offset_m.value,
+  print_error("A", fit.error_a, fit.offset_sigma_a_m);
+  print_error("B", fit.error_b, fit.offset_sigma_b_m);
+  std::printf("A measures %.1f mm %s than B (within %.1f mm)%s\n",
+              1000 * std::abs(fit.offset_m.value), fit.offset_m.value < 0 ? "less" : "more",
+              1000 * fit.offset_m.sigma,
               reference == Reference::beat ? "; motion between both images is in it" : "");
 }
 
-PhaseErrorFit fit_pairs(const std::vector<RangePair>& pairs, Reference reference,
-                        const SequenceReader& source, const PhaseErrorFitOptions& options) {
+PhaseErrorFit fit_samples(const std::vector<RangeSample>& samples, Reference reference,
+                          const SequenceReader& source, const PhaseErrorFitOptions& options) {
   const Modulation& modulation = source.sensor().modulation;
   return naming(source.folder().string(), [&] {
-    return reference == Reference::beat ? fit_to_beat(pairs, modulation, options)
-                                        : fit_to_references(pairs, modulation, options);
+    return reference == Reference::beat ? fit_to_beat(samples, modulation, options)
+                                        : fit_to_references(samples, modulation, options);
   });
 }
 
@@ -157,17 +205,22 @@ int run_calibrate(const CalibrateArguments& arguments) {
       .orders = harmonic_orders(options.calibration, reference != Reference::beat),
       .max_error_m = options.calibration.max_error_m};
   ReferenceRanges ranges(reference, source, options);
-  const std::vector<RangePair> pairs =
-      collect_pairs(source, ranges, options.calibration.every_frame, quiet);
+  const CollectedSamples collected =
+      collect_samples(source, ranges, options.calibration.every_frame, quiet);
   if (is_interrupted()) return exit_status::interrupted;
-  const PhaseErrorFit fit = fit_pairs(pairs, reference, source, fit_options);
+  const PhaseErrorFit fit = fit_samples(collected.samples, reference, source, fit_options);
   CameraCalibration calibration;
+  const SensorModel& sensor = source.sensor();
+  calibration.with =
+      CalibratedWith{sensor.camera.width_px, sensor.camera.height_px, sensor.modulation};
   calibration.error_a = fit.error_a;
   calibration.error_b = fit.error_b;
   print_fit(fit, reference);
+  print_samples(collected, source.sensor());
   write_calibration(out.path(), calibration,
                     "found by " + std::string(name_of(reference)) + " in " +
-                        source.folder().string() + ", " + std::to_string(pairs.size()) + " pixels");
+                        source.folder().string() + ", " + std::to_string(collected.samples.size()) +
+                        " pixels of " + counted(collected.frames, "frame"));
   out.commit();
   if (!quiet) std::printf("calibration: %s\n", arguments.out.c_str());
   return exit_status::done;

@@ -30,7 +30,8 @@ std::vector<OptionField<CalibrationOptions>> CalibrationOptions::fields() {
        "by the beat, in which motion feigns lower ones"},
       {"every_frame", &O::every_frame, 1, 100000, "", "every how manieth frame is looked at"},
       {"max_error_m", &O::max_error_m, 0.001, 1, "m",
-       "pixels farther off than this, from the middle of all, count as wrong"},
+       "pixels farther off than this, from the middle of all, count as wrong, unless noise "
+       "explains it"},
   };
 }
 

@@ -55,5 +55,6 @@ void add_register_command(CLI::App& program, Outcome& outcome);
 void add_evaluate_command(CLI::App& program, Outcome& outcome);
 void add_view_command(CLI::App& program, Outcome& outcome);
 void add_config_command(CLI::App& program, Outcome& outcome);
+void add_manual_command(CLI::App& program, Outcome& outcome);
 
 }  // namespace tofmap::app

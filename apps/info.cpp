@@ -6,6 +6,7 @@
 #include "options.hpp"
 #include "recording.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -49,8 +50,11 @@ void print_frames(const SequenceReader& source, const RecordingSurvey& survey) {
                 survey.without_amplitude);
   }
   if (survey.beat) {
-    std::printf("both frequencies: A measures %+.1f mm more than B, single pixels within %.0f mm\n",
-                1000 * survey.beat->offset_m, 1000 * survey.beat->spread_m);
+    const double offset_mm = 1000 * survey.beat->offset_m;
+    std::printf("both frequencies: A measures %.1f mm %s than B, single pixels within %.0f mm\n",
+                std::abs(offset_mm), offset_mm < 0 ? "less" : "more", 1000 * survey.beat->spread_m);
+  } else {
+    std::printf("both frequencies: too few pixels with returns at both to compare\n");
   }
   std::printf("damaged frames: %zu\n", survey.damages.size());
   for (const std::string& damage : survey.damages) std::printf("  %s\n", damage.c_str());
@@ -64,9 +68,7 @@ int run_info(const InfoArguments& arguments) {
   const RecordingSurvey survey = survey_recording(source, [] { return !is_interrupted(); });
   print_sensor(source.sensor());
   print_frames(source, survey);
-  for (const std::string& doubt : doubts_about(survey, source.sensor())) {
-    std::printf("doubtful: %s\n", doubt.c_str());
-  }
+  print_doubts(doubts_about(survey, source.sensor()));
   return is_interrupted() ? exit_status::interrupted : exit_status::done;
 }
 

@@ -3,15 +3,17 @@
 
 #include "interruption.hpp"
 
+#include <atomic>
 #include <csignal>
 
 namespace tofmap::app {
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;
+std::atomic<bool> interrupted = false;
+static_assert(std::atomic<bool>::is_always_lock_free);  // else no signal might set it
 
 extern "C" void note_interruption(int signal) {
-  interrupted = 1;
+  interrupted = true;
   std::signal(signal, SIG_DFL);
 }
 
@@ -22,6 +24,6 @@ void watch_for_interruption() {
   std::signal(SIGTERM, note_interruption);
 }
 
-bool is_interrupted() { return interrupted != 0; }
+bool is_interrupted() { return interrupted; }
 
 }  // namespace tofmap::app

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -62,22 +63,23 @@ LiveInput::LiveInput(const std::string& uri, const ProgramOptions& options, cons
     : uri_(uri),
       timeout_s_(options.device.timeout_s),
       source_(uri, settings_of(options, wanted)),
-      queue_(source_, options.live.queue, policy(options.live, source_)) {}
+      queue_(source_, options.live.queue, policy(options.live, source_)),
+      watched_(queue_) {}
 
 std::string LiveInput::losses() const {
   const PairingCounts counts = source_.counts();
   std::string text;
   const auto add = [&](int count, const char* what) {
     if (count == 0) return;
-    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + what;
+    text += (text.empty() ? "" : ", ") + counted(static_cast<std::size_t>(count), what);
   };
-  add(queue_.dropped(), "frames late");
-  add(counts.dropped(), "images unpaired");
-  add(counts.lost, "lost");
+  add(queue_.dropped(), "late frame");
+  add(counts.dropped(), "unpaired image");
+  add(counts.lost, "lost image");
   return text;
 }
 
-nlohmann::ordered_json LiveInput::report() const {
+nlohmann::ordered_json LiveInput::report() {
   const PairingCounts counts = source_.counts();
   return {{"uri", uri_},
           {"end", end_name(source_.end())},

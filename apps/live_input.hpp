@@ -3,8 +3,11 @@
 #pragma once
 
 #include "options.hpp"
+#include "watched_source.hpp"
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -26,14 +29,17 @@ class LiveInput {
   /// Opens it, as the options say. Throws as OpenNi2Source does.
   LiveInput(const std::string& uri, const ProgramOptions& options, const Wanted& wanted);
 
-  FrameSource& frames() { return queue_; }
+  FrameSource& frames() { return watched_; }
   const SensorModel& sensor() const { return source_.sensor(); }
 
   /// Frames that came too late or not whole, for a line of status; empty if there are none.
   std::string losses() const;
 
   /// The same in full, for a report, and why it ended.
-  nlohmann::ordered_json report() const;
+  nlohmann::ordered_json report();
+
+  /// What its first frames are doubted for: whether A and B belong together (docs/cameras.md).
+  std::vector<std::string> doubts() { return watched_.doubts(); }
 
   /// If the device fell silent, a message that says so; else empty.
   std::string silence() const;
@@ -43,6 +49,7 @@ class LiveInput {
   double timeout_s_;
   OpenNi2Source source_;
   QueuedSource queue_;
+  WatchedSource watched_;
 };
 
 }  // namespace tofmap::app

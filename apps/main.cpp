@@ -39,6 +39,7 @@ int run(int argc, char** argv) {
   add_evaluate_command(program, outcome);
   add_view_command(program, outcome);
   add_config_command(program, outcome);
+  add_manual_command(program, outcome);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

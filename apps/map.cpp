@@ -11,6 +11,7 @@
 #include "output_folder.hpp"
 #include "progress.hpp"
 #include "recording.hpp"
+#include "watched_source.hpp"
 
 #include <cstdio>
 #include <functional>
@@ -57,6 +58,7 @@ struct MapOutput {
   const MapArguments& arguments;
   const ProgramOptions& options;
   std::string options_yaml;
+  std::vector<std::string> doubts;     ///< about what was recorded
   nlohmann::ordered_json acquisition;  ///< of a device; else null
 };
 
@@ -69,6 +71,7 @@ void write_result(const OutputFolder& out, const RoomMap& map, const MapOutput& 
   write_trajectory(out.path() / "keyframes.txt", map.keyframes);
   nlohmann::ordered_json report;
   report["summary"] = summary_json(map);
+  report["doubts"] = output.doubts;
   if (!output.acquisition.is_null()) report["acquisition"] = output.acquisition;
   for (const FrameRecord& record : map.frames) report["frames"].push_back(frame_json(record));
   out.write_text("report.json", report.dump(1) + "\n");
@@ -88,7 +91,10 @@ RoomMap finish_map(MapRun& run, OutputFolder& out, const MapOutput& output) {
   check_result(map);
   write_result(out, map, output);
   out.commit();
-  if (!output.arguments.common.quiet) print_summary(map, out.final_path());
+  if (!output.arguments.common.quiet) {
+    print_summary(map, out.final_path());
+    print_doubts(output.doubts);
+  }
   return map;
 }
 
@@ -135,10 +141,11 @@ int map_recording(const MapArguments& arguments, const ProgramOptions& options,
     follow_camera(run, source, arguments.common.quiet, view.get(),
                   [&] { return status_line(run); });
     if (run.is_interrupted()) write_map_state(out.path(), run, source, options.pipeline);
-    map = finish_map(run, out, {arguments, options, table.to_yaml(false), {}});
+    map =
+        finish_map(run, out, {arguments, options, table.to_yaml(false), doubts_about(source), {}});
   });
   if (map.interrupted && !arguments.common.quiet) {
-    std::printf("interrupted; --resume goes on from here\n");
+    std::printf("interrupted; --resume goes on from %s\n", out.final_path().c_str());
   }
   add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
     write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
@@ -168,7 +175,8 @@ int map_device(const MapArguments& arguments, const ProgramOptions& options,
   RoomMap map;
   accompany(view.get(), [&] {
     follow_camera(run, input.frames(), arguments.common.quiet, view.get(), remark);
-    map = finish_map(run, out, {arguments, options, table.to_yaml(false), input.report()});
+    map = finish_map(run, out,
+                     {arguments, options, table.to_yaml(false), input.doubts(), input.report()});
   });
   const std::string losses = input.losses();
   if (!losses.empty() && !arguments.common.quiet) {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
 
 namespace tofmap::app {
 
@@ -16,16 +17,20 @@ std::vector<OptionField<RunOptions>> RunOptions::fields() {
            "threads to use; 0: all. The result is the same for any number"}};
 }
 
+const std::vector<std::string>& commands_with_options() {
+  static const std::vector<std::string> commands = {
+      "simulate", "record", "info", "calibrate", "unwrap", "map", "register", "evaluate", "view"};
+  return commands;
+}
+
 OptionTable option_table(const std::string& command, ProgramOptions& options) {
   const auto is_any_of = [&](std::initializer_list<std::string_view> names) {
     return command.empty() || std::ranges::find(names, command) != names.end();
   };
-  if (!is_any_of({"simulate", "record", "info", "calibrate", "unwrap", "map", "register",
-                  "evaluate", "view"})) {
-    throw UsageError(
-        "'" + command +
-        "' is no command with options; there are: simulate, record, info, calibrate, unwrap, "
-        "map, register, evaluate, view");
+  const std::vector<std::string>& known = commands_with_options();
+  if (!command.empty() && std::ranges::find(known, command) == known.end()) {
+    throw UsageError("'" + command +
+                     "' is no command with options; there are: " + joined(known, ", "));
   }
   if (command == "unwrap") options.pipeline.filters.chain = smoothing_chain();
   OptionTable table;

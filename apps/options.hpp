@@ -7,6 +7,7 @@
 #include "pictures.hpp"
 
 #include <string>
+#include <vector>
 
 #include <tofmap/acquisition/openni2_source.hpp>
 #include <tofmap/acquisition/simulator.hpp>
@@ -48,6 +49,9 @@ struct ProgramOptions {
   EvaluationOptions evaluation;
   PictureOptions pictures;
 };
+
+/// The commands that take options by --set and --config.
+const std::vector<std::string>& commands_with_options();
 
 /// The groups of one command, or of all if `command` is empty, bound to `options`, which must
 /// outlive the table. Throws UsageError for a command that has no options.

@@ -3,8 +3,10 @@
 
 #include "output_folder.hpp"
 
+#include <cstdio>
 #include <fstream>
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <tofmap/core/error.hpp>
@@ -23,6 +25,13 @@ fs::path normalised(const fs::path& folder) {
 
 fs::path sibling(const fs::path& folder, const std::string& suffix) {
   return folder.parent_path() / (folder.filename().string() + suffix + std::to_string(getpid()));
+}
+
+/// Tells what is at a path from what was there before or comes later; empty if there is nothing.
+std::string identity(const fs::path& path) {
+  struct stat status {};
+  if (lstat(path.c_str(), &status) != 0) return "";
+  return std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
 }
 
 /// Whether a recording lies in the folder or below.
@@ -51,12 +60,22 @@ void refuse_foreign(const fs::path& folder, Replaces replaces) {
   }
 }
 
+bool may_be_replaced(const fs::path& folder, Replaces replaces) {
+  try {
+    refuse_foreign(folder, replaces);
+    return true;
+  } catch (const std::exception&) {  // what cannot be read is of others as well
+    return false;
+  }
+}
+
 }  // namespace
 
 OutputFolder::OutputFolder(const fs::path& folder, Replaces replaces)
     : folder_(normalised(folder)), partial_(sibling(folder_, ".partial-")), replaces_(replaces) {
   std::error_code error;
   if (fs::exists(folder_, error)) refuse_foreign(folder_, replaces_);
+  earlier_ = identity(folder_);
   fs::create_directories(folder_.parent_path(), error);
   if (!error) {
     fs::remove_all(partial_, error);
@@ -89,21 +108,34 @@ void OutputFolder::write_text(const std::string& name, const std::string& text) 
   if (!out) throw InputError(path.string() + ": cannot be written; is the disk full?");
 }
 
+/// Chooses another name if that of the folder was taken meanwhile, by another run for example.
+void OutputFolder::make_way() {
+  if (identity(folder_) == earlier_ && may_be_replaced(folder_, replaces_)) return;
+  const fs::path wanted = folder_;
+  for (int i = 2; !identity(folder_).empty(); ++i) {
+    folder_ = wanted.parent_path() / (wanted.filename().string() + "-" + std::to_string(i));
+  }
+}
+
 void OutputFolder::commit() {
-  refuse_foreign(folder_, replaces_);
-  const fs::path earlier = sibling(folder_, ".replaced-");
+  const fs::path wanted = folder_;
+  make_way();
+  const fs::path replaced = sibling(folder_, ".replaced-");
   std::error_code error;
-  const bool replaces = fs::exists(folder_);
-  if (replaces) fs::rename(folder_, earlier, error);
+  const bool replaces = fs::exists(folder_, error);
+  if (replaces) fs::rename(folder_, replaced, error);
   if (!error) fs::rename(partial_, folder_, error);
+  is_committed_ = true;  // what was made is kept at any rate
   if (error) {
     std::error_code ignored;
-    if (replaces && !fs::exists(folder_)) fs::rename(earlier, folder_, ignored);
+    if (replaces && !fs::exists(folder_, ignored)) fs::rename(replaced, folder_, ignored);
     throw InputError(folder_.string() + ": the result cannot be moved there (" + error.message() +
-                     ")");
+                     "); it is in " + partial_.string());
   }
-  is_committed_ = true;
-  if (replaces) fs::remove_all(earlier, error);
+  if (replaces) fs::remove_all(replaced, error);
+  if (folder_ == wanted) return;
+  std::fprintf(stderr, "tofmap: something else came to %s meanwhile; the result is in %s\n",
+               wanted.c_str(), folder_.c_str());
 }
 
 }  // namespace tofmap::app

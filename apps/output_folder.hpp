@@ -29,7 +29,7 @@ class OutputFolder {
 
   /// Where to write until commit.
   const std::filesystem::path& path() const { return partial_; }
-  /// Where the result will be.
+  /// Where the result will be, and after `commit` where it is.
   const std::filesystem::path& final_path() const { return folder_; }
 
   /// Makes a folder inside and returns its path.
@@ -38,10 +38,15 @@ class OutputFolder {
   /// Writes a text file inside. Throws InputError if it cannot be written whole.
   void write_text(const std::string& name, const std::string& text) const;
 
-  /// Moves everything into place.
+  /// Moves everything into place. If something has come there meanwhile, the result goes beside it
+  /// instead, and a message says so: nothing of either is lost. If it cannot be moved it stays
+  /// where it was written, and the InputError names that.
   void commit();
 
  private:
+  void make_way();
+
+  std::string earlier_;  ///< what stood in the folder's place at the beginning
   std::filesystem::path folder_;
   std::filesystem::path partial_;
   Replaces replaces_;

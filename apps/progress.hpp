@@ -8,10 +8,11 @@
 
 namespace tofmap::app {
 
-/// Tells on stderr how far a run has come: one line that renews itself on a terminal, nothing
-/// elsewhere or when quiet.
+/// Tells on stderr how far work has come that takes more than two seconds: on a terminal one line
+/// that renews itself, elsewhere a line every few seconds, nothing when quiet.
 class Progress {
  public:
+  /// `total` is not known of devices.
   Progress(std::string what, std::optional<int> total, bool quiet);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -21,12 +22,18 @@ class Progress {
   void show(int done, const std::string& remark = "");
 
  private:
+  using Clock = std::chrono::steady_clock;
+
+  std::string bar(int done) const;
+  std::string numbers(int done, double seconds) const;
+
   std::string what_;
   std::optional<int> total_;
-  bool is_shown_ = false;
-  bool has_line_ = false;
-  std::chrono::steady_clock::time_point start_;
-  std::chrono::steady_clock::time_point last_;
+  bool is_quiet_;
+  bool is_terminal_;
+  bool has_line_ = false;  ///< on a terminal, which is to be ended
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point next_;
 };
 
 }  // namespace tofmap::app

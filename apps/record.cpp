@@ -8,6 +8,7 @@
 #include "output_file.hpp"
 #include "output_folder.hpp"
 #include "progress.hpp"
+#include "recording.hpp"
 
 #include <cstdio>
 #include <memory>
@@ -18,6 +19,7 @@
 
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -26,6 +28,7 @@ struct RecordArguments {
   std::string uri;
   std::filesystem::path out;
   std::filesystem::path oni;
+  std::string calibration;
   int frames = 0;
   CommonArguments common;
 };
@@ -65,7 +68,8 @@ void check_oni(const std::filesystem::path& file, const DeviceOptions& options, 
 
 int run_record(const RecordArguments& arguments) {
   ProgramOptions options;
-  const OptionTable table = arguments.common.resolve("record", options);
+  OptionTable table = arguments.common.resolve("record", options);
+  if (!arguments.calibration.empty()) table.set("camera.calibration_file", arguments.calibration);
   OutputFolder out(arguments.out);
   refuse_inside(arguments.oni, out);
   std::optional<OutputFile> oni;
@@ -89,15 +93,20 @@ int run_record(const RecordArguments& arguments) {
                      "; nothing was written. Do device.layout, device.depth, device.first and the "
                      "frequencies fit the device?");
   }
-  const nlohmann::ordered_json report = {{"frames", written}, {"acquisition", input->report()}};
+  const nlohmann::ordered_json report = {{"frames", written},
+                                         {"interrupted", is_interrupted()},
+                                         {"doubts", input->doubts()},
+                                         {"acquisition", input->report()}};
   out.write_text("report.json", report.dump(1) + "\n");
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit();
   const std::string losses = input->losses();
   if (!arguments.common.quiet) {
-    std::printf("%d frames of '%s' recorded: %s\n", written, arguments.uri.c_str(),
+    std::printf("%s of '%s' recorded: %s\n",
+                counted(static_cast<std::size_t>(written), "frame").c_str(), arguments.uri.c_str(),
                 out.final_path().c_str());
     if (!losses.empty()) std::printf("not recorded: %s; see report.json\n", losses.c_str());
+    print_doubts(input->doubts());
   }
   const std::string silence = input->silence();
   input.reset();  // ends the .oni file
@@ -120,6 +129,8 @@ void add_record_command(CLI::App& program, Outcome& outcome) {
       ->required();
   app->add_option("--out", arguments->out, "folder for the recording")->required();
   app->add_option("--oni", arguments->oni, ".oni file to record to, too");
+  app->add_option("--calibration", arguments->calibration,
+                  "what 'tofmap calibrate' found of the camera; the recording needs none then");
   app->add_option("--frames", arguments->frames, "end after so many frames; 0: at the end")
       ->check(CLI::Range(0, 100'000'000));
   arguments->common.add_to(*app);

@@ -3,6 +3,8 @@
 
 #include "recording.hpp"
 
+#include <cstdio>
+
 #include <CLI/CLI.hpp>
 
 namespace tofmap::app {
@@ -19,6 +21,10 @@ void RecordingArguments::apply(OptionTable& table) const {
 CameraCalibration calibration_of(const CameraOptions& options) {
   if (options.calibration_file.empty()) return {};
   return read_calibration(options.calibration_file);
+}
+
+void print_doubts(const std::vector<std::string>& doubts) {
+  for (const std::string& doubt : doubts) std::printf("doubtful: %s\n", doubt.c_str());
 }
 
 SequenceReader open_recording(const std::filesystem::path& sequence, const CameraOptions& options) {

@@ -5,6 +5,8 @@
 #include "options.hpp"
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include <tofmap/acquisition/sequence.hpp>
 
@@ -29,6 +31,9 @@ struct RecordingArguments {
 
 /// What the options say of a camera; nothing if they name no file.
 CameraCalibration calibration_of(const CameraOptions& options);
+
+/// On stdout, a line each.
+void print_doubts(const std::vector<std::string>& doubts);
 
 /// Opens a recording of a calibrated camera.
 SequenceReader open_recording(const std::filesystem::path& sequence, const CameraOptions& options);

@@ -18,6 +18,7 @@
 #include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/acquisition/tum_recording.hpp>
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -31,23 +32,48 @@ struct SimulateArguments {
   CommonArguments common;
 };
 
+struct Written {
+  int frames = 0;
+  std::vector<std::string> left_out = {};  ///< what was wrong with frames that could not be made
+};
+
 /// What is recorded, and how: frame after frame is written, until keep_going(done) says no.
 struct Recording {
   int frame_count = 0;
   std::string name;
-  std::function<int(const std::filesystem::path& folder,
-                    const std::function<bool(int done)>& keep_going)>
+  std::function<Written(const std::filesystem::path& folder,
+                        const std::function<bool(int done)>& keep_going)>
       write;
 };
 
 Recording simulated(const std::string& scene, const ProgramOptions& options) {
-  auto simulator = std::make_shared<const Simulator>(find_scene(scene, options.simulator.seed),
-                                                     options.simulator);
+  auto simulator =
+      std::make_shared<const Simulator>(find_scene(scene, options.simulator.seed),
+                                        options.simulator, [] { return !is_interrupted(); });
   return {*simulator->frame_count(), scene,
           [simulator](const std::filesystem::path& folder, const auto& keep_going) {
-            return simulate_sequence(*simulator, folder,
-                                     [&](int done, int) { return keep_going(done); });
+            return Written{simulate_sequence(*simulator, folder,
+                                             [&](int done, int) { return keep_going(done); })};
           }};
+}
+
+/// Images that cannot be read are left out.
+Written write_wrapped(const TumRecording& source, int count, const std::filesystem::path& folder,
+                      const std::function<bool(int done)>& keep_going) {
+  SequenceWriter writer(folder, source.sensor());
+  Written written;
+  for (int i = 0; i < count && keep_going(i); ++i) {
+    std::optional<TumRecording::Frame> frame;
+    try {
+      frame = source.read(i);
+    } catch (const InputError& error) {
+      written.left_out.emplace_back(error.what());
+      continue;
+    }
+    writer.add(frame->frame, frame->world_from_camera, frame->range_truth_m);
+  }
+  written.frames = writer.count();
+  return written;
 }
 
 Recording wrapped_again(const std::filesystem::path& folder, const ProgramOptions& options) {
@@ -56,12 +82,7 @@ Recording wrapped_again(const std::filesystem::path& folder, const ProgramOption
   const int count = wanted > 0 ? std::min(wanted, source->frame_count()) : source->frame_count();
   return {count, folder.string(),
           [source, count](const std::filesystem::path& out, const auto& keep_going) {
-            SequenceWriter writer(out, source->sensor());
-            for (int i = 0; i < count && keep_going(i); ++i) {
-              const TumRecording::Frame frame = source->read(i);
-              writer.add(frame.frame, frame.world_from_camera, frame.range_truth_m);
-            }
-            return writer.count();
+            return write_wrapped(*source, count, out, keep_going);
           }};
 }
 
@@ -76,7 +97,7 @@ int run_simulate(const SimulateArguments& arguments) {
   const Recording recording = arguments.tum.empty() ? simulated(arguments.scene, options)
                                                     : wrapped_again(arguments.tum, options);
   OutputFolder out(arguments.out, Replaces::recordings);
-  int written = 0;
+  Written written;
   {
     Progress progress("simulating frame", recording.frame_count, arguments.common.quiet);
     written = recording.write(out.path(), [&](int done) {
@@ -84,13 +105,23 @@ int run_simulate(const SimulateArguments& arguments) {
       return !is_interrupted();
     });
   }
+  if (written.frames == 0 && !written.left_out.empty()) {
+    throw InputError("no frame could be made: " + written.left_out.front());
+  }
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit();
+  if (!written.left_out.empty()) {
+    std::fprintf(stderr, "tofmap: %s left out; the first: %s\n",
+                 counted(written.left_out.size(), "frame").c_str(),
+                 written.left_out.front().c_str());
+  }
   if (!arguments.common.quiet) {
-    std::printf("%d of %d frames of '%s' simulated: %s\n", written, recording.frame_count,
+    std::printf("%d of %d frames of '%s' simulated: %s\n", written.frames, recording.frame_count,
                 recording.name.c_str(), out.final_path().c_str());
   }
-  return written < recording.frame_count ? exit_status::interrupted : exit_status::done;
+  const bool is_whole =
+      written.frames + static_cast<int>(written.left_out.size()) == recording.frame_count;
+  return is_whole ? exit_status::done : exit_status::interrupted;
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a periodic range error does to trajectories, with and without loops.
+"""What a periodic range error does to trajectories: with and without loops, or calibrated.
 
-    benchmarks/range_wiggle.py [BUILD_DIR] SEQ...
+    benchmarks/range_wiggle.py BUILD_DIR SEQ...
+    benchmarks/range_wiggle.py --calibrated BUILD_DIR SEQ...
 
 Real cameras' correlation is no pure sine: their ranges are off by some centimetres, four times a
 wavelength. That error, a sin(8 pi phase), is added to both images of copies of the recordings, which
@@ -48,19 +49,43 @@ def with_wiggle(sequence, out, error_m):
             cv2.imwrite(f"{out}/{folder}/{name}", wiggled.astype(numpy.uint16))
 
 
-def errors_mm(tofmap, sequence, out, close_loops):
+def errors_mm(tofmap, sequence, out, *settings):
     subprocess.run([tofmap, "evaluate", sequence, "--out", out, "--quiet",
                     "--set", "evaluation.methods=joint", "--set", "pictures.frames=0",
-                    "--set", f"loops.close={close_loops}"], check=True, stdout=subprocess.DEVNULL)
+                    *(word for one in settings for word in ("--set", one))],
+                   check=True, stdout=subprocess.DEVNULL)
     with open(f"{out}/report.json", encoding="utf-8") as file:
         report = json.load(file)
     return (1000 * report["trajectory"]["joint"]["ate_rmse_m"],
             1000 * report["map"]["joint"]["accuracy_m"])
 
 
+def with_and_without_loops(tofmap, folder):
+    return [errors_mm(tofmap, f"{folder}/seq", f"{folder}/out", f"loops.close={close}")
+            for close in ("false", "true")]
+
+
+def calibrated(tofmap, folder):
+    """As it is, and calibrated by the recording itself: by the beat, and by truth."""
+    found = [errors_mm(tofmap, f"{folder}/seq", f"{folder}/out")]
+    for reference in ("beat", "truth"):
+        file = f"{folder}/{reference}.yaml"
+        subprocess.run([tofmap, "calibrate", f"{folder}/seq", "--out", file, "--quiet",
+                        "--set", f"calibration.reference={reference}",
+                        "--set", "calibration.every_frame=10"],
+                       check=True, stdout=subprocess.DEVNULL)
+        found.append(errors_mm(tofmap, f"{folder}/seq", f"{folder}/out",
+                               f"camera.calibration_file={file}"))
+    return found
+
+
 def main():
-    tofmap, sequences = f"{sys.argv[1]}/apps/tofmap", sys.argv[2:]
-    print("| trajectory / map error, mm, loops open; closed | "
+    words = sys.argv[1:]
+    is_calibrated = words[0] == "--calibrated"
+    tofmap, *sequences = words[1:] if is_calibrated else words
+    tofmap += "/apps/tofmap"
+    cases = "not calibrated; by the beat; by truth" if is_calibrated else "loops open; closed"
+    print(f"| trajectory / map error, mm, {cases} | "
           + " | ".join(f"{100 * e:g} cm" for e in ERRORS_M) + " |")
     print("|---|" + "---|" * len(ERRORS_M))
     for sequence in sequences:
@@ -68,8 +93,7 @@ def main():
         for error_m in ERRORS_M:
             with tempfile.TemporaryDirectory() as folder:
                 with_wiggle(sequence, f"{folder}/seq", error_m)
-                found = [errors_mm(tofmap, f"{folder}/seq", f"{folder}/out", close)
-                         for close in ("false", "true")]
+                found = (calibrated if is_calibrated else with_and_without_loops)(tofmap, folder)
             cells.append("; ".join(f"{ate:.1f} / {map_error:.1f}" for ate, map_error in found))
         print(f"| {os.path.basename(os.path.normpath(sequence))} | " + " | ".join(cells) + " |",
               flush=True)

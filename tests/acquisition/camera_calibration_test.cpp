@@ -85,6 +85,7 @@ TEST_F(CalibrationFile, ReadsBackAsTheSameBits) {
   calibration.error_a = wiggle();
   calibration.error_b = {.offset_m = 1.0 / 3, .harmonics = {}, .table_m = {0.1, 1e-7, -0.3}};
   calibration.saturation_amplitude = 4000;
+  calibration.with = CalibratedWith{4, 3, {29e6, 30.9999e6}};
   const auto file = folder_.path() / "camera.yaml";
   write_calibration(file, calibration);
   const CameraCalibration read = read_calibration(file);
@@ -96,6 +97,9 @@ TEST_F(CalibrationFile, ReadsBackAsTheSameBits) {
   EXPECT_EQ(read.error_b.offset_m, 1.0 / 3);
   EXPECT_EQ(read.error_b.table_m, calibration.error_b.table_m);
   EXPECT_EQ(read.saturation_amplitude, 4000);
+  ASSERT_TRUE(read.with);
+  EXPECT_EQ(read.with->height_px, 3);
+  EXPECT_EQ(read.with->modulation.frequency_b_hz, 30.9999e6);
 }
 
 TEST_F(CalibrationFile, ThatIsWrongIsNamedWithItsKey) {
@@ -106,13 +110,40 @@ TEST_F(CalibrationFile, ThatIsWrongIsNamedWithItsKey) {
   EXPECT_THAT(complaint(head + "error_a: {ofset_m: 1}\n"), testing::HasSubstr("error_a.ofset_m"));
   EXPECT_THAT(complaint(head + "error_b: {offset_m: far}\n"),
               testing::HasSubstr("error_b.offset_m"));
-  EXPECT_THAT(complaint(head + "error_b: {offset_m: .nan}\n"), testing::HasSubstr("error_b"));
+  EXPECT_THAT(complaint(head + "error_b: {offset_m: .nan}\n"),
+              testing::HasSubstr("error_b.offset_m"));
+  EXPECT_THAT(complaint(head + "error_b: {offset_m: 1e300}\n"),
+              testing::HasSubstr("error_b.offset_m"));
+  EXPECT_THAT(complaint(head + "error_a: {table_m: [0, .inf]}\n"),
+              testing::HasSubstr("error_a.table_m"));
+  EXPECT_THAT(complaint(head + "error_a: {}\nerror_a: {}\n"), testing::HasSubstr("twice"));
+  EXPECT_THAT(complaint(head + "error_a: {harmonics: [{order: 4, cosine_m: 0, sine_m: 0}, "
+                               "{order: 4, cosine_m: 0, sine_m: 0}]}\n"),
+              testing::HasSubstr("order 4 twice"));
+  EXPECT_THAT(complaint(head + "saturation_amplitude: 1e9\n"), testing::HasSubstr("saturation"));
+  EXPECT_THAT(complaint(head + "camera: {width: 176, height: 144, fx: 1e9, fy: 128, cx: 88, "
+                               "cy: 72}\n"),
+              testing::HasSubstr("fx"));
   EXPECT_THAT(complaint(head + "error_a: {harmonics: [{order: 0, cosine_m: 0, sine_m: 0}]}\n"),
               testing::HasSubstr("order"));
   EXPECT_THAT(complaint(head + "error_a: {harmonics: 4}\n"), testing::HasSubstr("list"));
   EXPECT_THAT(complaint(head + "saturation_amplitude: -1\n"), testing::HasSubstr("saturation"));
   EXPECT_THAT(complaint(head + "camera: {width: 4}\n"), testing::HasSubstr("camera.height"));
   EXPECT_THAT(complaint("["), testing::HasSubstr("camera.yaml"));
+}
+
+TEST(Calibration, ThatNoCameraCouldHaveIsRefused) {
+  SensorModel sensor;
+  sensor.modulation = {29e6, 31e6};
+  CameraCalibration calibration;
+  // Of order 4, this much rises as fast as the range where it is steepest.
+  const double steepest_m = sensor.modulation.wavelength_b_m() / (8 * pi);
+  calibration.error_b.harmonics = {{4, 0, 0.98 * steepest_m}};
+  EXPECT_NO_THROW(calibrated(sensor, calibration));
+  calibration.error_b.harmonics = {{4, 0, 1.02 * steepest_m}};
+  EXPECT_THROW(calibrated(sensor, calibration), InputError);
+  calibration.error_b = {.table_m = {0, 5}};
+  EXPECT_THROW(calibrated(sensor, calibration), InputError);
 }
 
 TEST(Calibration, OfAnotherCameraIsRefused) {
@@ -125,6 +156,19 @@ TEST(Calibration, OfAnotherCameraIsRefused) {
   EXPECT_EQ(calibrated(sensor, calibration).camera.fx_px, 2.5);
   EXPECT_EQ(calibrated(sensor, calibration).saturation_amplitude, 900);
   calibration.camera->width_px = 5;
+  EXPECT_THROW(calibrated(sensor, calibration), InputError);
+}
+
+TEST(Calibration, FoundWithOtherFrequenciesOrImagesIsRefused) {
+  SensorModel sensor;
+  sensor.camera = {.width_px = 4, .height_px = 3, .fx_px = 2, .fy_px = 2, .cx_px = 1.5, .cy_px = 1};
+  sensor.modulation = {29e6, 31e6};
+  CameraCalibration calibration;
+  calibration.with = CalibratedWith{4, 3, sensor.modulation};
+  EXPECT_NO_THROW(calibrated(sensor, calibration));
+  calibration.with->modulation = {80e6, 100e6};
+  EXPECT_THROW(calibrated(sensor, calibration), InputError);
+  calibration.with = CalibratedWith{3, 4, sensor.modulation};
   EXPECT_THROW(calibrated(sensor, calibration), InputError);
 }
 

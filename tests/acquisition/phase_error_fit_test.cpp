@@ -14,7 +14,7 @@ namespace tofmap {
 namespace {
 
 constexpr Modulation modulation{29e6, 31e6};
-constexpr int pair_count = 100000;
+constexpr int sample_count = 100000;
 constexpr double noise_m = 0.02;
 
 /// What a camera with an error measures at a range: its error is a function of the phase that it
@@ -25,23 +25,39 @@ double measured_m(double range_m, double wavelength_m, const PhaseError& error) 
   return measured;
 }
 
-/// Pairs of ranges all over 0.5–9 m, seen with errors and noise.
-std::vector<RangePair> pairs_of(const PhaseError& error_a, const PhaseError& error_b,
-                                bool ranges_are_known, int count = pair_count) {
+/// Samples of ranges all over 0.5–9 m, seen with errors and noise, which is evenly spread over
+/// surfaces from bright to dark.
+struct Sampling {
+  bool ranges_are_known = true;
+  int count = sample_count;
+  double least_noise_m = noise_m;
+  double most_noise_m = noise_m;
+};
+
+std::vector<RangeSample> samples_of(const PhaseError& error_a, const PhaseError& error_b,
+                                    const Sampling& sampling = {}) {
   std::mt19937 random(1);
-  std::normal_distribution<double> noise(0, noise_m);
+  std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> ranges(0.5, 9);
-  std::vector<RangePair> pairs;
-  for (int i = 0; i < count; ++i) {
+  std::uniform_real_distribution<double> noises(sampling.least_noise_m, sampling.most_noise_m);
+  std::vector<RangeSample> samples;
+  for (int i = 0; i < sampling.count; ++i) {
     const double range_m = ranges(random);
-    const double a_m = measured_m(range_m, modulation.wavelength_a_m(), error_a) + noise(random);
-    const double b_m = measured_m(range_m, modulation.wavelength_b_m(), error_b) + noise(random);
-    const double reference_m = ranges_are_known ? range_m : (a_m + b_m) / 2;
-    pairs.push_back(
-        {static_cast<float>(a_m), static_cast<float>(b_m), static_cast<float>(reference_m)});
+    const double sigma_m = noises(random);
+    const double a_m =
+        measured_m(range_m, modulation.wavelength_a_m(), error_a) + sigma_m * normal(random);
+    const double b_m =
+        measured_m(range_m, modulation.wavelength_b_m(), error_b) + sigma_m * normal(random);
+    const double reference_m = sampling.ranges_are_known ? range_m : (a_m + b_m) / 2;
+    constexpr double unit = 7;  // noise is known up to a factor
+    const auto relative = static_cast<float>(unit * sigma_m);
+    samples.push_back({static_cast<float>(a_m), static_cast<float>(b_m),
+                       static_cast<float>(reference_m), relative, relative});
   }
-  return pairs;
+  return samples;
 }
+
+constexpr Sampling unknown_ranges{.ranges_are_known = false};
 
 PhaseErrorFitOptions orders(std::vector<int> values) { return {.orders = std::move(values)}; }
 
@@ -53,8 +69,7 @@ PhaseError in_cycles(double wavelength_m) {
 void expect_harmonic_4(const PhaseError& found, const PhaseError& truth) {
   ASSERT_EQ(found.harmonics.size(), 1U) << "the others are within their uncertainty";
   EXPECT_EQ(found.harmonics[0].order, 4);
-  // Noise of 2 cm averages to 0.1 mm over so many pairs; smeared by it over the phase, 3 cm lose
-  // their hundredth part.
+  // Noise of 2 cm averages to 0.1 mm over so many samples.
   EXPECT_NEAR(found.harmonics[0].cosine_m, truth.harmonics[0].cosine_m, 7e-4);
   EXPECT_NEAR(found.harmonics[0].sine_m, truth.harmonics[0].sine_m, 7e-4);
 }
@@ -62,8 +77,7 @@ void expect_harmonic_4(const PhaseError& found, const PhaseError& truth) {
 TEST(FitToReferences, FindsOffsetsAndHarmonicsInNoise) {
   const PhaseError a{.offset_m = 0.04, .harmonics = {{4, 0.004, -0.009}}};
   const PhaseError b{.offset_m = -0.02, .harmonics = {{4, 0.01, 0.02}}};
-  const PhaseErrorFit found =
-      fit_to_references(pairs_of(a, b, true), modulation, orders({2, 4, 8}));
+  const PhaseErrorFit found = fit_to_references(samples_of(a, b), modulation, orders({2, 4, 8}));
   EXPECT_NEAR(found.error_a.offset_m, 0.04, 5e-4);
   EXPECT_NEAR(found.error_b.offset_m, -0.02, 5e-4);
   expect_harmonic_4(found.error_a, a);
@@ -73,55 +87,105 @@ TEST(FitToReferences, FindsOffsetsAndHarmonicsInNoise) {
   EXPECT_NEAR(found.residual_rms_m, noise_m, 5e-4);
 }
 
+/// How large harmonic 4 is found where most surfaces are dark, over how large it is.
+double share_found(const PhaseErrorFit& found, const PhaseError& truth) {
+  for (const WiggleHarmonic& one : found.error_a.harmonics) {
+    if (one.order != 4) continue;
+    return std::hypot(one.cosine_m, one.sine_m) /
+           std::hypot(truth.harmonics[0].cosine_m, truth.harmonics[0].sine_m);
+  }
+  return 0;
+}
+
+TEST(FitToReferences, IsNotMisledByDarkSurfaces) {
+  // Many are farther off than what counts as wrong, 0.15 m: those that are not lean to the median.
+  const PhaseError a = in_cycles(modulation.wavelength_a_m());
+  const PhaseError b = in_cycles(modulation.wavelength_b_m());
+  const auto samples = samples_of(a, b, {.least_noise_m = 0.005, .most_noise_m = 0.3});
+  EXPECT_NEAR(share_found(fit_to_references(samples, modulation, orders({4})), a), 1, 0.02);
+}
+
+TEST(FitToBeat, IsNotMisledByDarkSurfaces) {
+  const PhaseError a = in_cycles(modulation.wavelength_a_m());
+  const PhaseError b = in_cycles(modulation.wavelength_b_m());
+  const auto samples =
+      samples_of(a, b, {.ranges_are_known = false, .least_noise_m = 0.005, .most_noise_m = 0.3});
+  EXPECT_NEAR(share_found(fit_to_beat(samples, modulation, orders({4})), a), 1, 0.02);
+  // Nor where all are alike, and only how far they spread tells their noise.
+  const auto dark =
+      samples_of(a, b, {.ranges_are_known = false, .least_noise_m = 0.05, .most_noise_m = 0.05});
+  EXPECT_NEAR(share_found(fit_to_beat(dark, modulation, orders({4})), a), 1, 0.03)
+      << "their spread has the harmonic in it";
+}
+
 TEST(FitToReferences, LeavesOutWhatIsFarOff) {
-  std::vector<RangePair> pairs = pairs_of({.offset_m = 0.3}, {}, true);
-  for (std::size_t i = 0; i < pairs.size(); i += 10) pairs[i].a_m += 1.5F;  // a mixed pixel
-  const PhaseErrorFit found = fit_to_references(pairs, modulation, orders({4}));
+  std::vector<RangeSample> samples = samples_of({.offset_m = 0.3}, {});
+  for (std::size_t i = 0; i < samples.size(); i += 10) samples[i].a_m += 1.5F;  // a mixed pixel
+  const PhaseErrorFit found = fit_to_references(samples, modulation, orders({4}));
   EXPECT_NEAR(found.error_a.offset_m, 0.3, 5e-4);
 }
 
 TEST(FitToReferences, NeedsPhasesAllOverTheCycle) {
   EXPECT_THROW(fit_to_references({}, modulation, orders({4})), InputError);
-  const std::vector<RangePair> alike(1000, {2.01F, 2, 2});
+  const std::vector<RangeSample> alike(1000, {2.01F, 2, 2});
   EXPECT_THROW(fit_to_references(alike, modulation, orders({4})), InputError);
 }
 
 TEST(FitToBeat, FindsHarmonicsWithoutKnownRanges) {
   const PhaseError a = in_cycles(modulation.wavelength_a_m());
   const PhaseError b = in_cycles(modulation.wavelength_b_m());
-  const PhaseErrorFit found = fit_to_beat(pairs_of(a, b, false), modulation, orders({4, 8}));
+  const PhaseErrorFit found =
+      fit_to_beat(samples_of(a, b, unknown_ranges), modulation, orders({4, 8}));
   expect_harmonic_4(found.error_a, a);
   expect_harmonic_4(found.error_b, b);
 }
 
 TEST(FitToBeat, FindsByHowMuchOffsetsDiffer) {
   const PhaseErrorFit found =
-      fit_to_beat(pairs_of({.offset_m = 0.007}, {}, false), modulation, orders({4}));
+      fit_to_beat(samples_of({.offset_m = 0.007}, {}, unknown_ranges), modulation, orders({4}));
   EXPECT_NEAR(found.offset_m.value, 0.007, 3e-4);
   EXPECT_LT(found.offset_m.sigma, 2e-3);
   EXPECT_EQ(found.error_a.offset_m, 0) << "motion may have feigned it";
 }
 
 TEST(FitToBeat, FindsNothingWhereThereIsNothing) {
-  const PhaseErrorFit found =
-      fit_to_beat(pairs_of({}, {}, false, 20000), modulation, orders({4, 8}));
+  const PhaseErrorFit found = fit_to_beat(
+      samples_of({}, {}, {.ranges_are_known = false, .count = 20000}), modulation, orders({4, 8}));
   EXPECT_TRUE(found.error_a.harmonics.empty());
 }
 
-TEST(AppendRangePairs, TakesTheWrapsThatComeNearestToTheReference) {
+TEST(AppendRangeSamples, TakesTheWrapsThatComeNearestToTheReference) {
   DualFrequencyFrame frame;
   frame.phase_a = ImageF::Constant(1, 4, 0.1F);
   frame.phase_b = ImageF::Constant(1, 4, 0.9F);
   frame.phase_b(0, 1) = NAN;
   ImageF reference_m = ImageF::Constant(1, 4, 10);
   reference_m(0, 2) = NAN;
-  std::vector<RangePair> pairs;
-  append_range_pairs(frame, modulation, reference_m, 0, 1, pairs);
-  ASSERT_EQ(pairs.size(), 2U);
-  EXPECT_NEAR(pairs[0].a_m, 2.1 * modulation.wavelength_a_m(), 1e-5);
-  EXPECT_NEAR(pairs[0].b_m, 1.9 * modulation.wavelength_b_m(), 1e-5);
-  append_range_pairs(frame, modulation, reference_m, 3, 2, pairs);
-  EXPECT_EQ(pairs.size(), 3U);
+  SensorModel sensor;
+  sensor.modulation = modulation;
+  std::vector<RangeSample> samples;
+  append_range_samples(frame, sensor, reference_m, 0, 1, samples);
+  ASSERT_EQ(samples.size(), 2U);
+  EXPECT_NEAR(samples[0].a_m, 2.1 * modulation.wavelength_a_m(), 1e-5);
+  EXPECT_NEAR(samples[0].b_m, 1.9 * modulation.wavelength_b_m(), 1e-5);
+  append_range_samples(frame, sensor, reference_m, 3, 2, samples);
+  EXPECT_EQ(samples.size(), 3U);
+}
+
+TEST(AppendRangeSamples, LeavesSaturatedPixelsOut) {
+  DualFrequencyFrame frame;
+  frame.phase_a = ImageF::Constant(1, 3, 0.1F);
+  frame.phase_b = frame.phase_a;
+  frame.amplitude_a = ImageF::Constant(1, 3, 100);
+  frame.amplitude_b = frame.amplitude_a;
+  frame.amplitude_a(0, 0) = 1000;
+  frame.amplitude_b(0, 2) = 1000;
+  SensorModel sensor;
+  sensor.modulation = modulation;
+  sensor.saturation_amplitude = 1000;
+  std::vector<RangeSample> samples;
+  append_range_samples(frame, sensor, ImageF::Constant(1, 3, 10), 0, 1, samples);
+  EXPECT_EQ(samples.size(), 1U);
 }
 
 }  // namespace

@@ -57,9 +57,4 @@ inline Pose sample_pose(int index) {
   return pose;
 }
 
-/// Equal, with NaN equal to NaN.
-inline bool same_values(const ImageF& a, const ImageF& b) {
-  return same_size(a, b) && ((a == b) || (a.isNaN() && b.isNaN())).all();
-}
-
 }  // namespace tofmap::test

@@ -17,8 +17,6 @@
 namespace tofmap {
 namespace {
 
-using test::same_values;
-
 std::filesystem::path write_sample(const std::filesystem::path& folder, int frames) {
   SequenceWriter writer(folder, test::sample_sensor());
   for (int i = 0; i < frames; ++i) {

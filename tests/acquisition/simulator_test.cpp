@@ -4,6 +4,7 @@
 #include "sample_frames.hpp"
 #include "sample_scenes.hpp"
 
+#include <atomic>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -17,8 +18,6 @@
 
 namespace tofmap {
 namespace {
-
-using test::same_values;
 
 /// Without noise, one ray a pixel, A and B at once: every step away from this is one test's.
 SimulatorOptions plain_options() {
@@ -299,6 +298,16 @@ TEST(Simulator, HandsOutItsFramesInOrderAndEnds) {
     EXPECT_TRUE(same_values(sourced->frame->phase_a, simulator.simulate(i).frame.phase_a));
   }
   EXPECT_FALSE(simulator.next());
+}
+
+TEST(Simulator, EndsAmidAFrameWhenItIsNotToKeepGoing) {
+  std::atomic<int> rows = 0;
+  Simulator simulator(test::facing_wall_scene(3, 0.5), plain_options(),
+                      [&rows] { return ++rows < 40; });
+  EXPECT_FALSE(simulator.next());
+  EXPECT_TRUE(simulator.is_stopped());
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(simulate_sequence(simulator, folder.path() / "out"), 0);
 }
 
 TEST(Simulator, FollowsATrajectoryFile) {

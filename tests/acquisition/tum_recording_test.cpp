@@ -100,6 +100,47 @@ TEST_F(TumFolder, HasTheNoiseWanted) {
   EXPECT_FALSE((recording.read(0).frame.phase_a == recording.read(1).frame.phase_a).all());
 }
 
+TEST_F(TumFolder, HasTheSensorsEffectsWanted) {
+  simulator_.range_noise_m = 0;
+  const TumRecording::Frame ideal = open().read(0);
+  simulator_.wiggle_m = 0.01;
+  const TumRecording::Frame wiggling = open().read(0);
+  const double wavelength_m = open().sensor().modulation.wavelength_a_m();
+  const double largest_m =
+      wavelength_m * double{(wiggling.frame.phase_a - ideal.frame.phase_a)
+                                .isNaN()
+                                .select(0.F, wiggling.frame.phase_a - ideal.frame.phase_a)
+                                .abs()
+                                .maxCoeff()};
+  EXPECT_NEAR(largest_m, 0.01, 0.002) << "all phases occur from 4 to 4.9 m";
+  simulator_.wiggle_m = 0;
+  simulator_.full_well = 200;  // the amplitude at 4 m is 187, and a sample holds twice that
+  EXPECT_LT(open().read(0).frame.amplitude_a.maxCoeff(), ideal.frame.amplitude_a.maxCoeff() - 10);
+  simulator_.full_well = 0;
+  simulator_.max_range_m = 4.2;
+  const ImageF near_only = open().read(0).frame.phase_a;
+  EXPECT_TRUE(
+      (near_only.isNaN() == (ideal.range_truth_m > 4.2F || ideal.range_truth_m.isNaN())).all());
+}
+
+TEST_F(TumFolder, RefusesOptionsThatNeedAScene) {
+  simulator_.multipath_rays = 8;
+  try {
+    open();
+    ADD_FAILURE() << "they were taken";
+  } catch (const UsageError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("simulator.multipath_rays"));
+  }
+}
+
+TEST_F(TumFolder, IsOpenedByTheFirstImageThatCanBeRead) {
+  std::filesystem::remove(path("depth/1.png"));
+  const TumRecording recording = open();
+  EXPECT_EQ(recording.sensor().camera.width_px, 32);
+  EXPECT_THROW(recording.read(0), InputError);
+  EXPECT_FALSE(recording.read(1).frame.phase_a.isNaN().all());
+}
+
 TEST_F(TumFolder, KeepsPosesThatAreNearInTime) {
   const TumRecording recording = open();
   EXPECT_NEAR(recording.read(0).world_from_camera.value().translation().x(), 0.5, 1e-9);

@@ -138,6 +138,25 @@ TEST_F(Calibrate, NamesFramesThatTheRecordingDoesNotHave) {
   EXPECT_THAT(finished.err, testing::HasSubstr("frame 999"));
 }
 
+TEST_F(Calibrate, AsksForTheUnitOfDistancesThatNoRangeReaches) {
+  const fs::path wall = folder_.path() / "wall.txt";
+  std::ofstream(wall) << "0 2500\n";
+  const Finished finished =
+      run_program({"calibrate", sequence_.string(), "--out", (folder_.path() / "c.yaml").string(),
+                   "--set", "calibration.wall_file=" + wall.string()});
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, testing::HasSubstr("metres?"));
+}
+
+TEST_F(Calibrate, DoubtsImagesThatAreMixedUp) {
+  fs::rename(sequence_ / "phase_a", sequence_ / "phase");
+  fs::rename(sequence_ / "phase_b", sequence_ / "phase_a");
+  fs::rename(sequence_ / "phase", sequence_ / "phase_b");
+  const Finished finished =
+      run_program({"calibrate", sequence_.string(), "--out", (folder_.path() / "c.yaml").string()});
+  EXPECT_THAT(finished.out, testing::HasSubstr("mixed up"));
+}
+
 TEST_F(Calibrate, SaysWhatIsMissing) {
   fs::remove_all(sequence_ / "range_truth");
   const Finished none =

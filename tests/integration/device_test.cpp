@@ -144,7 +144,7 @@ TEST_F(Device, ThatDoesNotFitItsConfigurationIsDoubted) {
                                    {"--set", "device.layout=alternating",
                                     "device.frequency_a_hz=90e6", "device.frequency_b_hz=93e6"});
   EXPECT_EQ(finished.status, 3);
-  EXPECT_THAT(finished.err, HasSubstr("images unpaired"));
+  EXPECT_THAT(finished.err, HasSubstr("unpaired images"));
   EXPECT_THAT(finished.err, HasSubstr("device.first"));
 }
 
@@ -176,9 +176,21 @@ TEST_F(EndlessDevice, IsRecordedUntilInterrupted) {
   EXPECT_EQ(finished.status, 130) << finished.err;
   const int recorded = *SequenceReader(out_).frame_count();
   EXPECT_GT(recorded, 0);
-  EXPECT_EQ(read_json(out_ / "report.json")["acquisition"]["end"], "as asked");
+  EXPECT_EQ(read_json(out_ / "report.json")["interrupted"], true);
   EXPECT_EQ(record(oni.string()).status, 0);
   EXPECT_GE(SequenceReader(out_).frame_count(), recorded);
+}
+
+TEST_F(EndlessDevice, IsKeptWhereAnotherRecordingCameToItsFolder) {
+  RunningProgram program({"record", uri("repeat=0"), "--out", out_.string()});
+  ASSERT_TRUE(comes_true([&] { return !unfinished_result(folder_.path()).empty(); }));
+  fs::copy(recording_, out_, fs::copy_options::recursive);
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  program.send(SIGINT);
+  const Finished finished = program.wait();
+  EXPECT_THAT(finished.err, HasSubstr("out-2"));
+  EXPECT_EQ(SequenceReader(out_).frame_count(), frame_count);
+  EXPECT_GT(SequenceReader(folder_.path() / "out-2").frame_count(), 0);
 }
 
 TEST_F(EndlessDevice, IsMappedUntilInterrupted) {
@@ -250,6 +262,32 @@ TEST_F(Device, WhoseLossesAreCounted) {
   EXPECT_EQ(images()["lost"], 2) << "the last one is followed by none that tells";
 }
 
+TEST_F(Device, WhoseImagesDoNotBelongTogetherIsDoubted) {
+  // Each image is of one frequency: its upper half is no A to the B of its lower half.
+  const Finished finished = record(uri("layout=alternating"), {"--set", "device.layout=stacked"});
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_THAT(finished.out, HasSubstr("doubtful: "));
+  EXPECT_THAT(finished.out, HasSubstr("device.layout"));
+  EXPECT_THAT(read_text(out_ / "report.json"), HasSubstr("device.layout"));
+}
+
+TEST_F(Device, WhoseDepthIsNoRangeIsDoubted) {
+  const Finished finished = record(uri("layout=alternating&depth=z"),
+                                   {"--set", "device.layout=alternating", "device.depth=radial"});
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_THAT(finished.out, HasSubstr("device.depth=z"));
+}
+
+TEST(SlowDevice, IsNotWaitedForWhenItIsClosed) {
+  const TemporaryFolder folder;
+  // Many thousand rays a pixel: an image takes hours.
+  const Finished finished =
+      run_program({"record", "tofmap://room?simulator.subpixels=16&simulator.multipath_rays=4096",
+                   "--out", (folder.path() / "out").string(), "--set", "device.timeout_s=0.2"});
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, HasSubstr("device.timeout_s"));
+}
+
 TEST_F(Device, ThatFallsSilentIsNotWaitedForForEver) {
   const Finished finished =
       record("tofmap://" + recording_.string() + "?speed=0.0001", {"--set", "device.timeout_s=1"});
@@ -287,6 +325,7 @@ struct BadUri {
   std::string name;
   std::string uri;
   std::string complaint;
+  int status = 3;
 };
 
 class BadDevice : public testing::TestWithParam<BadUri> {};
@@ -295,7 +334,7 @@ TEST_P(BadDevice, IsNamedAndLeavesNothing) {
   const TemporaryFolder folder;
   const fs::path out = folder.path() / "out";
   const Finished finished = run_program({"record", GetParam().uri, "--out", out.string()});
-  EXPECT_EQ(finished.status, 3);
+  EXPECT_EQ(finished.status, GetParam().status);
   EXPECT_THAT(finished.err, HasSubstr(GetParam().uri));
   EXPECT_THAT(finished.err, HasSubstr(GetParam().complaint));
   EXPECT_FALSE(fs::exists(out));
@@ -303,8 +342,12 @@ TEST_P(BadDevice, IsNamedAndLeavesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(
     Uris, BadDevice,
-    testing::Values(BadUri{"unknown_scene", "tofmap://nowhere", "there are: "},
-                    BadUri{"unknown_option", "tofmap://room?spee=1", "player.speed"},
+    testing::Values(BadUri{"unknown_scene", "tofmap://nowhere", "there are: ", 2},
+                    BadUri{"unknown_option", "tofmap://room?spee=1", "unknown option spee", 2},
+                    BadUri{"doubled_option", "tofmap://room?speed=1&speed=2", "twice", 2},
+                    BadUri{"no_option", "tofmap://room?speed", "no option=value", 2},
+                    BadUri{"wrong_distortion", "tofmap://room?simulator.distortion_k1=-0.9",
+                           "distortion", 2},
                     BadUri{"no_recording", "tofmap:///nowhere/at/all", "/nowhere/at/all"},
                     BadUri{"no_driver", "freenect://1", "cannot be opened"},
                     BadUri{"no_file", "nowhere.oni", "no such file"}),
@@ -325,6 +368,22 @@ TEST(TumRecording, IsWrappedAndRead) {
   EXPECT_NEAR((*reader.range_truth(0))(23, 31), 4, 0.002);
   EXPECT_EQ(run_program({"simulate", "room", "--from-tum", "x", "--out", out.string()}).status, 2);
   EXPECT_EQ(run_program({"simulate", "--out", out.string()}).status, 2);
+}
+
+TEST(TumRecording, LeavesOutImagesThatCannotBeRead) {
+  const TemporaryFolder folder;
+  write_png(folder.path() / "2.png", ImageU16(ImageU16::Constant(48, 64, 20000)));
+  std::ofstream(folder.path() / "depth.txt") << "1 1.png\n2 2.png\n3 3.png\n";
+  const fs::path out = folder.path() / "out";
+  const std::vector<std::string> arguments = {"simulate", "--from-tum", folder.path().string(),
+                                              "--out", out.string()};
+  const Finished finished = run_program(arguments);
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_THAT(finished.err, HasSubstr("2 frames left out"));
+  EXPECT_THAT(finished.err, HasSubstr("1.png"));
+  EXPECT_EQ(SequenceReader(out).frame_count(), 1);
+  fs::remove(folder.path() / "2.png");
+  EXPECT_EQ(run_program(arguments).status, 3);
 }
 
 TEST(OniFile, ThatIsNoneOrTruncatedIsNamed) {

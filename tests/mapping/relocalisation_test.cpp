@@ -58,5 +58,20 @@ TEST_F(LostCamera, IsNotFoundInAnotherBuilding) {
   for (int i = 5; i < 10; ++i) EXPECT_FALSE(track(frames + i, flat.view(50 + i)).placed());
 }
 
+TEST(CameraAfterAGap, IsFollowedOn) {
+  constexpr int first = 100;
+  const Scenery room("room");
+  for (const int gap : {6, 10, 15}) {
+    RoomMapper mapper(room.camera(), {}, {}, {}, {});
+    for (int i = 0; i < 60; ++i) {
+      if (i >= 30 && i < 30 + gap) continue;
+      EXPECT_TRUE(mapper.track(i, i / 15.0, room.view(first + i)).placed()) << i;
+    }
+    const Pose truth = room.pose(first).inverse() * room.pose(first + 59);
+    const Pose found = mapper.trajectory().back().world_from_camera;
+    EXPECT_LT((truth.inverse() * found).translation().norm(), 0.02) << gap;
+  }
+}
+
 }  // namespace
 }  // namespace tofmap

@@ -123,6 +123,55 @@ TEST_F(Driver, ServesSeveralClients) {
   other.close();
 }
 
+TEST_F(Driver, DeliversWhileStreamsComeAndGo) {
+  open(
+      "tofmap://wall?speed=0&repeat=0&simulator.width_px=16&simulator.height_px=16"
+      "&simulator.subpixels=1&simulator.frames=2");
+  openni::VideoStream depth;
+  ASSERT_EQ(depth.create(device_, openni::SENSOR_DEPTH), openni::STATUS_OK);
+  ASSERT_EQ(depth.start(), openni::STATUS_OK);
+  openni::VideoFrameRef frame;
+  ASSERT_TRUE(wait_for(depth, frame));
+  for (int i = 0; i < 300; ++i) {
+    openni::VideoStream infrared;
+    ASSERT_EQ(infrared.create(device_, openni::SENSOR_IR), openni::STATUS_OK);
+    ASSERT_EQ(infrared.start(), openni::STATUS_OK);
+    infrared.stop();
+    infrared.destroy();
+  }
+  EXPECT_TRUE(wait_for(depth, frame));
+  depth.stop();
+  depth.destroy();
+}
+
+TEST_F(Driver, WaitsForAClientThatTellsWhatItHasRead) {
+  open(small_room);
+  openni::VideoStream depth;
+  openni::VideoStream infrared;
+  ASSERT_EQ(depth.create(device_, openni::SENSOR_DEPTH), openni::STATUS_OK);
+  ASSERT_EQ(infrared.create(device_, openni::SENSOR_IR), openni::STATUS_OK);
+  ASSERT_EQ(depth.start(), openni::STATUS_OK);
+  ASSERT_EQ(infrared.start(), openni::STATUS_OK);
+  openni::VideoFrameRef depth_frame;
+  openni::VideoFrameRef infrared_frame;
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(wait_for(depth, depth_frame));
+    device_.setProperty(openni2_property::images_read, 1);
+    // Asks for more before it has read the other image, for longer than clients may that do not
+    // tell.
+    openni::VideoStream* streams[] = {&depth};
+    int ready = -1;
+    EXPECT_EQ(openni::OpenNI::waitForAnyStream(streams, 1, &ready, 100), openni::STATUS_TIME_OUT);
+    ASSERT_TRUE(wait_for(infrared, infrared_frame));
+    device_.setProperty(openni2_property::images_read, 1);
+    EXPECT_EQ(infrared_frame.getTimestamp(), depth_frame.getTimestamp());
+  }
+  for (openni::VideoStream* stream : {&depth, &infrared}) {
+    stream->stop();
+    stream->destroy();
+  }
+}
+
 TEST_F(Driver, ChangesItsSpeedOnTheWay) {
   open(small_room);
   float speed = 0;

@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include "acquisition/sample_scenes.hpp"
 #include "support/temporary_folder.hpp"
 
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -15,6 +17,7 @@
 namespace tofmap {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -75,13 +78,55 @@ TEST_F(Survey, DoubtsFrequenciesThatAreSwapped) {
   EXPECT_THAT(doubts_, ElementsAre(HasSubstr("mixed up")));
 }
 
+TEST_F(Survey, DoubtsImagesThatDoNotBelongTogether) {
+  // As with a device that takes A and B in turn, and is said to deliver both in one image.
+  record([](DualFrequencyFrame& frame) {
+    const Eigen::Index half = frame.phase_a.rows() / 2;
+    frame.phase_b.topRows(half) = frame.phase_a.bottomRows(half);
+    frame.phase_a.bottomRows(half).setConstant(std::nanf(""));
+  });
+  survey();
+  EXPECT_THAT(doubts_, Contains(HasSubstr("different places")));
+}
+
+TEST_F(Survey, DoubtsDepthAlongTheAxis) {
+  const ImageF cosine = pixel_rays(Simulator(make_scene("room"), options()).sensor().camera).z;
+  record([&](DualFrequencyFrame& frame) {
+    frame.phase_a *= cosine;
+    frame.phase_b *= cosine;
+  });
+  survey();
+  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("optical axis")));
+}
+
+TEST_F(Survey, DoubtsNoWallForItsNoise) {
+  SimulatorOptions noisy = options();
+  noisy.range_noise_m = 0.02;  // 5 cm at 8 m
+  const Simulator simulator(test::facing_wall_scene(8, 0.5), noisy);
+  const auto beat = survey_beat({simulator.simulate(0).frame}, simulator.sensor());
+  ASSERT_TRUE(beat);
+  EXPECT_GT(beat->spread_m, 0.06);
+  EXPECT_THAT(doubts_about(*beat), IsEmpty());
+}
+
 TEST_F(Survey, EstimatesByHowMuchThePhaseOffsetsDiffer) {
   record({});
+  const Modulation modulation = Simulator(make_scene("room"), options()).sensor().modulation;
+  const double ambiguity_m = modulation.wavelength_a_m() - modulation.wavelength_b_m();
+  for (const double offset_m : {0.03, 0.08, 0.15, 0.2, 0.3, -0.1}) {
+    CameraCalibration wrong;
+    wrong.error_b.offset_m = offset_m;  // taken out of B, which had none
+    const RecordingSurvey found = survey(wrong);
+    EXPECT_NEAR(found.beat->offset_m, offset_m, 0.01);
+    EXPECT_THAT(doubts_, ElementsAre(HasSubstr("phase offset")));
+  }
+  // One wrap more of both, and A measures more: only known ranges tell that it is less.
   CameraCalibration wrong;
-  wrong.error_b.offset_m = 0.08;  // taken out of B, which had none
+  wrong.error_b.offset_m = -0.2;
   const RecordingSurvey found = survey(wrong);
-  EXPECT_NEAR(found.beat->offset_m, 0.08, 0.01);
-  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("phase offset")));
+  EXPECT_NEAR(found.beat->offset_m, ambiguity_m - 0.2, 0.01);
+  ASSERT_FALSE(found.beat->other_offsets_m.empty());
+  EXPECT_NEAR(found.beat->other_offsets_m.front(), -0.2, 0.01);
 }
 
 TEST_F(Survey, NamesImagesOfOnePhase) {
@@ -93,13 +138,15 @@ TEST_F(Survey, NamesImagesOfOnePhase) {
 }
 
 TEST_F(Survey, CountsFramesThatRepeat) {
-  ImageF first;
+  DualFrequencyFrame first;
   record([&](DualFrequencyFrame& frame) {
-    if (frame.index == 0) first = frame.phase_a;
-    if (frame.index == 1) frame.phase_a = first;
+    if (frame.index == 0) first = frame;
+    if (frame.index != 1 && frame.index != 2) return;
+    frame.phase_a = first.phase_a;
+    frame.phase_b = frame.index == 1 ? first.phase_b : frame.phase_b;
   });
   EXPECT_EQ(survey().repeated, 1);
-  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("1 frames repeat")));
+  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("1 frame repeats")));
 }
 
 TEST_F(Survey, CountsFramesWithoutAnyReturn) {
@@ -114,6 +161,12 @@ TEST_F(Survey, TellsHowMuchIsSaturated) {
   record([](DualFrequencyFrame& frame) { frame.amplitude_a.topRows(18).setConstant(65535); });
   EXPECT_NEAR(survey().saturated_share, 0.25, 1e-9);
   EXPECT_THAT(doubts_, ElementsAre(HasSubstr("25 % of the pixels are saturated")));
+}
+
+TEST_F(Survey, DoubtsTimesInMilliseconds) {
+  record([](DualFrequencyFrame& frame) { frame.timestamp_s *= 1000; });
+  survey();
+  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("seconds?")));
 }
 
 TEST_F(Survey, NamesAGapInTime) {

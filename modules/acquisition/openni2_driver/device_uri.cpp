@@ -3,6 +3,7 @@
 
 #include "device_uri.hpp"
 
+#include <set>
 #include <sstream>
 
 #include <tofmap/core/error.hpp>
@@ -40,12 +41,18 @@ DeviceRequest parse_device_uri(const std::string& uri) {
   }
   if (question == std::string::npos) return request;
   OptionTable table;
-  table.bind("player", request.player);
+  table.bind("", request.player);
   table.bind("simulator", request.simulator);
   std::istringstream assignments(address.substr(question + 1));
+  std::set<std::string> names;
   for (std::string one; std::getline(assignments, one, '&');) {
-    const bool has_group = one.find('.') < one.find('=');
-    table.assign(has_group ? one : "player." + one);
+    const std::size_t equals = one.find('=');
+    if (equals == 0 || equals == std::string::npos) {
+      throw UsageError("'" + one + "' is no option=value");
+    }
+    const std::string name = one.substr(0, equals);
+    if (!names.insert(name).second) throw UsageError("option " + name + " is given twice");
+    table.set(name, one.substr(equals + 1));
   }
   return request;
 }

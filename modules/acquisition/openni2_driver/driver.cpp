@@ -12,6 +12,9 @@
 #include <sstream>
 #include <string>
 
+#include <tofmap/acquisition/openni2_properties.hpp>
+#include <tofmap/core/error.hpp>
+
 namespace tofmap {
 namespace {
 
@@ -49,8 +52,8 @@ class Driver final : public oni::driver::DriverBase {
   OniStatus tryDevice(const char* uri) override {
     try {
       parse_device_uri(uri);
-    } catch (const std::exception& error) {
-      if (std::string(uri).starts_with(uri_scheme)) fail(error.what());
+    } catch (const UsageError& error) {
+      if (std::string(uri).starts_with(uri_scheme)) refuse(error);
       return ONI_STATUS_ERROR;
     }
     const OniDeviceInfo info = info_of(uri);
@@ -70,10 +73,12 @@ class Driver final : public oni::driver::DriverBase {
     try {
       const std::scoped_lock lock(mutex_);
       return &devices_.emplace_back(parse_device_uri(uri), events);
+    } catch (const UsageError& error) {
+      refuse(error);
     } catch (const std::exception& error) {
       fail(error.what());
-      return nullptr;
     }
+    return nullptr;
   }
 
   void deviceClose(oni::driver::DeviceBase* device) override {
@@ -92,6 +97,9 @@ class Driver final : public oni::driver::DriverBase {
   }
 
  private:
+  void refuse(const UsageError& error) {
+    getServices().errorLoggerAppend("%s%s", openni2_property::usage_error, error.what());
+  }
   void fail(const char* what) { getServices().errorLoggerAppend("tofmap: %s", what); }
 
   std::mutex mutex_;

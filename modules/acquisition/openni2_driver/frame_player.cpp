@@ -3,6 +3,7 @@
 
 #include "frame_player.hpp"
 
+#include <utility>
 #include <vector>
 
 #include <tofmap/acquisition/sequence.hpp>
@@ -26,7 +27,10 @@ double median_period_s(const SequenceReader& recording) {
 
 }  // namespace
 
-FramePlayer::FramePlayer(const DeviceRequest& request) : request_(request) { open(); }
+FramePlayer::FramePlayer(const DeviceRequest& request, std::function<bool()> keep_going)
+    : request_(request), keep_going_(std::move(keep_going)) {
+  open();
+}
 
 void FramePlayer::open() {
   if (request_.is_recording()) {
@@ -36,7 +40,8 @@ void FramePlayer::open() {
     return;
   }
   const SimulatorOptions& options = request_.simulator;
-  source_ = std::make_unique<Simulator>(make_scene(request_.scene, options.seed), options);
+  source_ =
+      std::make_unique<Simulator>(make_scene(request_.scene, options.seed), options, keep_going_);
   period_s_ = 1 / options.frame_rate_hz;
 }
 
@@ -51,6 +56,7 @@ std::optional<DualFrequencyFrame> FramePlayer::next() {
       ++played_;
       return frame;
     }
+    if (!keep_going_()) return std::nullopt;
     ++rounds_;
     const bool is_over = request_.player.repeat > 0 && rounds_ >= request_.player.repeat;
     if (is_over || played_ == 0) return std::nullopt;

@@ -6,6 +6,7 @@
 #include "property_value.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -43,7 +44,9 @@ void ImageStream::stop() {
     const std::scoped_lock lock(mutex_);
     is_running_ = false;
   }
-  { const std::scoped_lock last_delivery(delivery_); }
+  // A delivery may wait for what OpenNI2 holds in one thread while it waits for this in another.
+  constexpr std::chrono::seconds longest(1);
+  { const std::unique_lock last_delivery(delivery_, longest); }
   on_change_();
 }
 

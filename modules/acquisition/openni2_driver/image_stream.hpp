@@ -37,14 +37,14 @@ class ImageStream final : public oni::driver::StreamBase {
   OniVideoMode mode() const;
 
   /// Hands an image to OpenNI2, if the stream runs. It must be of the size of the mode. When stop()
-  /// has returned, none is on its way.
+  /// has returned, none is on its way, unless OpenNI2 itself held it up.
   void deliver(const ImageU16& image, std::uint64_t timestamp_us, int index);
 
  private:
   StreamDescription description_;
   std::function<void()> on_change_;
-  std::mutex delivery_;       ///< held while OpenNI2 takes an image
-  mutable std::mutex mutex_;  ///< of what follows
+  std::timed_mutex delivery_;  ///< held while OpenNI2 takes an image
+  mutable std::mutex mutex_;   ///< of what follows
   OniVideoMode mode_;
   bool is_running_ = false;
 };

@@ -34,7 +34,7 @@ constexpr DepthFormat depth_formats[] = {{ONI_PIXEL_FORMAT_DEPTH_100_UM, 1e-4},
 PlayedDevice::PlayedDevice(const DeviceRequest& request, Events events)
     : request_(request),
       events_(std::move(events)),
-      player_(request),
+      player_(request, [this] { return !is_ending(); }),
       speed_(request.player.speed) {
   const CameraModel& camera = player_.sensor().camera;
   const bool is_stacked = request.player.layout == "stacked";
@@ -83,6 +83,11 @@ void PlayedDevice::update(const std::function<void()>& change) {
   changed_.notify_all();
 }
 
+bool PlayedDevice::is_ending() {
+  const std::scoped_lock lock(mutex_);
+  return is_closing_ || is_unplugged_;
+}
+
 OniStatus PlayedDevice::getSensorInfoList(OniSensorInfo** sensors, int* count) {
   *sensors = sensors_.data();
   *count = static_cast<int>(sensors_.size());
@@ -92,13 +97,23 @@ OniStatus PlayedDevice::getSensorInfoList(OniSensorInfo** sensors, int* count) {
 oni::driver::StreamBase* PlayedDevice::createStream(OniSensorType type) {
   if (type != ONI_SENSOR_DEPTH && type != ONI_SENSOR_IR) return nullptr;
   const std::scoped_lock lock(streams_mutex_);
-  return &streams_.emplace_back(type == ONI_SENSOR_DEPTH ? depth_ : infrared_,
-                                [this] { update([] {}); });
+  const StreamDescription& description = type == ONI_SENSOR_DEPTH ? depth_ : infrared_;
+  // Whether what streams held when one is started or stopped will be read is not known.
+  const auto on_change = [this] { update([this] { unread_ = 0; }); };
+  streams_.push_back(std::make_shared<ImageStream>(description, on_change));
+  return streams_.back().get();
 }
 
 void PlayedDevice::destroyStream(oni::driver::StreamBase* stream) {
   const std::scoped_lock lock(streams_mutex_);
-  streams_.remove_if([stream](const ImageStream& one) { return &one == stream; });
+  std::erase_if(streams_, [stream](const auto& one) { return one.get() == stream; });
+}
+
+/// Those that there are now. OpenNI2 creates and destroys streams with locks of its own held, which
+/// it also takes when it is handed an image: that must not be done under streams_mutex_.
+PlayedDevice::Streams PlayedDevice::streams() {
+  const std::scoped_lock lock(streams_mutex_);
+  return streams_;
 }
 
 OniBool PlayedDevice::isPropertySupported(int id) {
@@ -109,6 +124,7 @@ OniBool PlayedDevice::isPropertySupported(int id) {
     case openni2_property::frequency_b_hz:
     case openni2_property::layout:
     case openni2_property::frames_delivered:
+    case openni2_property::images_read:
       return TRUE;
     default:
       return FALSE;
@@ -145,6 +161,15 @@ OniStatus PlayedDevice::getProperty(int id, void* data, int* size) {
 }
 
 OniStatus PlayedDevice::setProperty(int id, const void* data, int size) {
+  if (id == openni2_property::images_read) {
+    const auto* count = given<int>(data, size);
+    if (count == nullptr || *count < 0) return ONI_STATUS_BAD_PARAMETER;
+    update([&] {
+      hears_of_reads_ = true;
+      unread_ = std::max(0, unread_ - *count);
+    });
+    return ONI_STATUS_OK;
+  }
   if (id != ONI_DEVICE_PROPERTY_PLAYBACK_SPEED) return ONI_STATUS_NOT_SUPPORTED;
   const auto* wanted = given<float>(data, size);
   if (wanted == nullptr || !(*wanted >= 0 || *wanted == -1)) return ONI_STATUS_BAD_PARAMETER;
@@ -169,8 +194,7 @@ OniStatus PlayedDevice::tryManualTrigger() {
 }
 
 bool PlayedDevice::has_running_stream() {
-  const std::scoped_lock lock(streams_mutex_);
-  return std::ranges::any_of(streams_, &ImageStream::is_running);
+  return std::ranges::any_of(streams(), [](const auto& stream) { return stream->is_running(); });
 }
 
 /// False if the device is to end instead.
@@ -199,14 +223,28 @@ void PlayedDevice::let_start() {
   }
 }
 
+/// Whether a client waits for an image and has read the last one, as far as can be known: mutex_ is
+/// held. OpenNI2 asks whenever a client begins to wait, even for the other image of two that are
+/// there already, and the next image would take its place.
+bool PlayedDevice::is_asked_for() {
+  constexpr std::chrono::milliseconds to_read(10);
+  constexpr std::chrono::seconds lost(1);  // OpenNI2 dropped it; all clients have read all they got
+  const Clock::duration patience = hears_of_reads_ ? Clock::duration(lost) : to_read;
+  return is_triggered_ && (unread_ == 0 || Clock::now() >= delivered_ + patience);
+}
+
 /// Until an image of this timestamp is due; false if the device is to end instead.
 bool PlayedDevice::wait_for_turn(double timestamp_s) {
   std::unique_lock lock(mutex_);
   while (!is_closing_ && !is_unplugged_) {
     if (speed_ == 0) return true;
     if (speed_ < 0) {
-      if (std::exchange(is_triggered_, false)) return true;
-      constexpr std::chrono::milliseconds longest(100);
+      if (is_asked_for()) {
+        is_triggered_ = false;
+        unread_ = 0;
+        return true;
+      }
+      constexpr std::chrono::milliseconds longest(10);
       changed_.wait_for(lock, longest);
       continue;
     }
@@ -220,12 +258,13 @@ bool PlayedDevice::wait_for_turn(double timestamp_s) {
 }
 
 const DeviceImageCodec& PlayedDevice::codec() {
-  const std::scoped_lock lock(streams_mutex_);
-  const auto stream = std::ranges::find(streams_, ONI_SENSOR_DEPTH, &ImageStream::type);
-  if (stream == streams_.end()) return codecs_.front();
-  const auto mode =
-      std::ranges::find(depth_.modes, stream->mode().pixelFormat, &OniVideoMode::pixelFormat);
-  return codecs_[static_cast<std::size_t>(mode - depth_.modes.begin())];
+  for (const auto& stream : streams()) {
+    if (stream->type() != ONI_SENSOR_DEPTH) continue;
+    const auto mode =
+        std::ranges::find(depth_.modes, stream->mode().pixelFormat, &OniVideoMode::pixelFormat);
+    return codecs_[static_cast<std::size_t>(mode - depth_.modes.begin())];
+  }
+  return codecs_.front();
 }
 
 void PlayedDevice::deliver_images(const ImageU16& range, const ImageU16& amplitude,
@@ -237,17 +276,19 @@ void PlayedDevice::deliver_images(const ImageU16& range, const ImageU16& amplitu
     update([this] { is_triggered_ = true; });  // whoever asked for it is waiting still
     return;
   }
-  {
-    const std::scoped_lock lock(streams_mutex_);
-    for (ImageStream& stream : streams_) {
-      stream.deliver(stream.type() == ONI_SENSOR_DEPTH ? range : amplitude, timestamp_us, images_);
-    }
+  for (const auto& stream : streams()) {
+    deliver_image(*stream, stream->type() == ONI_SENSOR_DEPTH ? range : amplitude, timestamp_us);
   }
-  // A client that reads both streams may have asked between the two: before it is given more, it
-  // has time to read what it has, for the next image would take its place.
-  std::unique_lock lock(mutex_);
-  constexpr std::chrono::milliseconds to_read(2);
-  if (is_triggered_) changed_.wait_for(lock, to_read, [this] { return is_closing_; });
+}
+
+void PlayedDevice::deliver_image(ImageStream& stream, const ImageU16& image,
+                                 std::uint64_t timestamp_us) {
+  if (!stream.is_running()) return;
+  update([this] {
+    ++unread_;  // before a client can say that it has read it
+    delivered_ = Clock::now();
+  });
+  stream.deliver(image, timestamp_us, images_);
 }
 
 void PlayedDevice::deliver(const DualFrequencyFrame& frame) {
@@ -277,14 +318,17 @@ void PlayedDevice::play() {
       let_start();
       const int unplug_at = request_.player.unplug_at;
       if (unplug_at > 0 && frames_ >= unplug_at) {
+        // What is on the way still arrives.
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
         update([this] { is_unplugged_ = true; });
         break;
       }
       const std::optional<DualFrequencyFrame> frame = player_.next();
-      if (!frame) {
+      if (!frame && !is_ending()) {
         events_.at_end();
         return;
       }
+      if (!frame) break;
       deliver(*frame);
       ++frames_;
     }

@@ -10,7 +10,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <functional>
-#include <list>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -53,14 +53,20 @@ class PlayedDevice final : public oni::driver::DeviceBase {
     double timestamp_s;
   };
 
+  using Streams = std::vector<std::shared_ptr<ImageStream>>;
+
   void play();
   bool wait_for_stream();
   void let_start();
   bool wait_for_turn(double timestamp_s);
   void deliver(const DualFrequencyFrame& frame);
   void deliver_images(const ImageU16& range, const ImageU16& amplitude, double timestamp_s);
+  void deliver_image(ImageStream& stream, const ImageU16& image, std::uint64_t timestamp_us);
   const DeviceImageCodec& codec();
+  Streams streams();
   bool has_running_stream();
+  bool is_asked_for();
+  bool is_ending();
   void update(const std::function<void()>& change);
 
   DeviceRequest request_;
@@ -72,14 +78,17 @@ class PlayedDevice final : public oni::driver::DeviceBase {
   std::vector<OniSensorInfo> sensors_;
 
   std::mutex streams_mutex_;
-  std::list<ImageStream> streams_;
+  Streams streams_;
 
-  std::mutex mutex_;  ///< of the six that follow
+  std::mutex mutex_;  ///< of all that follows down to is_closing_
   std::condition_variable changed_;
   double speed_;
   bool is_starting_ = true;             ///< no image since the first stream was started
   std::optional<Beginning> beginning_;  ///< none after the speed has changed
-  bool is_triggered_ = false;
+  bool is_triggered_ = false;           ///< a client waits for an image
+  bool hears_of_reads_ = false;         ///< a client tells when it has read an image
+  int unread_ = 0;                      ///< images handed over that no client has read, as it says
+  Clock::time_point delivered_;         ///< when the last of them was
   bool is_unplugged_ = false;
   bool is_closing_ = false;
 

@@ -8,6 +8,10 @@
 #include <cmath>
 #include <fstream>
 #include <numbers>
+#include <set>
+#include <sstream>
+
+#include <tofmap/core/text.hpp>
 
 namespace tofmap {
 namespace {
@@ -44,11 +48,22 @@ void correct(ImageF& phase, const PhaseError& error, double wavelength_m) {
   }
 }
 
+/// Beyond any cable; phases stay exact to a hundredth of a millimetre.
+constexpr double longest_offset_m = 100;
+
+/// The correction is still smooth from step to step.
+constexpr int highest_order = 64;
+
+/// Amplitudes are of 16 bits.
+constexpr double highest_amplitude = 65535;
+
 WiggleHarmonic read_harmonic(const YamlSection& section) {
   section.allow_only({"order", "cosine_m", "sine_m"});
   WiggleHarmonic harmonic;
   harmonic.order = section.value<int>("order", "a whole number");
-  if (harmonic.order < 1) section.fail(section.key("order"), "must be at least 1");
+  if (harmonic.order < 1 || harmonic.order > highest_order) {
+    section.fail(section.key("order"), "must be 1 to " + std::to_string(highest_order));
+  }
   harmonic.cosine_m = section.value<double>("cosine_m", "a number of metres");
   harmonic.sine_m = section.value<double>("sine_m", "a number of metres");
   return harmonic;
@@ -61,9 +76,17 @@ PhaseError read_error(const YamlSection& root, const std::string& name) {
   section.allow_only({"offset_m", "harmonics", "table_m"});
   if (section.has("offset_m")) {
     error.offset_m = section.value<double>("offset_m", "a number of metres");
+    if (std::abs(error.offset_m) > longest_offset_m) {
+      section.fail(section.key("offset_m"), "must be at most 100 m, above or below 0");
+    }
   }
+  std::set<int> orders;
   for (const YamlSection& harmonic : section.list("harmonics")) {
     error.harmonics.push_back(read_harmonic(harmonic));
+    if (!orders.insert(error.harmonics.back().order).second) {
+      section.fail(section.key("harmonics"),
+                   "have order " + std::to_string(error.harmonics.back().order) + " twice");
+    }
   }
   if (section.has("table_m")) {
     error.table_m = section.value<std::vector<double>>("table_m", "a list of metres");
@@ -71,13 +94,28 @@ PhaseError read_error(const YamlSection& root, const std::string& name) {
   return error;
 }
 
-void check_finite(const PhaseError& error, const YamlSection& root, const std::string& name) {
-  bool finite = std::isfinite(error.offset_m);
-  for (const WiggleHarmonic& one : error.harmonics) {
-    finite = finite && std::isfinite(one.cosine_m) && std::isfinite(one.sine_m);
+/// Throws InputError if a longer range does not always make a larger phase with this error.
+void check_order(const PhaseError& error, const char* name, double wavelength_m) {
+  for (int i = 0; i < steps_a_cycle; ++i) {
+    const double step_m =
+        error.at_m((i + 1.0) / steps_a_cycle) - error.at_m(1.0 * i / steps_a_cycle);
+    if (step_m < wavelength_m / steps_a_cycle) continue;
+    std::ostringstream message;
+    message << name << " rises faster than the phase, at " << 1.0 * i / steps_a_cycle
+            << " of its cycle of " << wavelength_m
+            << " m: no camera measures so; are its numbers metres, and of this camera?";
+    throw InputError(message.str());
   }
-  for (const double value : error.table_m) finite = finite && std::isfinite(value);
-  if (!finite) root.fail(name, "must hold finite numbers");
+}
+
+CalibratedWith read_calibrated_with(const YamlSection& section) {
+  section.allow_only({"width", "height", "frequency_a_hz", "frequency_b_hz"});
+  CalibratedWith with;
+  with.width_px = section.value<int>("width", "a number of pixels");
+  with.height_px = section.value<int>("height", "a number of pixels");
+  with.modulation.frequency_a_hz = section.value<double>("frequency_a_hz", "a frequency in Hz");
+  with.modulation.frequency_b_hz = section.value<double>("frequency_b_hz", "a frequency in Hz");
+  return with;
 }
 
 void write_error(std::ostream& out, const char* name, const PhaseError& error) {
@@ -93,6 +131,53 @@ void write_error(std::ostream& out, const char* name, const PhaseError& error) {
     out << (i == 0 ? "" : ", ") << shortest(error.table_m[i]);
   }
   out << "]\n";
+}
+
+std::string size_text(int width_px, int height_px) {
+  return std::to_string(width_px) + " x " + std::to_string(height_px) + " pixels";
+}
+
+std::string frequencies_text(const Modulation& modulation) {
+  return formatted("%.9g and %.9g MHz", modulation.frequency_a_hz / 1e6,
+                   modulation.frequency_b_hz / 1e6);
+}
+
+[[noreturn]] void refuse_other_camera(const std::string& calibrated, const std::string& recorded) {
+  throw InputError("is of a camera of " + calibrated + ", the recording's has " + recorded +
+                   "; is it of another camera?");
+}
+
+void check_size(int width_px, int height_px, const CameraModel& camera) {
+  if (width_px == camera.width_px && height_px == camera.height_px) return;
+  refuse_other_camera(size_text(width_px, height_px), size_text(camera.width_px, camera.height_px));
+}
+
+void check_camera(const CalibratedWith& with, const SensorModel& sensor) {
+  check_size(with.width_px, with.height_px, sensor.camera);
+  constexpr double same = 1e-4;  // quartz, and how it is rounded
+  const auto is_same = [](double one_hz, double other_hz) {
+    return std::abs(one_hz - other_hz) <= same * other_hz;
+  };
+  const Modulation& modulation = sensor.modulation;
+  if (is_same(with.modulation.frequency_a_hz, modulation.frequency_a_hz) &&
+      is_same(with.modulation.frequency_b_hz, modulation.frequency_b_hz)) {
+    return;
+  }
+  refuse_other_camera(frequencies_text(with.modulation), frequencies_text(modulation));
+}
+
+SensorModel with_calibration(SensorModel sensor, const CameraCalibration& calibration) {
+  if (calibration.saturation_amplitude > 0) {
+    sensor.saturation_amplitude = calibration.saturation_amplitude;
+  }
+  if (calibration.with) check_camera(*calibration.with, sensor);
+  check_order(calibration.error_a, "error_a", sensor.modulation.wavelength_a_m());
+  check_order(calibration.error_b, "error_b", sensor.modulation.wavelength_b_m());
+  if (!calibration.camera) return sensor;
+  const CameraModel& given = *calibration.camera;
+  check_size(given.width_px, given.height_px, sensor.camera);
+  sensor.camera = *calibration.camera;
+  return sensor;
 }
 
 }  // namespace
@@ -114,21 +199,27 @@ double PhaseError::at_m(double phase_cycles) const {
 CameraCalibration read_calibration(const std::filesystem::path& file) {
   const YamlSection root = load_yaml(file, "'tofmap calibrate' writes such a file");
   check_format(root, format_name, format_version);
-  root.allow_only({"format", "version", "camera", "error_a", "error_b", "saturation_amplitude"});
+  root.allow_only({"format", "version", "calibrated_with", "camera", "error_a", "error_b",
+                   "saturation_amplitude"});
   CameraCalibration calibration;
+  calibration.file = file;
+  if (root.has("calibrated_with")) {
+    calibration.with = read_calibrated_with(root.section("calibrated_with"));
+    naming(file.string(), [&] { validate(calibration.with->modulation); });
+  }
   if (root.has("camera")) {
     calibration.camera = read_camera(root.section("camera"));
     naming(file.string(), [&] { validate(*calibration.camera); });
   }
   calibration.error_a = read_error(root, "error_a");
   calibration.error_b = read_error(root, "error_b");
-  check_finite(calibration.error_a, root, "error_a");
-  check_finite(calibration.error_b, root, "error_b");
   if (root.has("saturation_amplitude")) {
     calibration.saturation_amplitude =
         root.value<double>("saturation_amplitude", "an amplitude above 0");
-    if (!(calibration.saturation_amplitude > 0)) {
-      root.fail("saturation_amplitude", "must be above 0; leave it out if it is not known");
+    if (!(calibration.saturation_amplitude > 0 &&
+          calibration.saturation_amplitude <= highest_amplitude)) {
+      root.fail("saturation_amplitude",
+                "must be above 0 and at most 65535; leave it out if it is not known");
     }
   }
   return calibration;
@@ -148,6 +239,12 @@ void write_calibration(const std::filesystem::path& file, const CameraCalibratio
   std::ofstream out(file);
   if (!comment.empty()) out << "# " << comment << '\n';
   out << "format: " << format_name << "\nversion: " << format_version << '\n';
+  if (calibration.with) {
+    const CalibratedWith& with = *calibration.with;
+    out << "calibrated_with: {width: " << with.width_px << ", height: " << with.height_px
+        << ", frequency_a_hz: " << shortest(with.modulation.frequency_a_hz)
+        << ", frequency_b_hz: " << shortest(with.modulation.frequency_b_hz) << "}\n";
+  }
   if (calibration.camera) out << "camera:\n" << camera_text(*calibration.camera);
   write_error(out, "error_a", calibration.error_a);
   write_error(out, "error_b", calibration.error_b);
@@ -158,22 +255,10 @@ void write_calibration(const std::filesystem::path& file, const CameraCalibratio
   if (!out) throw InputError(file.string() + ": cannot be written; is the disk full?");
 }
 
-SensorModel calibrated(SensorModel sensor, const CameraCalibration& calibration) {
-  if (calibration.saturation_amplitude > 0) {
-    sensor.saturation_amplitude = calibration.saturation_amplitude;
-  }
-  if (!calibration.camera) return sensor;
-  const CameraModel& given = *calibration.camera;
-  if (given.width_px != sensor.camera.width_px || given.height_px != sensor.camera.height_px) {
-    const auto size = [](const CameraModel& camera) {
-      return std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px);
-    };
-    throw InputError("the calibration is of a camera of " + size(given) +
-                     " pixels, the recording's has " + size(sensor.camera) +
-                     "; is it of another camera?");
-  }
-  sensor.camera = *calibration.camera;
-  return sensor;
+SensorModel calibrated(const SensorModel& sensor, const CameraCalibration& calibration) {
+  const std::string origin =
+      calibration.file.empty() ? "the calibration" : calibration.file.string();
+  return naming(origin, [&] { return with_calibration(sensor, calibration); });
 }
 
 void calibrate(DualFrequencyFrame& frame, const Modulation& modulation,

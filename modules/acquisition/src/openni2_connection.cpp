@@ -5,10 +5,14 @@
 
 #include <chrono>
 #include <cstring>
+#include <mutex>
 #include <sstream>
+#include <string_view>
 #include <thread>
 #include <utility>
+#include <vector>
 
+#include <tofmap/acquisition/openni2_properties.hpp>
 #include <tofmap/core/error.hpp>
 
 namespace tofmap {
@@ -27,6 +31,17 @@ std::string last_error() {
 
 void check(openni::Status status, const std::string& what) {
   if (status != openni::STATUS_OK) throw InputError(what + ": " + last_error());
+}
+
+/// Throws UsageError if that is what the driver complains of.
+void refuse_wrong_use(const std::string& uri) {
+  const std::string complaint = openni::OpenNI::getExtendedError();
+  const std::string_view mark = openni2_property::usage_error;
+  const std::size_t found = complaint.find(mark);
+  if (found != std::string::npos) {
+    const std::size_t begin = found + mark.size();
+    throw UsageError(uri + ": " + complaint.substr(begin, complaint.find('\n', begin) - begin));
+  }
 }
 
 double unit_of(openni::PixelFormat format) {
@@ -60,8 +75,24 @@ void wait_while_growing(const std::filesystem::path& file) {
 
 }  // namespace
 
-OpenNi2Connection::Library::Library() { check(openni::OpenNI::initialize(), "OpenNI2"); }
-OpenNi2Connection::Library::~Library() { openni::OpenNI::shutdown(); }
+OpenNi2Connection::Opened::Opened() { check(openni::OpenNI::initialize(), "OpenNI2"); }
+
+OpenNi2Connection::Opened::~Opened() {
+  depth.destroy();
+  infrared.destroy();
+  device.close();
+  openni::OpenNI::shutdown();
+}
+
+OpenNi2Connection::Listener::Listener() {
+  openni::OpenNI::addDeviceDisconnectedListener(this);
+  openni::OpenNI::addDeviceStateChangedListener(this);
+}
+
+OpenNi2Connection::Listener::~Listener() {
+  openni::OpenNI::removeDeviceDisconnectedListener(this);
+  openni::OpenNI::removeDeviceStateChangedListener(this);
+}
 
 void OpenNi2Connection::Listener::onDeviceDisconnected(const openni::DeviceInfo* device) {
   if (uri == device->getUri()) is_unplugged = true;
@@ -75,8 +106,6 @@ void OpenNi2Connection::Listener::onDeviceStateChanged(const openni::DeviceInfo*
 
 OpenNi2Connection::OpenNi2Connection(const std::string& uri,
                                      const std::filesystem::path& oni_file) {
-  openni::OpenNI::addDeviceDisconnectedListener(&listener_);
-  openni::OpenNI::addDeviceStateChangedListener(&listener_);
   open(uri);
   start(depth_, openni::SENSOR_DEPTH, uri);
   if (device_.hasSensor(openni::SENSOR_IR)) start(infrared_, openni::SENSOR_IR, uri);
@@ -86,34 +115,44 @@ OpenNi2Connection::OpenNi2Connection(const std::string& uri,
 }
 
 OpenNi2Connection::~OpenNi2Connection() {
-  depth_.stop();
-  infrared_.stop();
+  if (!is_file_) {
+    depth_.stop();
+    infrared_.stop();
+  }
   if (recorder_.isValid()) end_recording();
-  depth_.destroy();
-  infrared_.destroy();
-  device_.close();
-  openni::OpenNI::removeDeviceDisconnectedListener(&listener_);
-  openni::OpenNI::removeDeviceStateChangedListener(&listener_);
+  if (!is_file_) return;
+  // OpenNI2's player of files goes over its streams without a lock while none of them runs, and
+  // crashed in one of ten runs where they were destroyed meanwhile. So its streams run on: it waits
+  // to be asked for a frame until the program ends. Some hundred kilobytes a file stay in use.
+  static auto* const never_closed = new std::vector<std::unique_ptr<Opened>>;
+  static std::mutex mutex;
+  const std::scoped_lock lock(mutex);
+  never_closed->push_back(std::move(opened_));
 }
 
 void OpenNi2Connection::open(const std::string& uri) {
-  const bool is_file = uri.find("://") == std::string::npos;
-  if (is_file && std::filesystem::is_directory(uri)) {
+  is_file_ = uri.find("://") == std::string::npos;
+  if (is_file_ && std::filesystem::is_directory(uri)) {
     throw InputError(uri + ": is a folder; tofmap://" + std::filesystem::absolute(uri).string() +
                      " plays it as a camera if it is a recording");
   }
-  if (is_file && !std::filesystem::is_regular_file(uri)) {
+  if (is_file_ && !std::filesystem::is_regular_file(uri)) {
     throw InputError(uri + ": there is no such file; a device has a URI with ://");
   }
-  check(device_.open(uri.c_str()),
-        uri + (is_file ? ": cannot be opened; is it an .oni file, and whole?"
-                       : ": cannot be opened; is it plugged in, and its driver there?"));
+  const openni::Status status = device_.open(uri.c_str());
+  if (status != openni::STATUS_OK) refuse_wrong_use(uri);
+  const bool is_own = uri.starts_with("tofmap://");
+  check(status, uri + ": cannot be opened" +
+                    (is_file_ ? "; is it an .oni file, and whole?"
+                     : is_own ? ""
+                              : "; is it plugged in, and its driver there?"));
   listener_.uri = device_.getDeviceInfo().getUri();
   if (!device_.hasSensor(openni::SENSOR_DEPTH)) throw InputError(uri + ": has no depth stream");
   if (openni::PlaybackControl* playback = device_.getPlaybackControl()) {
     playback->setRepeatEnabled(false);
     playback->setSpeed(as_frames_are_asked_for);
   }
+  tells_reads_ = device_.isPropertySupported(openni2_property::images_read);
 }
 
 void OpenNi2Connection::start(openni::VideoStream& stream, openni::SensorType type,
@@ -158,6 +197,7 @@ RawImage OpenNi2Connection::read(DeviceStream stream) {
   openni::VideoFrameRef frame;
   openni::VideoStream& source = stream == DeviceStream::range ? depth_ : infrared_;
   check(source.readFrame(&frame), "reading an image of " + listener_.uri);
+  if (tells_reads_) device_.setProperty(openni2_property::images_read, 1);
   RawImage image;
   image.stream = stream;
   image.timestamp_us = static_cast<std::int64_t>(frame.getTimestamp());

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -47,14 +48,23 @@ class OpenNi2Connection {
   std::optional<double> number(int property) const;
 
  private:
-  /// OpenNI2 as long as somebody needs it.
-  struct Library {
-    Library();
-    ~Library();
+  /// OpenNI2 as long as somebody needs it, with a device and its streams.
+  struct Opened {
+    Opened();
+    ~Opened();
+
+    openni::Device device;
+    openni::VideoStream depth;
+    openni::VideoStream infrared;
   };
 
+  /// Hears of devices as long as it lives.
   struct Listener : openni::OpenNI::DeviceDisconnectedListener,
                     openni::OpenNI::DeviceStateChangedListener {
+    Listener();
+    Listener(const Listener&) = delete;
+    Listener& operator=(const Listener&) = delete;
+    ~Listener();
     void onDeviceDisconnected(const openni::DeviceInfo* device) override;
     void onDeviceStateChanged(const openni::DeviceInfo* device, openni::DeviceState state) override;
 
@@ -69,11 +79,13 @@ class OpenNi2Connection {
   void end_recording();
   RawImage read(DeviceStream stream);
 
-  Library library_;
-  Listener listener_;
-  openni::Device device_;
-  openni::VideoStream depth_;
-  openni::VideoStream infrared_;
+  bool is_file_ = false;      ///< an .oni file
+  bool tells_reads_ = false;  ///< the device waits for what is read
+  std::unique_ptr<Opened> opened_ = std::make_unique<Opened>();
+  Listener listener_;  ///< after OpenNI2 has begun
+  openni::Device& device_ = opened_->device;
+  openni::VideoStream& depth_ = opened_->depth;
+  openni::VideoStream& infrared_ = opened_->infrared;
   openni::Recorder recorder_;
   std::filesystem::path oni_file_;
 };

@@ -11,6 +11,7 @@
 #include <deque>
 #include <mutex>
 #include <numbers>
+#include <sstream>
 #include <utility>
 
 #include <tofmap/acquisition/device_image.hpp>
@@ -122,6 +123,7 @@ class OpenNi2Source::Impl {
   DualFrequencyFrame frame_of_pair(const AlternatingPair& pair) const;
   SourcedFrame sourced(DualFrequencyFrame frame);
   void check_fruit() const;
+  std::string silence() const;
 
   std::string uri_;
   Settings settings_;
@@ -145,6 +147,7 @@ OpenNi2Source::Impl::Impl(const std::string& uri, Settings settings)
     std::optional<RawImage> image = wait_for_image();
     if (!image) {
       if (end_ == End::asked) return;
+      if (end_ == End::timeout) throw InputError(uri_ + ": " + silence());
       throw InputError(uri_ + ": delivers no range images; is it the right device?");
     }
     early_.push_back(std::move(*image));
@@ -277,6 +280,13 @@ std::optional<DualFrequencyFrame> OpenNi2Source::Impl::add(RawImage image) {
     counts_.unreadable += images;
     return std::nullopt;
   }
+}
+
+std::string OpenNi2Source::Impl::silence() const {
+  std::ostringstream text;
+  text << "no range image for " << settings_.options.timeout_s
+       << " s; is it the right device? A slow one needs a longer device.timeout_s";
+  return text.str();
 }
 
 void OpenNi2Source::Impl::check_fruit() const {

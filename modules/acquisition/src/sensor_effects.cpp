@@ -59,6 +59,12 @@ PixelLight light_from(double strength, double range_m, double wavelength_m) {
   return {strength * turn, strength * (turn * turn * turn), strength};
 }
 
+SensorEffects sensor_effects(const SimulatorOptions& options, const Modulation& modulation) {
+  return {.harmonic = two_pi * options.wiggle_m / modulation.wavelength_a_m(),
+          .dark_level = options.dark_level,
+          .full_well = options.full_well};
+}
+
 std::complex<double> demodulate(const std::array<PixelLight, 4>& samples,
                                 const SensorEffects& effects) {
   std::array<double, 4> charges{};

@@ -10,9 +10,12 @@
 
 #include <tofmap/acquisition/ray_scene.hpp>
 #include <tofmap/core/camera.hpp>
+#include <tofmap/core/modulation.hpp>
 #include <tofmap/core/trajectory.hpp>
 
 namespace tofmap {
+
+struct SimulatorOptions;
 
 /// Light that reaches a pixel, as complex numbers of its strength and phase.
 struct PixelLight {
@@ -42,6 +45,8 @@ struct SensorEffects {
   /// Whether four samples say the same as the light itself.
   bool are_none() const { return harmonic == 0 && dark_level == 0 && full_well == 0; }
 };
+
+SensorEffects sensor_effects(const SimulatorOptions& options, const Modulation& modulation);
 
 /// The complex signal that four samples a quarter of a period apart give, each of the light of its
 /// moment.

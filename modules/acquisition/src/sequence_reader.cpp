@@ -124,7 +124,7 @@ SequenceReader::SequenceReader(std::filesystem::path folder, CameraCalibration c
   sensor_ = read_sequence_header(folder_ / "sequence.yaml");
   constexpr double end_of_scale = 65535;  // more than that may have been meant
   sensor_.saturation_amplitude = end_of_scale;
-  sensor_ = calibrated(std::move(sensor_), calibration_);
+  sensor_ = calibrated(sensor_, calibration_);
   files_ = read_frame_list(folder_ / "frames.txt");
 }
 

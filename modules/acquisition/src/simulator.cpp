@@ -52,8 +52,12 @@ SensorModel sensor_model(const SimulatorOptions& options, double scene_max_range
                        options.distortion_p2, options.distortion_k3};
   sensor.modulation = {options.frequency_a_hz, options.frequency_b_hz};
   sensor.max_range_m = options.max_range_m > 0 ? options.max_range_m : scene_max_range_m;
-  validate(camera);
-  validate(sensor.modulation);
+  try {
+    validate(camera);
+    validate(sensor.modulation);
+  } catch (const InputError& error) {  // it comes of the options, not of a file
+    throw UsageError(std::string("simulator options: ") + error.what());
+  }
   return sensor;
 }
 
@@ -84,12 +88,6 @@ CameraMotion camera_motion(const Scene& scene, const SimulatorOptions& options) 
   const MotionLimits limits{options.max_step_m, options.max_turn_deg * std::numbers::pi / 180};
   return plan_motion(scene.path, limits, options.frames, scene.min_frames, options.frame_rate_hz,
                      options.b_delay_share);
-}
-
-SensorEffects sensor_effects(const SimulatorOptions& options, const Modulation& modulation) {
-  return {.harmonic = two_pi * options.wiggle_m / modulation.wavelength_a_m(),
-          .dark_level = options.dark_level,
-          .full_well = options.full_well};
 }
 
 }  // namespace
@@ -134,20 +132,22 @@ std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
   };
 }
 
-Simulator::Simulator(Scene scene, const SimulatorOptions& options)
+Simulator::Simulator(Scene scene, const SimulatorOptions& options, std::function<bool()> keep_going)
     : scene_(std::move(scene)),
       options_(checked(options)),
       sensor_(sensor_model(options_, scene_.max_range_m)),
       ray_scene_(scene_.surface),
       motion_(camera_motion(scene_, options_)),
       rays_(subpixel_rays(sensor_.camera, options_.subpixels)),
-      noise_sigma_(noise_strength(options_.range_noise_m, sensor_.modulation)) {}
+      noise_sigma_(noise_strength(options_.range_noise_m, sensor_.modulation)),
+      keep_going_(std::move(keep_going)) {}
 
 std::optional<SourcedFrame> Simulator::next() {
   if (next_index_ >= *frame_count()) return std::nullopt;
   SourcedFrame sourced;
   sourced.index = next_index_;
   sourced.frame = simulate(next_index_++).frame;
+  if (is_stopped()) return std::nullopt;
   sourced.timestamp_s = sourced.frame->timestamp_s;
   return sourced;
 }
@@ -265,6 +265,7 @@ Simulator::Exposed Simulator::expose(const Exposure& exposure, bool with_labels)
 
 #pragma omp parallel for schedule(dynamic)
   for (int v = 0; v < rows; ++v) {
+    if (is_stopped()) continue;
     std::vector<SubRay> rays(rays_per_pixel);
     for (int u = 0; u < cols; ++u) {
       const std::size_t pixel = static_cast<std::size_t>(v) * cols + u;
@@ -298,7 +299,7 @@ Simulator::Exposed Simulator::expose(const Exposure& exposure, bool with_labels)
 Simulator::Truth Simulator::cast_truth(const Pose& world_from_camera) const {
   const ImageF nothing = ImageF::Constant(sensor_.camera.height_px, sensor_.camera.width_px, nan);
   Truth truth{nothing, nothing};
-  for (int v = 0; v < sensor_.camera.height_px; ++v) {
+  for (int v = 0; v < sensor_.camera.height_px && !is_stopped(); ++v) {
     for (int u = 0; u < sensor_.camera.width_px; ++u) {
       const Eigen::Vector3d ray = world_from_camera.linear() * pixel_ray(sensor_.camera, u, v);
       const auto hit = ray_scene_.cast(world_from_camera.translation(), ray, sensor_.max_range_m);
@@ -318,6 +319,7 @@ int simulate_sequence(const Simulator& simulator, const std::filesystem::path& f
   for (int i = 0; i < total; ++i) {
     if (keep_going && !keep_going(i, total)) break;
     const SimulatedFrame simulated = simulator.simulate(i);
+    if (simulator.is_stopped()) break;
     writer.add(simulated.frame, simulated.world_from_camera, simulated.range_truth_m,
                simulated.label);
   }

@@ -5,7 +5,9 @@
 
 #include "noise.hpp"
 #include "pixel_signal.hpp"
+#include "sensor_effects.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -75,6 +77,35 @@ CameraModel thinned_camera(const TumOptions& options, const ImageU16& first) {
   return camera;
 }
 
+/// Options of the simulator that need no scene.
+constexpr std::string_view used_options[] = {"frequency_a_hz", "frequency_b_hz", "range_noise_m",
+                                             "wiggle_m",       "dark_level",     "full_well",
+                                             "frames",         "max_range_m",    "seed"};
+
+/// An option that is set would otherwise be silently without effect.
+void refuse_unused(const SimulatorOptions& options) {
+  const SimulatorOptions defaults;
+  for (const OptionField<SimulatorOptions>& field : SimulatorOptions::fields()) {
+    const bool is_set =
+        std::visit([&](auto member) { return options.*member != defaults.*member; }, field.member);
+    if (!is_set || std::ranges::find(used_options, field.name) != std::end(used_options)) continue;
+    throw UsageError("simulator." + std::string(field.name) +
+                     " needs a scene, and has no effect on recorded depth; leave it out");
+  }
+}
+
+/// Throws InputError if there is none.
+ImageU16 first_readable(const std::vector<TumRecording::DepthImage>& images) {
+  for (const TumRecording::DepthImage& image : images) {
+    try {
+      return read_png_16(image.file);
+    } catch (const InputError&) {
+      if (&image == &images.back()) throw;
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 std::vector<OptionField<TumOptions>> TumOptions::fields() {
@@ -94,27 +125,28 @@ std::vector<OptionField<TumOptions>> TumOptions::fields() {
 
 TumRecording::TumRecording(std::filesystem::path folder, const TumOptions& options,
                            const SimulatorOptions& simulator)
-    : folder_(std::move(folder)), options_(options), seed_(simulator.seed) {
+    : folder_(std::move(folder)), options_(options), simulator_(simulator) {
+  refuse_unused(simulator_);
   for (Line& line : read_list(folder_ / "depth.txt")) {
     images_.push_back({line.timestamp_s, folder_ / line.file});
   }
   const std::filesystem::path poses = folder_ / "groundtruth.txt";
   if (std::filesystem::exists(poses)) poses_ = read_trajectory(poses);
-  sensor_.camera =
-      thinned_camera(options_, thinned(read_png_16(images_.front().file), options_.every_pixel));
+  sensor_.camera = thinned_camera(options_, thinned(first_readable(images_), options_.every_pixel));
   sensor_.modulation = {simulator.frequency_a_hz, simulator.frequency_b_hz};
   sensor_.max_range_m = simulator.max_range_m;
   validate(sensor_.camera);
   validate(sensor_.modulation);
   rays_ = pixel_rays(sensor_.camera);
-  noise_sigma_ = noise_strength(simulator.range_noise_m, sensor_.modulation);
+  noise_sigma_ = std::hypot(noise_strength(simulator.range_noise_m, sensor_.modulation),
+                            dark_noise_sigma(sensor_effects(simulator_, sensor_.modulation)));
 }
 
 TumRecording::Frame TumRecording::read(int index) const {
   const DepthImage& image = images_.at(static_cast<std::size_t>(index));
   const ImageU16 depth = thinned(read_png_16(image.file), options_.every_pixel);
   if (!same_size(depth, rays_.z)) {
-    throw InputError(image.file.string() + ": is not of the size of the first image");
+    throw InputError(image.file.string() + ": is of another size than the first image");
   }
   Frame out;
   out.world_from_camera = pose_at(poses_, image.timestamp_s, options_.max_pose_gap_s);
@@ -124,17 +156,24 @@ TumRecording::Frame TumRecording::read(int index) const {
   const ImageF nothing = ImageF::Constant(depth.rows(), depth.cols(), nan);
   out.range_truth_m = frame.phase_a = frame.phase_b = nothing;
   frame.amplitude_a = frame.amplitude_b = ImageF::Zero(depth.rows(), depth.cols());
-  const auto key = mix(static_cast<std::uint64_t>(seed_)) + 2 * static_cast<std::uint64_t>(index);
+  const auto key =
+      mix(static_cast<std::uint64_t>(simulator_.seed)) + 2 * static_cast<std::uint64_t>(index);
+  const SensorEffects effects = sensor_effects(simulator_, sensor_.modulation);
+  const float farthest_m = sensor_.max_range_m > 0
+                               ? std::min(longest_range_m, static_cast<float>(sensor_.max_range_m))
+                               : longest_range_m;
   for (Eigen::Index i = 0; i < depth.size(); ++i) {
     if (depth.data()[i] == 0) continue;
     const float range_m =
         static_cast<float>(depth.data()[i] / options_.steps_per_m) / rays_.z.data()[i];
-    if (range_m > longest_range_m) continue;
+    if (range_m > farthest_m) continue;
     out.range_truth_m.data()[i] = range_m;
     const double strength = amplitude_unit * options_.reflectance / (double{range_m} * range_m);
     const auto at = [&](double wavelength_m, std::uint64_t image_key) {
-      const double angle = 2 * std::numbers::pi * range_m / wavelength_m;
-      return measure(std::polar(strength, angle) +
+      const PixelLight light = light_from(strength, double{range_m}, wavelength_m);
+      const std::complex<double> ideal =
+          effects.are_none() ? light.first : demodulate({light, light, light, light}, effects);
+      return measure(ideal +
                      noise_sigma_ * complex_noise(mix(image_key), static_cast<std::uint64_t>(i)));
     };
     const auto a = at(sensor_.modulation.wavelength_a_m(), key);

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <initializer_list>
+#include <set>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <yaml-cpp/yaml.h>
@@ -23,6 +26,12 @@ class YamlSection {
   YamlSection(const std::filesystem::path& file, std::string name, const YAML::Node& node)
       : file_(file), name_(std::move(name)), node_(node) {
     if (!node_.IsMap()) fail(name_.empty() ? "the file" : name_, "must be a map of keys");
+    std::set<std::string> keys;
+    for (const auto& entry : node_) {
+      if (!keys.insert(entry.first.as<std::string>()).second) {
+        fail(key(entry.first.as<std::string>()), "stands there twice");
+      }
+    }
   }
 
   [[noreturn]] void fail(const std::string& key, const std::string& what) const {
@@ -83,12 +92,23 @@ class YamlSection {
  private:
   template <class T>
   T convert(const YAML::Node& node, const std::string& name, const char* expected) const {
+    const std::string given = node.IsScalar() ? ", not '" + node.Scalar() + "'" : "";
     try {
-      return node.as<T>();
+      T value = node.as<T>();
+      if (is_finite(value)) return value;
     } catch (const YAML::Exception&) {
-      const std::string given = node.IsScalar() ? ", not '" + node.Scalar() + "'" : "";
-      fail(name, std::string("must be ") + expected + given);
+      // said below
     }
+    fail(name, std::string("must be ") + expected + given);
+  }
+
+  template <class T>
+  static bool is_finite(const T& value) {
+    if constexpr (std::is_floating_point_v<T>) return std::isfinite(value);
+    return true;
+  }
+  static bool is_finite(const std::vector<double>& values) {
+    return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
   }
 
   std::filesystem::path file_;

@@ -3,6 +3,7 @@
 
 #include "tofmap/core/camera.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -15,6 +16,16 @@ namespace tofmap {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// What no camera has: a lens longer than so many sides of its image, an optical centre so many
+/// sides off, a distortion that moves the corners so many times nearer to the centre, or farther
+/// off. (Images that were cropped have their centre elsewhere.)
+constexpr double most_sides_of_focal_length = 120;
+constexpr double most_sides_off = 20;
+constexpr double most_distorted = 3;
+
+/// The tangent of a ray's angle to the optical axis.
+double off_axis(const Eigen::Vector3d& ray) { return ray.head<2>().norm() / ray.z(); }
 
 bool is_distorted(const CameraModel& camera) {
   for (const double k : camera.distortion) {
@@ -80,16 +91,35 @@ void validate(const CameraModel& camera) {
   const bool focal_ok = std::isfinite(camera.fx_px) && std::isfinite(camera.fy_px) &&
                         camera.fx_px > 0 && camera.fy_px > 0;
   if (!focal_ok) fail("fx and fy must be positive");
-  if (!std::isfinite(camera.cx_px) || !std::isfinite(camera.cy_px))
-    fail("cx and cy must be finite");
+  const double longer_side_px = std::max(camera.width_px, camera.height_px);
+  const double longest_focal_px = most_sides_of_focal_length * longer_side_px;
+  if (std::max(camera.fx_px, camera.fy_px) > longest_focal_px) {
+    fail("fx and fy must be at most " + std::to_string(std::lround(longest_focal_px)) +
+         " pixels, half a degree for the image; are they in pixels?");
+  }
+  const double cx_off_px = std::abs(camera.cx_px - camera.width_px / 2.0);
+  const double cy_off_px = std::abs(camera.cy_px - camera.height_px / 2.0);
+  if (!(cx_off_px <= most_sides_off * camera.width_px &&
+        cy_off_px <= most_sides_off * camera.height_px)) {
+    fail("cx and cy must lie near the image; are they in pixels?");
+  }
   for (const double k : camera.distortion) {
     if (!std::isfinite(k)) fail("distortion must be five finite numbers: k1 k2 p1 p2 k3");
   }
+  CameraModel pinhole = camera;
+  pinhole.distortion = {};
   // The corners are the farthest from the axis: if they have rays, so have all pixels.
   for (const double u : {0.0, camera.width_px - 1.0}) {
     for (const double v : {0.0, camera.height_px - 1.0}) {
-      if (!pixel_ray(camera, u, v).allFinite()) {
+      const Eigen::Vector3d ray = pixel_ray(camera, u, v);
+      if (!ray.allFinite()) {
         fail("the distortion coefficients fold the image: its corners have no viewing ray");
+      }
+      const double ratio = off_axis(ray) / off_axis(pixel_ray(pinhole, u, v));
+      if (ratio > most_distorted || ratio < 1 / most_distorted) {
+        fail(
+            "the distortion coefficients move the corners of the image by more than any lens; "
+            "are they k1 k2 p1 p2 k3?");
       }
     }
   }

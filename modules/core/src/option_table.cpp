@@ -170,6 +170,15 @@ void OptionTable::load(const std::filesystem::path& file, const OptionTable& oth
   }
 }
 
+std::vector<OptionText> OptionTable::texts() const {
+  std::vector<OptionText> texts;
+  for (const Entry& entry : entries_) {
+    texts.push_back(
+        {entry.group, entry.name, entry.text(), entry.allowed(), entry.unit, entry.meaning});
+  }
+  return texts;
+}
+
 std::string OptionTable::to_yaml(bool with_comments) const {
   std::ostringstream out;
   std::string group;

@@ -82,7 +82,8 @@ void MotionUncertainty::serialize(Archive& archive, unsigned) {
 
 template <class Archive>
 void Odometry::serialize(Archive& archive, unsigned) {
-  archive& last_& before_last_& frames_since_placed_& uncertainty_;
+  archive& last_& before_last_& frames_since_placed_& recent_periods_s_& last_timestamp_s_;
+  archive& uncertainty_;
 }
 
 template <class Archive>

@@ -9,6 +9,14 @@
 namespace tofmap {
 namespace {
 
+/// One that has not been placed for longer may have moved otherwise than before.
+constexpr double periods_of_steady_tracking = 3.5;
+
+/// Share of the frame's points that agree with the targets; 0 if registration failed.
+double support(const RegistrationResult& result) {
+  return succeeded(result.status) ? result.overlap * result.inlier_share : 0;
+}
+
 bool has_surface(const SurfaceCloud& cloud, int min_points) {
   int count = 0;
   for (const SurfacePoint& point : cloud.points) {
@@ -68,7 +76,8 @@ Odometry::Odometry(const CameraModel& camera, const OdometryOptions& options,
       uncertainty_(options.prior_rotation_sigma_rad, options.prior_translation_sigma_m) {}
 
 TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
-                               std::span<const Keyframe* const> around) {
+                               std::span<const Keyframe* const> around,
+                               const std::function<bool(const RegistrationResult&)>& is_believed) {
   TrackingResult result;
   ++frames_since_placed_;
   if (!has_surface(cloud, registration_.min_correspondences)) {
@@ -80,14 +89,22 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
     accept({timestamp_s, result.world_from_camera});
     return result;
   }
-  const MotionPrior prior = predict(timestamp_s);
-  std::vector<RegistrationTarget> targets;
-  for (const Keyframe* keyframe : choose_targets(cloud, prior.world_from_camera, around)) {
-    targets.push_back(target_of(*keyframe));
-    result.targets.push_back(keyframe->id);
+  MotionPrior prior = predict(timestamp_s);
+  register_from(prior, cloud, around, result);
+  MotionPrior standing = prior;
+  standing.world_from_camera = last_->world_from_camera;
+  if (is_after_gap(timestamp_s) && deviation(prior, standing.world_from_camera) > 0) {
+    // It may as well have stood still.
+    TrackingResult other;
+    register_from(standing, cloud, around, other);
+    if (support(other.registration) > support(result.registration)) {
+      result = other;
+      prior = standing;
+    }
   }
-  result.registration = register_to_targets(cloud, targets, camera_, prior, registration_);
   if (!succeeded(result.registration.status)) {
+    result.status = TrackingStatus::lost;
+  } else if (is_believed && !is_believed(result.registration)) {
     result.status = TrackingStatus::lost;
   } else if (deviation(prior, result.registration.world_from_camera) >
              options_.max_prior_deviation) {
@@ -96,27 +113,86 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
     result.status = TrackingStatus::tracked;
     result.world_from_camera = result.registration.world_from_camera;
     // The prior of one frame does not tell of those before it that left a direction open, too.
-    uncertainty_.learn(frames_since_placed_, result.registration.surface_information);
+    const double periods = std::max(1.0, periods_since_placed(timestamp_s));
+    uncertainty_.learn(static_cast<int>(std::lround(periods)),
+                       result.registration.surface_information);
     result.registration.covariance = uncertainty_.of_pose();
     accept({timestamp_s, result.world_from_camera});
   }
   return result;
 }
 
+void Odometry::register_from(const MotionPrior& prior, const SurfaceCloud& cloud,
+                             std::span<const Keyframe* const> around,
+                             TrackingResult& result) const {
+  std::vector<RegistrationTarget> targets;
+  for (const Keyframe* keyframe : choose_targets(cloud, prior.world_from_camera, around)) {
+    targets.push_back(target_of(*keyframe));
+    result.targets.push_back(keyframe->id);
+  }
+  RegistrationOptions registration = registration_;
+  // From far off more steps are needed.
+  constexpr int times = 3;
+  if (prior.translation_sigma_m > periods_of_steady_tracking * options_.prior_translation_sigma_m) {
+    registration.max_iterations *= times;
+  }
+  result.registration = register_to_targets(cloud, targets, camera_, prior, registration);
+}
+
+bool Odometry::is_after_gap(double timestamp_s) const {
+  return periods_since_placed(timestamp_s) > periods_of_steady_tracking;
+}
+
+bool Odometry::is_within_reach(double timestamp_s, const Pose& pose) const {
+  constexpr double most_sigmas = 4;
+  if (!last_) return false;
+  MotionPrior prior = predict(timestamp_s);
+  if (deviation(prior, pose) <= most_sigmas) return true;
+  prior.world_from_camera = last_->world_from_camera;
+  return deviation(prior, pose) <= most_sigmas;
+}
+
+void Odometry::note_frame(double timestamp_s) {
+  constexpr std::size_t enough = 15;
+  if (last_ && timestamp_s > last_timestamp_s_) {
+    recent_periods_s_.push_back(timestamp_s - last_timestamp_s_);
+    if (recent_periods_s_.size() > enough) recent_periods_s_.erase(recent_periods_s_.begin());
+  }
+  last_timestamp_s_ = timestamp_s;
+}
+
+double Odometry::periods_since_placed(double timestamp_s) const {
+  if (!last_) return 0;
+  double periods = frames_since_placed_;
+  if (!recent_periods_s_.empty()) {
+    // Of frames that are dropped now and then most still come one after the other.
+    std::vector<double> periods_s = recent_periods_s_;
+    const auto usual = periods_s.begin() + static_cast<std::ptrdiff_t>((periods_s.size() - 1) / 2);
+    std::ranges::nth_element(periods_s, usual);
+    periods = std::max(periods, (timestamp_s - last_->timestamp_s) / *usual);
+  }
+  constexpr double for_ever = 1000;
+  return std::min(periods, for_ever);
+}
+
 MotionPrior Odometry::predict(double timestamp_s) const {
   MotionPrior prior;
-  // Every frame that could not be placed adds its share of unknown motion.
-  prior.rotation_sigma_rad = frames_since_placed_ * options_.prior_rotation_sigma_rad;
-  prior.translation_sigma_m = frames_since_placed_ * options_.prior_translation_sigma_m;
+  // Every frame that could not be placed, or never came, adds its share of unknown motion.
+  const double periods = std::max(1.0, periods_since_placed(timestamp_s));
+  prior.rotation_sigma_rad = periods * options_.prior_rotation_sigma_rad;
+  prior.translation_sigma_m = periods * options_.prior_translation_sigma_m;
   prior.world_from_camera = last_->world_from_camera;
-  const double last_step_s = before_last_ ? last_->timestamp_s - before_last_->timestamp_s : 0;
-  // After a gap the old velocity says little: a camera that is lost is expected to stay.
+  // Frames that were there and could not be placed are a sign that motion has changed. Where none
+  // came it is the best guess, for some time.
   constexpr int frames_of_steady_motion = 3;
+  constexpr double most_periods = 30;
+  const double last_step_s = before_last_ ? last_->timestamp_s - before_last_->timestamp_s : 0;
   if (last_step_s > 0 && frames_since_placed_ <= frames_of_steady_motion) {
     const double share = (timestamp_s - last_->timestamp_s) / last_step_s;
     const Pose step = before_last_->world_from_camera.inverse() * last_->world_from_camera;
     // A camera that turns goes on along its own axes, not along the world's.
-    prior.world_from_camera = last_->world_from_camera * interpolate(Pose::Identity(), step, share);
+    prior.world_from_camera = last_->world_from_camera *
+                              interpolate(Pose::Identity(), step, std::min(share, most_periods));
   }
   return prior;
 }

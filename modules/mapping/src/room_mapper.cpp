@@ -44,6 +44,7 @@ TrackingResult RoomMapper::track(int frame_index, double timestamp_s,
                                  const std::shared_ptr<const SurfaceCloud>& cloud) {
   const std::vector<const Keyframe*> around = keyframes_around();
   TrackingResult result = find_camera(timestamp_s, *cloud, around);
+  odometry_.note_frame(timestamp_s);
   if (!frames_.empty()) lost_frames_ = result.placed() ? 0 : lost_frames_ + 1;
   if (!result.placed()) return result;
   result.is_keyframe = result.status != TrackingStatus::relocalised &&
@@ -78,13 +79,26 @@ TrackingResult RoomMapper::find_camera(double timestamp_s, const SurfaceCloud& c
     const TrackingResult found = relocalised(timestamp_s, cloud);
     if (found.placed() || lost_frames_ >= frames_until_given_up) return found;
   }
-  return odometry_.track(timestamp_s, cloud, around);
+  if (!odometry_.is_after_gap(timestamp_s)) return odometry_.track(timestamp_s, cloud, around);
+  return odometry_.track(timestamp_s, cloud, around, [this](const RegistrationResult& result) {
+    return result.overlap >= loop_options_.min_overlap &&
+           result.inlier_share >= loop_options_.min_inlier_share;
+  });
 }
 
 TrackingResult RoomMapper::relocalised(double timestamp_s, const SurfaceCloud& cloud) {
   TrackingResult result;
   const auto found = relocalise(cloud, keyframes_.all(), camera_, loop_options_, registration_);
   if (!found) return result;
+  // Many places look alike: one that is too far to have come there must look the same.
+  constexpr double sure_support = 0.85;
+  constexpr double sure_support_within_reach = 0.6;
+  const RegistrationResult& there = found->registration;
+  const bool is_within_reach = odometry_.is_within_reach(timestamp_s, there.world_from_camera);
+  if (there.overlap * there.inlier_share <
+      (is_within_reach ? sure_support_within_reach : sure_support)) {
+    return result;
+  }
   result.status = TrackingStatus::relocalised;
   result.world_from_camera = found->registration.world_from_camera;
   result.registration = found->registration;

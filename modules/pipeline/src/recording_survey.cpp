@@ -5,19 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <utility>
 
-#include <tofmap/acquisition/phase_error_fit.hpp>
 #include <tofmap/core/median.hpp>
-#include <tofmap/unwrap/unwrap.hpp>
+#include <tofmap/core/text.hpp>
+#include <tofmap/pipeline/axial_depth.hpp>
 
 namespace tofmap {
 namespace {
 
-/// Frames that are unwrapped, spread evenly, and pixels of each that are looked at.
+/// Frames whose frequencies are compared, spread evenly.
 constexpr int beat_frames = 12;
-constexpr int beat_stride = 3;
-constexpr std::size_t least_beat_pixels = 300;
 
 /// Images with fewer returns may be of one range.
 constexpr int least_returns = 100;
@@ -36,10 +34,6 @@ bool is_constant(const ImageF& phase) {
     ++returns;
   }
   return returns >= least_returns && most - least < no_difference;
-}
-
-bool is_same(const ImageF& one, const ImageF& other) {
-  return same_size(one, other) && (one == other || (one.isNaN() && other.isNaN())).all();
 }
 
 bool is_without_return(const DualFrequencyFrame& frame) {
@@ -64,44 +58,6 @@ struct PixelTotals {
   double share(double of) const { return all > 0 ? of / all : 0; }
 };
 
-/// By how much A measures more than B, in single pixels.
-std::vector<float> differences_m(const std::vector<DualFrequencyFrame>& frames,
-                                 const SensorModel& sensor) {
-  UnwrapOptions options;
-  options.method = "pixel";
-  Unwrapper unwrapper(sensor, options);
-  std::vector<RangePair> pairs;
-  for (const DualFrequencyFrame& frame : frames) {
-    const ImageF range_m = unwrapper.unwrap(frame).image.range_m;
-    append_range_pairs(frame, sensor.modulation, range_m, 0, beat_stride, pairs);
-  }
-  std::vector<float> differences;
-  for (const RangePair& pair : pairs) differences.push_back(pair.a_m - pair.b_m);
-  return differences;
-}
-
-double spread_of(std::vector<float> values, float middle) {
-  for (float& value : values) value = std::abs(value - middle);
-  return sigma_of_median_deviation * double{median(values)};
-}
-
-std::optional<BeatSurvey> survey_beat(const std::vector<DualFrequencyFrame>& frames,
-                                      const SensorModel& sensor) {
-  std::vector<float> differences = differences_m(frames, sensor);
-  if (differences.size() < least_beat_pixels) return std::nullopt;
-  BeatSurvey survey;
-  const float middle = median(differences);
-  survey.offset_m = double{middle};
-  survey.spread_m = spread_of(differences, middle);
-  SensorModel swapped = sensor;
-  std::swap(swapped.modulation.frequency_a_hz, swapped.modulation.frequency_b_hz);
-  std::vector<float> of_swapped = differences_m(frames, swapped);
-  survey.swapped_spread_m = spread_of(of_swapped, median(of_swapped));
-  survey.ambiguity_m =
-      std::abs(sensor.modulation.wavelength_a_m() - sensor.modulation.wavelength_b_m());
-  return survey;
-}
-
 void survey_times(const std::vector<SequenceFrameFiles>& files, RecordingSurvey& survey) {
   std::vector<double> periods_s;
   for (std::size_t i = 1; i < files.size(); ++i) {
@@ -114,76 +70,61 @@ void survey_times(const std::vector<SequenceFrameFiles>& files, RecordingSurvey&
   if (!periods_s.empty()) survey.median_period_s = median(periods_s);
 }
 
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  char buffer[512];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
-
 void doubt_returns(const RecordingSurvey& survey, std::vector<std::string>& doubts) {
   constexpr double most_without_return = 0.5;
   const int whole = survey.frames - static_cast<int>(survey.damages.size());
   if (whole > 0 && survey.without_return == whole) {
     doubts.emplace_back("no pixel has a return; are the phase images mislabelled?");
   } else if (survey.without_return > 0) {
-    doubts.push_back(
-        text("%d frames have no return at all; was the camera covered?", survey.without_return));
+    doubts.push_back(counted(static_cast<std::size_t>(survey.without_return), "frame") +
+                     " without any return; was the camera covered?");
   } else if (survey.no_return_share > most_without_return) {
     doubts.push_back(
-        text("%.0f %% of the pixels have no return; is the exposure too short, or the "
-             "scene out of reach?",
-             100 * survey.no_return_share));
+        formatted("%.0f %% of the pixels have no return; is the exposure too short, or the "
+                  "scene out of reach?",
+                  100 * survey.no_return_share));
   }
   constexpr double most_saturated = 0.05;
   if (survey.saturated_share > most_saturated) {
     doubts.push_back(
-        text("%.0f %% of the pixels are saturated, and left out; a shorter exposure "
-             "would keep them",
-             100 * survey.saturated_share));
+        formatted("%.0f %% of the pixels are saturated, and left out; a shorter exposure "
+                  "would keep them",
+                  100 * survey.saturated_share));
   }
 }
 
 void doubt_images(const RecordingSurvey& survey, std::vector<std::string>& doubts) {
   if (!survey.constant_images.empty()) {
     doubts.push_back(
-        text("%zu images hold one phase everywhere, %s the first; they are no "
-             "measurement",
-             survey.constant_images.size(), survey.constant_images.front().c_str()));
+        formatted("%zu images hold one phase everywhere, %s the first; they are no "
+                  "measurement",
+                  survey.constant_images.size(), survey.constant_images.front().c_str()));
   }
   if (survey.repeated > 0) {
-    doubts.push_back(
-        text("%d frames repeat the one before; did the camera stand still in its software?",
-             survey.repeated));
+    doubts.push_back(counted(static_cast<std::size_t>(survey.repeated), "frame") +
+                     (survey.repeated == 1 ? " repeats" : " repeat") +
+                     " the one before; did the camera's software stand still?");
   }
 }
 
 void doubt_times(const RecordingSurvey& survey, std::vector<std::string>& doubts) {
+  constexpr double longest_period_s = 10;
+  constexpr double shortest_period_s = 1e-3;
+  const bool is_none_of_a_camera =
+      survey.median_period_s > longest_period_s ||
+      (survey.median_period_s > 0 && survey.median_period_s < shortest_period_s);
+  if (is_none_of_a_camera) {
+    doubts.push_back(formatted("%.3g s from frame to frame; are the times in frames.txt seconds?",
+                               survey.median_period_s));
+  }
   constexpr double most_periods = 5;
   if (survey.longest_gap_s > most_periods * survey.median_period_s) {
     doubts.push_back(
-        text("after frame %d nothing was recorded for %.2f s, %.0f frame periods; the "
-             "camera may be lost there",
-             survey.frame_before_gap, survey.longest_gap_s,
-             survey.longest_gap_s / survey.median_period_s));
+        formatted("after frame %d nothing was recorded for %.2f s, %.0f frame periods; the "
+                  "camera may be lost there",
+                  survey.frame_before_gap, survey.longest_gap_s,
+                  survey.longest_gap_s / survey.median_period_s));
   }
-}
-
-void doubt_beat(const BeatSurvey& beat, std::vector<std::string>& doubts) {
-  constexpr double telling_ratio = 0.5;
-  if (beat.swapped_spread_m < telling_ratio * beat.spread_m) {
-    doubts.push_back(text(
-        "both frequencies agree within %.0f mm if they are swapped, and within %.0f mm as they "
-        "are; are frequency_a_hz and frequency_b_hz mixed up, or the folders of A and B?",
-        1000 * beat.swapped_spread_m, 1000 * beat.spread_m));
-    return;
-  }
-  constexpr double most_offset_m = 0.02;  // motion between both images makes some millimetres
-  if (std::abs(beat.offset_m) < most_offset_m) return;
-  doubts.push_back(text(
-      "A measures %+.0f mm more than B (or that and a multiple of %.0f mm): the phase offset of "
-      "one of them seems wrong; 'tofmap calibrate' against known ranges finds both",
-      1000 * beat.offset_m, 1000 * beat.ambiguity_m));
 }
 
 }  // namespace
@@ -196,7 +137,7 @@ RecordingSurvey survey_recording(const SequenceReader& recording,
   RecordingSurvey survey;
   PixelTotals totals;
   std::vector<DualFrequencyFrame> some;
-  ImageF last_phase;
+  DualFrequencyFrame last;
   for (int i = 0; i < count; ++i) {
     if (keep_going && !keep_going()) break;
     ++survey.frames;
@@ -209,16 +150,19 @@ RecordingSurvey survey_recording(const SequenceReader& recording,
     totals.add(frame, sensor.saturation_amplitude);
     survey.without_amplitude += frame.has_amplitude() ? 0 : 1;
     survey.without_return += is_without_return(frame) ? 1 : 0;
-    survey.repeated += is_same(frame.phase_a, last_phase) ? 1 : 0;
+    const bool is_repeated =
+        same_values(frame.phase_a, last.phase_a) && same_values(frame.phase_b, last.phase_b);
+    survey.repeated += is_repeated ? 1 : 0;
     const SequenceFrameFiles& files = recording.files()[static_cast<std::size_t>(i)];
     if (is_constant(frame.phase_a)) survey.constant_images.push_back(files.phase_a.string());
     if (is_constant(frame.phase_b)) survey.constant_images.push_back(files.phase_b.string());
-    last_phase = frame.phase_a;
-    if (i % every == 0) some.push_back(std::move(frame));
+    if (i % every == 0) some.push_back(frame);
+    last = std::move(frame);
   }
   survey.no_return_share = totals.share(totals.without_return);
   survey.saturated_share = totals.share(totals.saturated);
   survey_times(recording.files(), survey);
+  survey.axial_depth_doubt = axial_depth_doubt(some, sensor);
   survey.beat = survey_beat(some, sensor);
   return survey;
 }
@@ -232,7 +176,14 @@ std::vector<std::string> doubts_about(const RecordingSurvey& survey, const Senso
   doubt_returns(survey, doubts);
   doubt_images(survey, doubts);
   doubt_times(survey, doubts);
-  if (survey.beat) doubt_beat(*survey.beat, doubts);
+  if (survey.axial_depth_doubt) {
+    doubts.push_back(*survey.axial_depth_doubt);
+    return doubts;  // A and B cannot agree then
+  }
+  // Constant images have been doubted already, and do not agree with others.
+  if (survey.beat && survey.constant_images.empty()) {
+    for (std::string& doubt : doubts_about(*survey.beat)) doubts.push_back(std::move(doubt));
+  }
   return doubts;
 }
 

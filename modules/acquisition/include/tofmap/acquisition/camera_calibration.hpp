@@ -31,9 +31,18 @@ struct PhaseError {
   double at_m(double phase_cycles) const;
 };
 
+/// What the recordings have in common that a calibration is of.
+struct CalibratedWith {
+  int width_px = 0;
+  int height_px = 0;
+  Modulation modulation;
+};
+
 /// What is known of one camera beyond what a recording says.
 struct CameraCalibration {
-  std::optional<CameraModel> camera;  ///< instead of the recording's
+  std::filesystem::path file;          ///< that it was read from, for messages; empty: from none
+  std::optional<CalibratedWith> with;  ///< for no other recordings
+  std::optional<CameraModel> camera;   ///< instead of the recording's
   PhaseError error_a;
   PhaseError error_b;
   double saturation_amplitude = 0;  ///< from which on a pixel counts as saturated; 0: not known
@@ -51,9 +60,9 @@ void write_calibration(const std::filesystem::path& file, const CameraCalibratio
 /// Whether a file is a calibration, whatever it says.
 bool is_calibration(const std::filesystem::path& file);
 
-/// The sensor with what the calibration knows better. Throws InputError if its camera is of another
-/// size.
-SensorModel calibrated(SensorModel sensor, const CameraCalibration& calibration);
+/// The sensor with what the calibration knows better. Throws InputError if it is of a camera of
+/// another size or other frequencies, or an error rises with the phase faster than a range does.
+SensorModel calibrated(const SensorModel& sensor, const CameraCalibration& calibration);
 
 /// Takes the errors out of both phases, which stay in [0, 1).
 void calibrate(DualFrequencyFrame& frame, const Modulation& modulation,

@@ -37,7 +37,8 @@ bool is_device_uri(const std::string& text);
 ///
 /// Frames are made of the images that belong together; what does not is dropped and counted. An
 /// .oni file is read as fast as frames are asked for, a device as it delivers: ask from a thread of
-/// its own (QueuedSource), since it keeps only the latest image.
+/// its own (QueuedSource), since it keeps only the latest image. Files stay open until the program
+/// ends, some hundred kilobytes each: OpenNI2's player crashes now and then when it is closed.
 class OpenNi2Source final : public FrameSource {
  public:
   struct Settings {

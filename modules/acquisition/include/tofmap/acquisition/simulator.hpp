@@ -73,15 +73,22 @@ struct SubRay;
 /// same scene, options and seed give the same bits, whatever the number of threads.
 class Simulator final : public FrameSource {
  public:
-  /// Throws UsageError if an option is not allowed, InputError if the trajectory cannot be read.
-  Simulator(Scene scene, const SimulatorOptions& options);
+  /// `keep_going` is asked at every row of an image, from several threads; once it says no, the
+  /// frame being made is the last, and unfinished. Throws UsageError if an option is not allowed,
+  /// InputError if the trajectory cannot be read.
+  Simulator(Scene scene, const SimulatorOptions& options, std::function<bool()> keep_going = {});
 
   const SensorModel& sensor() const override { return sensor_; }
+
+  /// Nothing at the end, and once it is not to keep going.
   std::optional<SourcedFrame> next() override;
   std::optional<int> frame_count() const override { return static_cast<int>(motion_.at_a.size()); }
 
-  /// The frame of this index, 0 … frame_count() − 1, in any order.
+  /// The frame of this index, 0 … frame_count() − 1, in any order. It is unfinished if
+  /// is_stopped() afterwards.
   SimulatedFrame simulate(int index) const;
+
+  bool is_stopped() const { return keep_going_ && !keep_going_(); }
 
   /// Camera poses at the instants of A.
   const Trajectory& trajectory() const { return motion_.at_a; }
@@ -112,11 +119,12 @@ class Simulator final : public FrameSource {
   std::vector<Eigen::Vector3f> rays_;  ///< camera frame; all of a pixel's together, row by row
   double noise_sigma_ = 0;
   int next_index_ = 0;
+  std::function<bool()> keep_going_;
 };
 
 /// Writes all frames with groundtruth.txt, range_truth/ and scene.ply into a new or empty folder.
-/// `keep_going(done, total)` is asked before each frame; when it returns false, what was finished
-/// stays as a whole sequence. Returns how many frames were written.
+/// `keep_going(done, total)` is asked before each frame; when it returns false, or the simulator is
+/// stopped, what was finished stays as a whole sequence. Returns how many frames were written.
 int simulate_sequence(const Simulator& simulator, const std::filesystem::path& folder,
                       const std::function<bool(int done, int total)>& keep_going = {});
 

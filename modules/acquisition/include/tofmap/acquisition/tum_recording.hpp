@@ -26,12 +26,14 @@ struct TumOptions {
 };
 
 /// Real depth as a dual-frequency camera would have measured it: depth images become radial ranges,
-/// which are wrapped at both frequencies of `simulator` with its noise and seed, as if every
-/// surface had one reflectance and faced the camera. B is taken at the instant of A.
+/// which are wrapped at both frequencies of `simulator` with its noise, wiggling, dark charge, full
+/// wells and seed, as if every surface had one reflectance and faced the camera. B is taken at the
+/// instant of A. Other options of the simulator need a scene.
 class TumRecording {
  public:
   /// Reads depth.txt and, if it is there, groundtruth.txt. Throws InputError that names the file
-  /// and the remedy if the folder is no such recording, UsageError if an option is not allowed.
+  /// and the remedy if the folder is no such recording, or none of its images can be read;
+  /// UsageError if an option is not allowed, or would have no effect.
   TumRecording(std::filesystem::path folder, const TumOptions& options,
                const SimulatorOptions& simulator);
 
@@ -45,21 +47,21 @@ class TumRecording {
     std::optional<Pose> world_from_camera;  ///< nothing if no pose is near in time
   };
 
-  /// Throws InputError if its image cannot be read or is of another size than the first.
+  /// Throws InputError if its image cannot be read or is of another size than the first that can.
   Frame read(int index) const;
 
- private:
   struct DepthImage {
     double timestamp_s = 0;
     std::filesystem::path file;
   };
 
+ private:
   std::filesystem::path folder_;
   TumOptions options_;
   SensorModel sensor_;
   PixelRays rays_;
+  SimulatorOptions simulator_;
   double noise_sigma_ = 0;
-  int seed_ = 1;
   std::vector<DepthImage> images_;
   Trajectory poses_;
 };

@@ -29,8 +29,8 @@ struct CameraModel {
 /// the leftmost pixels to the right side of the rightmost: below π.
 CameraModel pinhole_camera(double horizontal_view_rad, int width_px, int height_px);
 
-/// Throws InputError if the size or focal length is not positive, a number is not
-/// finite, or the distortion folds the image over itself (a pixel has no ray).
+/// Throws InputError if the size or focal length is not positive, a number is not finite or beyond
+/// what cameras have, or the distortion folds the image over itself (a pixel has no ray).
 void validate(const CameraModel& camera);
 
 /// Unit vector from the optical centre through the pixel, in the camera frame.

@@ -23,4 +23,9 @@ bool same_size(const Eigen::DenseBase<A>& a, const Eigen::DenseBase<B>& b) {
   return a.rows() == b.rows() && a.cols() == b.cols();
 }
 
+/// True if they are equal, with NaN equal to NaN.
+inline bool same_values(const ImageF& a, const ImageF& b) {
+  return same_size(a, b) && ((a == b) || (a.isNaN() && b.isNaN())).all();
+}
+
 }  // namespace tofmap

@@ -28,6 +28,19 @@ struct OptionField {
   std::string_view choices{};  ///< strings only: "a | b | c"; empty: any text
 };
 
+/// An option in words.
+struct OptionText {
+  std::string group;  ///< empty at the top level
+  std::string name;
+  std::string value;    ///< as YAML has it
+  std::string allowed;  ///< "1 … 10", "true | false", "a | b | c", "any text"
+  std::string unit;     ///< empty if it has none
+  std::string meaning;
+
+  /// As `set` takes it.
+  std::string key() const { return group.empty() ? name : group + "." + name; }
+};
+
 /// The options of a program: bound structs, addressed as `group.name`.
 ///
 ///     OptionTable table;
@@ -69,6 +82,9 @@ class OptionTable {
 
   /// All options as YAML that `load` takes; with comments of unit, range and meaning on wish.
   std::string to_yaml(bool with_comments) const;
+
+  /// All options in their order.
+  std::vector<OptionText> texts() const;
 
  private:
   struct Entry {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdio>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,19 @@ std::string joined(const Words& words, std::string_view separator) {
     text += word;
   }
   return text;
+}
+
+/// As printf; longer texts are cut off.
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+  char buffer[512];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+/// "1 frame", "2 frames".
+inline std::string counted(std::size_t count, std::string_view what) {
+  return std::to_string(count) + " " + std::string(what) + (count == 1 ? "" : "s");
 }
 
 }  // namespace tofmap

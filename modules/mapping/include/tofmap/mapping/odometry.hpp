@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -37,7 +38,7 @@ enum class TrackingStatus {
   first,  ///< the first usable frame: it defines the world
   tracked,
   no_surface,   ///< the frame has too few points with normals
-  lost,         ///< registration failed
+  lost,         ///< registration failed, or is not believed
   implausible,  ///< registration ended farther from the expected pose than motion allows
   relocalised,  ///< lost before, and found again by a keyframe
 };
@@ -58,7 +59,8 @@ struct TrackingResult {
 };
 
 /// Follows the camera: registers each frame against those keyframes around it that overlap most,
-/// starting from constant velocity. The first frame with a surface is placed at the origin. A frame
+/// starting from constant velocity, and after a gap in time from where the camera was last as well,
+/// with three times the iterations. The first frame with a surface is placed at the origin. A frame
 /// that cannot be placed changes nothing but the time since the last placed one.
 class Odometry {
  public:
@@ -68,8 +70,21 @@ class Odometry {
   /// Frames come in the order of time. `around` are keyframes that agree with one another; the last
   /// one is registered against in any case. They may be empty only for the first frame that is
   /// placed.
+  /// Where `is_believed` says no of a registration, the camera counts as lost.
   TrackingResult track(double timestamp_s, const SurfaceCloud& cloud,
-                       std::span<const Keyframe* const> around);
+                       std::span<const Keyframe* const> around,
+                       const std::function<bool(const RegistrationResult&)>& is_believed = {});
+
+  /// To be called for every frame after it was tried, here or otherwise: the times between frames
+  /// tell the camera's period.
+  void note_frame(double timestamp_s);
+
+  /// Whether the last frame that was placed is more than three periods of the camera ago: frames
+  /// that never came count, too.
+  bool is_after_gap(double timestamp_s) const;
+
+  /// Whether a camera can have come there meanwhile.
+  bool is_within_reach(double timestamp_s, const Pose& pose) const;
 
   /// Goes on from a frame that was placed otherwise.
   void restart(const StampedPose& pose);
@@ -82,6 +97,9 @@ class Odometry {
   template <class Archive>
   void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
 
+  double periods_since_placed(double timestamp_s) const;
+  void register_from(const MotionPrior& prior, const SurfaceCloud& cloud,
+                     std::span<const Keyframe* const> around, TrackingResult& result) const;
   MotionPrior predict(double timestamp_s) const;
   std::vector<const Keyframe*> choose_targets(const SurfaceCloud& cloud, const Pose& expected,
                                               std::span<const Keyframe* const> around) const;
@@ -93,7 +111,9 @@ class Odometry {
   std::optional<StampedPose> last_;
   std::optional<StampedPose> before_last_;
   int frames_since_placed_ = 0;
-  MotionUncertainty uncertainty_;  ///< of the last pose that was placed
+  std::vector<double> recent_periods_s_;  ///< from frame to frame, the newest last
+  double last_timestamp_s_ = 0;           ///< of the last frame that was tried
+  MotionUncertainty uncertainty_;         ///< of the last pose that was placed
 };
 
 }  // namespace tofmap

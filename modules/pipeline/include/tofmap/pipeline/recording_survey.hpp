@@ -8,18 +8,9 @@
 #include <vector>
 
 #include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/pipeline/beat_survey.hpp>
 
 namespace tofmap {
-
-/// How both frequencies of a recording agree, each pixel by itself with the wraps that make them
-/// agree best.
-struct BeatSurvey {
-  double offset_m = 0;          ///< what A measures more than B; median
-  double spread_m = 0;          ///< of single pixels around it; robust standard deviation
-  double swapped_spread_m = 0;  ///< as if A had been taken at B's frequency, and B at A's
-  /// Offsets that differ by this cannot be told apart: one more wrap of both makes up for it.
-  double ambiguity_m = 0;
-};
 
 /// What a look at every frame of a recording tells.
 struct RecordingSurvey {
@@ -27,7 +18,7 @@ struct RecordingSurvey {
   std::vector<std::string> damages;  ///< of frames that could not be read
   int without_amplitude = 0;         ///< frames
   int without_return = 0;            ///< frames of which no pixel has one
-  int repeated = 0;                  ///< frames whose A is that of the frame before
+  int repeated = 0;                  ///< frames that are those before them
   std::vector<std::string>
       constant_images;         ///< phases that are the same wherever there is a return
   double no_return_share = 0;  ///< of all pixels
@@ -35,10 +26,11 @@ struct RecordingSurvey {
   double median_period_s = 0;
   double longest_gap_s = 0;
   int frame_before_gap = 0;
+  std::optional<std::string> axial_depth_doubt;  ///< see axial_depth.hpp
   std::optional<BeatSurvey> beat;  ///< if some hundred pixels have returns at both frequencies
 };
 
-/// Reads all frames, and unwraps some of them. `keep_going` is asked before each; false ends it.
+/// Reads all frames. `keep_going` is asked before each; false ends it.
 RecordingSurvey survey_recording(const SequenceReader& recording,
                                  const std::function<bool()>& keep_going = {});
 
