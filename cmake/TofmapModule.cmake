@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 
+# What nearly every file reads, itself or by way of others.
+set(tofmap_common_headers <algorithm> <filesystem> <functional> <string> <vector> <Eigen/Geometry>)
+
 # Flags that every target of the project gets, privately: consumers inherit none.
 function(tofmap_private_flags target)
   target_compile_features(${target} PUBLIC cxx_std_20)
@@ -26,6 +29,9 @@ function(tofmap_private_flags target)
     target_compile_options(${target} PRIVATE --coverage -fprofile-update=atomic)
     target_link_options(${target} PUBLIC --coverage)
   endif()
+  if(TOFMAP_PRECOMPILE_HEADERS)
+    target_precompile_headers(${target} PRIVATE ${tofmap_common_headers})
+  endif()
 endfunction()
 
 # tofmap_add_module(NAME SOURCES a.cpp … [PUBLIC lib …] [PRIVATE lib …])
@@ -35,7 +41,7 @@ endfunction()
 # Libraries of others are system headers: their warnings are not ours.
 function(tofmap_add_module name)
   cmake_parse_arguments(MODULE "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
-  list(TRANSFORM MODULE_SOURCES PREPEND src/)
+  list(TRANSFORM MODULE_SOURCES PREPEND src/ REGEX "^[^/]")
   add_library(tofmap_${name} ${MODULE_SOURCES})
   add_library(tofmap::${name} ALIAS tofmap_${name})
   set_property(GLOBAL APPEND PROPERTY TOFMAP_MODULES ${name})

@@ -10,7 +10,7 @@ packages=(
   build-essential cmake ninja-build ccache pkg-config git
   libeigen3-dev libyaml-cpp-dev libpng-dev libembree-dev libpcl-dev libceres-dev libvtk9-dev
   libboost-serialization-dev libopenni2-dev
-  libegl-dev libegl1 libgl1-mesa-dri libx11-dev
+  libjs-three libegl-dev libegl1 libgl1-mesa-dri libx11-dev
   nlohmann-json3-dev libcli11-dev libgtest-dev libgmock-dev libbenchmark-dev xvfb gcovr
 )
 missing=()
