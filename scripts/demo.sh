@@ -11,8 +11,8 @@ bash scripts/packages.sh
 build=${BUILD_DIR:-build}
 out=${OUT_DIR:-out/demo}
 
-cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER_LAUNCHER=ccache \
-  >/dev/null
+cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DTOFMAP_BUILD_TESTS=OFF \
+  -DCMAKE_CXX_COMPILER_LAUNCHER=ccache >/dev/null
 cmake --build "$build" --target tofmap
 tofmap="$build/apps/tofmap"
 
@@ -23,8 +23,8 @@ tofmap="$build/apps/tofmap"
 "$tofmap" evaluate "$out/recording" --out "$out/evaluation"
 
 echo
-echo "recording:                 $out/recording"
-echo "map with unwrapping:       $out/map/map.ply, look at it with: $tofmap view $out/map"
-echo "map without (for compare): $out/map_wrapped/map.ply"
-echo "pictures of both maps:     $out/map/pictures, $out/map_wrapped/pictures"
-echo "figures of all methods:    $out/evaluation/report.json, maps in $out/evaluation/pictures"
+echo "with and without unwrapping: $out/evaluation/report.html, to open in a browser"
+echo "the map:                     $out/map/map.ply, look at it with: $tofmap view $out/map"
+echo "its report and pictures:     $out/map/report.html, $out/map/pictures"
+echo "the map without unwrapping:  $out/map_wrapped/map.ply"
+echo "the recording:               $out/recording"

@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Installs the Debian 12 packages that building, running and testing tofmap need; those
-# that are there already cost nothing. Sourced or run by the other scripts.
+# Installs the Debian 12 packages that building and running tofmap need, with --tests those of its
+# tests as well; those that are there already cost nothing.
 set -euo pipefail
 
 packages=(
@@ -11,8 +11,14 @@ packages=(
   libeigen3-dev libyaml-cpp-dev libpng-dev libembree-dev libpcl-dev libceres-dev libvtk9-dev
   libboost-serialization-dev libopenni2-dev
   libjs-three libegl-dev libegl1 libgl1-mesa-dri libx11-dev
-  nlohmann-json3-dev libcli11-dev libgtest-dev libgmock-dev libbenchmark-dev xvfb gcovr
+  nlohmann-json3-dev libcli11-dev
 )
+if [[ ${1:-} == --tests ]]; then
+  packages+=(
+    libgtest-dev libgmock-dev libbenchmark-dev gcovr xvfb
+    chromium chromium-driver python3-selenium python3-pil
+  )
+fi
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")

@@ -6,10 +6,10 @@
 # BUILD_DIR chooses the build folder (default: build).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-bash scripts/packages.sh
+bash scripts/packages.sh --tests
 build=${BUILD_DIR:-build}
 
 cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-  -DTOFMAP_WARNINGS_AS_ERRORS=ON -DTOFMAP_BUILD_BENCHMARKS=ON -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
+  -DTOFMAP_BUILD_TESTS=ON -DTOFMAP_WARNINGS_AS_ERRORS=ON -DTOFMAP_BUILD_BENCHMARKS=ON -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
 cmake --build "$build"
 ctest --test-dir "$build" --output-on-failure -j "$(nproc)"
