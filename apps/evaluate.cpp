@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "command.hpp"
+#include "evaluation_page.hpp"
 #include "evaluation_report.hpp"
 #include "method_run.hpp"
 #include "options.hpp"
 #include "output_folder.hpp"
 #include "recording.hpp"
+#include "watched_source.hpp"
 
 #include <cstdio>
 #include <memory>
@@ -87,13 +89,20 @@ int run_evaluate(const EvaluateArguments& arguments) {
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit();
   if (!results.empty()) print_table(report);
-  if (!quiet) std::printf("report: %s\n", (out.final_path() / "report.json").c_str());
   if (!results.empty() && (down_to_map || options.pictures.frames > 0)) {
     add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
       write_method_pictures(folder, source, methods, options.pipeline.unwrap,
                             options.pipeline.filters, options.pictures);
       if (down_to_map) write_comparison(folder, results, options.pictures);
     });
+  }
+  if (!results.empty()) {
+    write_evaluation_page(out.final_path(), {source, truth, results, report, doubts_about(source),
+                                             options, table.to_yaml(false)});
+  }
+  if (!quiet) {
+    std::printf("report: %s, figures: report.json beside it\n",
+                (out.final_path() / "report.html").c_str());
   }
   return interrupted ? exit_status::interrupted : exit_status::done;
 }

@@ -45,6 +45,17 @@ Json unwrapping_json(const MethodResult& result) {
   return json;
 }
 
+Json over_range_json(const MethodResult& result) {
+  Json bins = Json::array();
+  for (const ErrorsOverRange::Bin& bin : over_range(result).bins()) {
+    bins.push_back({{"range_m", bin.range_m},
+                    {"pixels", bin.pixels},
+                    {"wrong_wrap_percent", number(bin.wrong_wrap_percent)},
+                    {"range_rmse_m", number(bin.range_rmse_m)}});
+  }
+  return bins;
+}
+
 Json trajectory_json(const MethodResult& result) {
   Json json = {{"registered_frames", result.map->trajectory.size()}};
   if (!result.trajectory) return json;
@@ -115,26 +126,33 @@ std::string cell(const Json& report, const Column& column, const std::string& me
 
 void add_to_report(Json& report, const MethodResult& result) {
   report["unwrapping"][result.name] = unwrapping_json(result);
+  Json bins = over_range_json(result);
+  if (!bins.empty()) report["over_range"][result.name] = std::move(bins);
   if (!result.map) return;
   report["filters"][result.name] = filters_json(result);
   report["trajectory"][result.name] = trajectory_json(result);
   report["map"][result.name] = map_json(result);
 }
 
-void print_table(const Json& report) {
-  const auto is_there = [&](const Column& column) { return report.contains(column.group); };
-  const auto print_line = [&](const std::string& name, const auto& text_of) {
-    std::printf("%-8s", name.c_str());
-    for (const Column& column : columns) {
-      if (is_there(column)) std::printf(" %10s", std::string(text_of(column)).c_str());
+std::vector<std::vector<std::string>> table_of(const Json& report) {
+  std::vector<std::vector<std::string>> lines{{"method"}, {""}};
+  for (const auto& [method, values] : report["unwrapping"].items()) lines.push_back({method});
+  for (const Column& column : columns) {
+    if (!report.contains(column.group)) continue;
+    lines[0].push_back(column.title);
+    lines[1].push_back(column.unit);
+    for (std::size_t i = 2; i < lines.size(); ++i) {
+      lines[i].push_back(cell(report, column, lines[i].front()));
     }
+  }
+  return lines;
+}
+
+void print_table(const Json& report) {
+  for (const std::vector<std::string>& line : table_of(report)) {
+    std::printf("%-8s", line.front().c_str());
+    for (std::size_t i = 1; i < line.size(); ++i) std::printf(" %10s", line[i].c_str());
     std::printf("\n");
-  };
-  print_line("method", [](const Column& column) { return column.title; });
-  print_line("", [](const Column& column) { return column.unit; });
-  for (const auto& [method, values] : report["unwrapping"].items()) {
-    print_line(method,
-               [&, &name = method](const Column& column) { return cell(report, column, name); });
   }
 }
 

@@ -91,7 +91,7 @@ Json frame_json(const FrameRecord& record) {
   return json;
 }
 
-Json summary_json(const RoomMap& map) {
+StageTimes mean_times(const RoomMap& map) {
   StageTimes mean;
   mean.unwrap_ms = mean_of(map, [](const FrameRecord& r) { return r.times.unwrap_ms; });
   mean.filter_ms = mean_of(map, [](const FrameRecord& r) { return r.times.filter_ms; });
@@ -99,6 +99,11 @@ Json summary_json(const RoomMap& map) {
   mean.register_ms = mean_of(map, [](const FrameRecord& r) { return r.times.register_ms; });
   mean.map_ms = mean_of(map, [](const FrameRecord& r) { return r.times.map_ms; });
   mean.loop_ms = mean_of(map, [](const FrameRecord& r) { return r.times.loop_ms; });
+  return mean;
+}
+
+Json summary_json(const RoomMap& map) {
+  const StageTimes mean = mean_times(map);
   int degenerate = 0;
   for (const FrameRecord& record : map.frames) {
     degenerate += record.tracking.registration.degenerate_directions > 0 ? 1 : 0;

@@ -18,6 +18,9 @@ void add_filter_counts(nlohmann::ordered_json& frame, const std::vector<FilterCo
 /// One frame of a map's report: unwrapping, filtering, tracking and times.
 nlohmann::ordered_json frame_json(const FrameRecord& record);
 
+/// Mean times of the stages over the frames that could be read.
+StageTimes mean_times(const RoomMap& map);
+
 /// Totals and means over a run.
 nlohmann::ordered_json summary_json(const RoomMap& map);
 

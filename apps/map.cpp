@@ -6,11 +6,13 @@
 #include "interruption.hpp"
 #include "live_input.hpp"
 #include "live_view.hpp"
+#include "map_page.hpp"
 #include "map_state.hpp"
 #include "options.hpp"
 #include "output_folder.hpp"
 #include "progress.hpp"
 #include "recording.hpp"
+#include "sampled_frames.hpp"
 #include "watched_source.hpp"
 
 #include <cstdio>
@@ -82,7 +84,7 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
   std::printf("%zu of %zu frames registered, %zu keyframes, %zu map points\n",
               map.trajectory.size(), map.frames.size(), map.keyframes.size(), map.surface.size());
   if (map.damaged() > 0) std::printf("%d frames were damaged, see report.json\n", map.damaged());
-  std::printf("map: %s, mesh and pictures beside it\n", (folder / "map.ply").c_str());
+  std::printf("map: %s, mesh, pictures and report.html beside it\n", (folder / "map.ply").c_str());
 }
 
 /// Puts the map in place.
@@ -136,13 +138,13 @@ int map_recording(const MapArguments& arguments, const ProgramOptions& options,
   const std::unique_ptr<LiveView> view = open_view(arguments);
   MapRun run(source.sensor(), options.pipeline);
   if (arguments.resume) take_up_map(arguments.out, run, source, options.pipeline);
+  const std::vector<std::string> doubts = doubts_about(source);
   RoomMap map;
   accompany(view.get(), [&] {
     follow_camera(run, source, arguments.common.quiet, view.get(),
                   [&] { return status_line(run); });
     if (run.is_interrupted()) write_map_state(out.path(), run, source, options.pipeline);
-    map =
-        finish_map(run, out, {arguments, options, table.to_yaml(false), doubts_about(source), {}});
+    map = finish_map(run, out, {arguments, options, table.to_yaml(false), doubts, {}});
   });
   if (map.interrupted && !arguments.common.quiet) {
     std::printf("interrupted; --resume goes on from %s\n", out.final_path().c_str());
@@ -152,6 +154,10 @@ int map_recording(const MapArguments& arguments, const ProgramOptions& options,
     if (map.interrupted) return;
     write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures);
   });
+  write_map_page(out.final_path(),
+                 {arguments.recording.sequence.string(), map, source.sensor(),
+                  sampled_frames(source, frames_for_page(options.report)),
+                  map.interrupted ? nullptr : &source, doubts, options, table.to_yaml(false)});
   if (view) view->show_result(map);
   return status_of(map);
 }
@@ -167,6 +173,7 @@ int map_device(const MapArguments& arguments, const ProgramOptions& options,
   const std::unique_ptr<LiveView> view = open_view(arguments);
   LiveInput input(uri, options, {});
   if (is_interrupted()) return exit_status::interrupted;
+  SamplingSource frames(input.frames(), frames_for_page(options.report));
   MapRun run(input.sensor(), options.pipeline);
   const auto remark = [&] {
     const std::string losses = input.losses();
@@ -174,7 +181,7 @@ int map_device(const MapArguments& arguments, const ProgramOptions& options,
   };
   RoomMap map;
   accompany(view.get(), [&] {
-    follow_camera(run, input.frames(), arguments.common.quiet, view.get(), remark);
+    follow_camera(run, frames, arguments.common.quiet, view.get(), remark);
     map = finish_map(run, out,
                      {arguments, options, table.to_yaml(false), input.doubts(), input.report()});
   });
@@ -185,6 +192,10 @@ int map_device(const MapArguments& arguments, const ProgramOptions& options,
   add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
     write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
   });
+  std::vector<std::string> warnings = input.doubts();
+  if (!losses.empty()) warnings.push_back("not mapped: " + losses);
+  write_map_page(out.final_path(), {uri, map, input.sensor(), frames.kept(), nullptr, warnings,
+                                    options, table.to_yaml(false)});
   if (view) view->show_result(map);
   const std::string silence = input.silence();
   if (!silence.empty()) throw InputError(silence);

@@ -21,12 +21,14 @@ namespace {
 UnwrappingRecord record_of(const UnwrapResult& unwrapped, double milliseconds,
                            const SequenceReader& recording, int index) {
   UnwrappingRecord record;
+  record.timestamp_s = recording.files()[static_cast<std::size_t>(index)].timestamp_s;
   record.milliseconds = milliseconds;
   record.iterations = unwrapped.iterations;
   record.converged = unwrapped.converged;
   if (const auto truth = recording.range_truth(index)) {
     const double wavelength_m = recording.sensor().modulation.wavelength_a_m();
     record.score = score_ranges(unwrapped.image, *truth, wavelength_m);
+    record.over_range.add(unwrapped.image, *truth, wavelength_m);
   }
   return record;
 }
@@ -59,6 +61,12 @@ Truth read_truth(const SequenceReader& source) {
     if (pose && ranges) truth.surface.add(*ranges, rays, *pose);
   }
   return truth;
+}
+
+ErrorsOverRange over_range(const MethodResult& result) {
+  ErrorsOverRange sum;
+  for (const UnwrappingRecord& frame : result.frames) sum.add(frame.over_range);
+  return sum;
 }
 
 MethodResult run_down_to_map(const std::string& method, const SequenceReader& recording,

@@ -24,7 +24,9 @@ Truth read_truth(const SequenceReader& source);
 
 /// How one frame was unwrapped.
 struct UnwrappingRecord {
+  double timestamp_s = 0;
   std::optional<RangeScore> score;  ///< if the frame's true ranges are known
+  ErrorsOverRange over_range;       ///< empty if they are not
   double milliseconds = 0;
   int iterations = 0;
   bool converged = false;
@@ -39,6 +41,9 @@ struct MethodResult {
   std::optional<MapScore> surface;
   bool interrupted = false;
 };
+
+/// The range errors of all frames of a result.
+ErrorsOverRange over_range(const MethodResult& result);
 
 /// From phases to the map. Throws InputError if more than half of the frames are damaged.
 MethodResult run_down_to_map(const std::string& method, const SequenceReader& recording,

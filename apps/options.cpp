@@ -59,6 +59,7 @@ OptionTable option_table(const std::string& command, ProgramOptions& options) {
   if (is_any_of({"register"})) table.bind("register", options.cloud_registration);
   if (is_any_of({"evaluate"})) table.bind("evaluation", options.evaluation);
   if (is_any_of({"unwrap", "map", "evaluate"})) table.bind("pictures", options.pictures);
+  if (is_any_of({"map", "evaluate"})) table.bind("report", options.report);
   return table;
 }
 

@@ -5,6 +5,7 @@
 #include "calibration_options.hpp"
 #include "evaluation_options.hpp"
 #include "pictures.hpp"
+#include "report_sections.hpp"
 
 #include <string>
 #include <vector>
@@ -48,6 +49,7 @@ struct ProgramOptions {
   CloudRegistrationOptions cloud_registration;
   EvaluationOptions evaluation;
   PictureOptions pictures;
+  ReportOptions report;
 };
 
 /// The commands that take options by --set and --config.

@@ -4,6 +4,7 @@
 #include "pictures.hpp"
 
 #include "output_folder.hpp"
+#include "sampled_frames.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -17,14 +18,6 @@
 
 namespace tofmap::app {
 namespace {
-
-/// Indices in the middles of `wanted` equal parts of a recording.
-std::vector<int> spread_indices(int total, int wanted) {
-  std::vector<int> indices;
-  const int count = std::min(total, wanted);
-  for (int i = 0; i < count; ++i) indices.push_back((2 * i + 1) * total / (2 * count));
-  return indices;
-}
 
 bool finds_jumps(const UnwrapOptions& options) {
   const UnwrapMethod method = unwrap_method(options);

@@ -127,5 +127,52 @@ TEST(MapScore, RefusesAnEmptyReference) {
   EXPECT_THROW(score_map(plane_map(1, 0.1), Pose::Identity(), {}), UsageError);
 }
 
+TEST(MapErrors, AreThoseOfTheScorePointByPoint) {
+  MapCloud map = plane_map(1.02, 0.03);
+  MapPoint astray;
+  astray.getVector3fMap() = Eigen::Vector3f(0, 0, 3);
+  map.points.push_back(astray);
+  const std::vector<float> errors = map_errors_m(map, Pose::Identity(), plane_reference());
+  ASSERT_EQ(errors.size(), map.points.size());
+  EXPECT_NEAR(errors.front(), 0.02, 1e-4);
+  EXPECT_NEAR(errors.back(), 2, 1e-4);
+  EXPECT_THROW(map_errors_m(map, Pose::Identity(), {}), UsageError);
+}
+
+TEST(ErrorsOverRange, AreBinnedByTheTruth) {
+  RangeImage image(1, 4);
+  image.range_m << 2.1F, 2.1F, 7.1F, 9.0F;
+  image.reason << 0, 0, 0, 0;
+  ImageF truth(1, 4);
+  truth << 2.2F, 7.2F, 7.4F, NAN;  // right, a wrap too near, right, not known
+  ErrorsOverRange errors;
+  errors.add(image, truth, 5);
+  ErrorsOverRange both;
+  both.add(errors);
+  both.add(errors);
+  const std::vector<ErrorsOverRange::Bin> bins = both.bins();
+  ASSERT_EQ(bins.size(), 2U);
+  EXPECT_DOUBLE_EQ(bins[0].range_m, 2.25);
+  EXPECT_EQ(bins[0].pixels, 2);
+  EXPECT_EQ(bins[0].wrong_wrap_percent, 0);
+  EXPECT_NEAR(bins[0].range_rmse_m, 0.1, 1e-6);
+  EXPECT_DOUBLE_EQ(bins[1].range_m, 7.25);
+  EXPECT_EQ(bins[1].pixels, 4);
+  EXPECT_EQ(bins[1].wrong_wrap_percent, 50);
+  EXPECT_NEAR(bins[1].range_rmse_m, 0.3, 1e-6);
+}
+
+TEST(PoseErrors, AreThoseOfTheScore) {
+  Trajectory estimate = straight_path();
+  estimate[4].world_from_camera.translation().z() += 0.2;
+  estimate[7].timestamp_s += 0.3;  // no true pose is that near
+  const auto score = score_trajectory(estimate, straight_path());
+  ASSERT_TRUE(score);
+  const auto errors = pose_errors(estimate, straight_path(), score->truth_from_estimate);
+  ASSERT_EQ(errors.size(), 10U);
+  EXPECT_EQ(errors[4].timestamp_s, 4);
+  EXPECT_DOUBLE_EQ(errors[4].error_m, score->ate_max_m);
+}
+
 }  // namespace
 }  // namespace tofmap

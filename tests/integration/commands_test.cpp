@@ -266,7 +266,10 @@ TEST_F(Commands, EvaluateComparesTheMethodsThatAreNamedAsFarAsAskedFor) {
   EXPECT_GT(report["unwrapping"]["none"]["wrong_wrap_percent"], 10);
   EXPECT_FALSE(report.contains("trajectory"));
   EXPECT_FALSE(report.contains("map"));
-  EXPECT_THAT(names_in(out_), ElementsAre("options.yaml", "report.json"));
+  const auto& bins = report["over_range"]["none"];
+  ASSERT_FALSE(bins.empty());
+  EXPECT_EQ(bins.back()["wrong_wrap_percent"], 100) << "beyond one wavelength";
+  EXPECT_THAT(names_in(out_), ElementsAre("options.yaml", "report.html", "report.json"));
 }
 
 TEST_F(Commands, EvaluateDrawsFramesByEveryMethod) {

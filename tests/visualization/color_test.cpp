@@ -29,6 +29,13 @@ TEST(ColorScale, GrowsLighterEvenly) {
   }
 }
 
+TEST(ColorScale, ShowsErrorsEverDarker) {
+  const ColorScale scale(0, 1, "error", ColorRamp::error);
+  for (int i = 0; i < 16; ++i) {
+    EXPECT_LT(lightness(scale((i + 1) / 16.0)), lightness(scale(i / 16.0))) << i;
+  }
+}
+
 TEST(ColorScale, StopsAtItsLimitsAndShowsMissingValuesAsSuch) {
   const ColorScale scale(2, 4, "range, m");
   EXPECT_EQ(scale(1), scale(2));

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <tofmap/core/error.hpp>
 #include <tofmap/visualization/map_pictures.hpp>
 
 namespace tofmap {
@@ -130,6 +131,42 @@ TEST(MapDrawing, OfPointsWithoutNormalsHasDots) {
   const Drawing drawing = map_drawing(map, {}, level_frame(map, {}));
   EXPECT_EQ(drawing.points.front().points_m.size(), map.size());
   EXPECT_TRUE(drawing.points.front().normals.empty());
+}
+
+/// Pixels of a colour, but for those of its legend.
+std::ptrdiff_t count_color(const Picture& picture, Rgb color) {
+  return std::ranges::count(picture.pixels, color);
+}
+
+TEST(MapDrawing, TakesTheColoursOfAnyQuantity) {
+  const MapCloud map = box_map(Pose::Identity());
+  const LevelFrame frame = level_frame(map, {});
+  const ColorScale scale(0, 1, "error, m", ColorRamp::error);
+  const MapColoring wrong{std::vector<float>(map.size(), 2.0F), scale};
+  const Drawing drawing = map_drawing(map, {}, frame, wrong);
+  EXPECT_EQ(std::ranges::count(drawing.points[0].colors, scale(1)),
+            static_cast<std::ptrdiff_t>(map.size()));
+  EXPECT_THROW(map_drawing(map, {}, frame, {{1.0F}, scale}), UsageError);
+}
+
+TEST(PathsFromAbove, ShowsEveryPathOverTheMapAndBeyondIt) {
+  const Pose box_from_camera = box_from_first_camera();
+  const MapCloud map = box_map(box_from_camera.inverse());
+  const auto path_to = [&](double x_m) {
+    Trajectory path(2);
+    path[1].timestamp_s = 1;
+    const Eigen::Vector3d way(x_m, 0, 0);
+    path[1].world_from_camera.translation() = box_from_camera.linear().transpose() * way;
+    return path;
+  };
+  const LevelFrame frame = level_frame(map, path_to(1));
+  const Rgb inside{1, 2, 200};
+  const Rgb outside{200, 2, 1};
+  const Picture picture = paths_from_above(
+      map, {{"inside", path_to(1), inside}, {"outside", path_to(20), outside}}, frame, 600);
+  EXPECT_GT(count_color(picture, inside), 20);
+  EXPECT_GT(count_color(picture, outside), 1000) << "it is long, and all of it is there";
+  EXPECT_GT(paths_from_above({}, {}, LevelFrame(), 600).width_px, 0) << "nothing at all";
 }
 
 }  // namespace

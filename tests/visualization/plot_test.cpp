@@ -55,6 +55,18 @@ TEST(PlotPicture, FindsItsLimitsItself) {
   EXPECT_GT(count_line(plot_picture(plot, 600, 400), 400, 600, 0, 200), 50);
 }
 
+TEST(PlotPicture, SpreadsDecadesEvenlyOnALogarithmicAxis) {
+  Plot plot = rising();
+  plot.has_log_y = true;
+  plot.y_limit = 0;
+  plot.lines[0] = {"decades", {0, 5, 10}, {0.001, 0.01, 0.1}};
+  const Picture picture = plot_picture(plot, 600, 400);
+  // On a linear axis the middle of the line would be near the bottom.
+  EXPECT_GT(count_line(picture, 260, 340, 130, 250), 20);
+  plot.lines[0].y = {0, -1, 0.1};
+  EXPECT_EQ(plot_picture(plot, 600, 400).width_px, 600) << "what is not positive is a gap";
+}
+
 TEST(PlotPicture, CanBeEmpty) {
   Plot plot = rising();
   plot.lines[0].x.clear();

@@ -71,6 +71,39 @@ Nearest nearest(const Tree& tree, const pcl::PointXYZ& point) {
   return {index[0], std::sqrt(square[0])};
 }
 
+/// A map in the frame of the reference, and the reference.
+struct Clouds {
+  Clouds(const MapCloud& map, const Pose& truth_from_map, const ReferenceSurface& reference) {
+    if (reference.points().empty()) throw UsageError("map score: the reference surface is empty");
+    for (const Eigen::Vector3f& p : reference.points()) truth->push_back({p.x(), p.y(), p.z()});
+    for (const MapPoint& point : map.points) {
+      const Eigen::Vector3f p =
+          (truth_from_map * point.getVector3fMap().cast<double>()).cast<float>();
+      placed->push_back({p.x(), p.y(), p.z()});
+    }
+  }
+
+  Cloud::Ptr truth = std::make_shared<Cloud>();
+  Cloud::Ptr placed = std::make_shared<Cloud>();
+};
+
+std::vector<float> errors_m(const Clouds& clouds) {
+  const Cloud& truth = *clouds.truth;
+  const Tree truth_tree = make_tree(clouds.truth);
+  std::vector<float> errors;
+  errors.reserve(clouds.placed->size());
+  for (const pcl::PointXYZ& point : clouds.placed->points) {
+    const Nearest found = nearest(truth_tree, point);
+    double gap_m = found.gap_m;
+    if (gap_m < near_m) {
+      const Eigen::Vector3f d = point.getVector3fMap() - truth[found.index].getVector3fMap();
+      gap_m = std::abs(d.dot(plane_normal(truth, truth_tree, found.index)));
+    }
+    errors.push_back(static_cast<float>(gap_m));
+  }
+  return errors;
+}
+
 }  // namespace
 
 void ReferenceSurface::add(const ImageF& range_truth_m, const PixelRays& rays,
@@ -89,43 +122,35 @@ void ReferenceSurface::add(const ImageF& range_truth_m, const PixelRays& rays,
   }
 }
 
+std::vector<float> map_errors_m(const MapCloud& map, const Pose& truth_from_map,
+                                const ReferenceSurface& reference) {
+  const Clouds clouds(map, truth_from_map, reference);
+  return errors_m(clouds);
+}
+
 MapScore score_map(const MapCloud& map, const Pose& truth_from_map,
                    const ReferenceSurface& reference) {
-  if (reference.points().empty()) throw UsageError("map score: the reference surface is empty");
+  const Clouds clouds(map, truth_from_map, reference);
   MapScore score;
   score.accuracy_m = std::numeric_limits<double>::quiet_NaN();
   if (map.empty()) return score;
 
-  const auto truth = std::make_shared<Cloud>();
-  for (const Eigen::Vector3f& p : reference.points()) truth->push_back({p.x(), p.y(), p.z()});
-  const auto placed = std::make_shared<Cloud>();
-  for (const MapPoint& point : map.points) {
-    const Eigen::Vector3f p =
-        (truth_from_map * point.getVector3fMap().cast<double>()).cast<float>();
-    placed->push_back({p.x(), p.y(), p.z()});
-  }
-  const Tree truth_tree = make_tree(truth);
   double sum = 0;
   int far = 0;
-  for (const pcl::PointXYZ& point : placed->points) {
-    const Nearest found = nearest(truth_tree, point);
-    double gap = found.gap_m;
-    if (gap < near_m) {
-      const Eigen::Vector3f d = point.getVector3fMap() - (*truth)[found.index].getVector3fMap();
-      gap = std::abs(d.dot(plane_normal(*truth, truth_tree, found.index)));
-    }
-    sum += std::min(gap, worst_m);
-    far += gap > far_m ? 1 : 0;
+  for (const double error_m : errors_m(clouds)) {
+    sum += std::min(error_m, worst_m);
+    far += error_m > far_m ? 1 : 0;
   }
-  score.accuracy_m = sum / static_cast<double>(placed->size());
-  score.far_percent = 100.0 * far / static_cast<double>(placed->size());
+  const auto count = static_cast<double>(map.size());
+  score.accuracy_m = sum / count;
+  score.far_percent = 100.0 * far / count;
 
-  const Tree map_tree = make_tree(placed);
-  const auto covered = std::ranges::count_if(truth->points, [&](const pcl::PointXYZ& point) {
+  const Tree map_tree = make_tree(clouds.placed);
+  const auto covered = std::ranges::count_if(clouds.truth->points, [&](const pcl::PointXYZ& point) {
     return nearest(map_tree, point).gap_m < near_m;
   });
   score.completeness_percent =
-      100.0 * static_cast<double>(covered) / static_cast<double>(truth->size());
+      100.0 * static_cast<double>(covered) / static_cast<double>(clouds.truth->size());
   return score;
 }
 

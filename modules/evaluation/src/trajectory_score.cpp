@@ -17,6 +17,7 @@ namespace {
 constexpr double max_time_gap_s = 0.02;
 
 struct Matched {
+  std::vector<double> timestamps_s;
   std::vector<Pose> estimate;
   std::vector<Pose> truth;
 };
@@ -29,6 +30,7 @@ Matched match(const Trajectory& estimate, const Trajectory& truth) {
     };
     const auto nearest = std::ranges::min_element(truth, {}, gap);
     if (nearest == truth.end() || gap(*nearest) >= max_time_gap_s) continue;
+    matched.timestamps_s.push_back(pose.timestamp_s);
     matched.estimate.push_back(pose.world_from_camera);
     matched.truth.push_back(nearest->world_from_camera);
   }
@@ -45,6 +47,15 @@ Pose align(const Matched& matched) {
   }
   constexpr bool with_scale = false;
   return Pose(Eigen::umeyama(from, to, with_scale));
+}
+
+std::vector<PoseError> errors_of(const Matched& matched, const Pose& truth_from_estimate) {
+  std::vector<PoseError> errors;
+  for (std::size_t i = 0; i < matched.estimate.size(); ++i) {
+    const Eigen::Vector3d placed = truth_from_estimate * matched.estimate[i].translation();
+    errors.push_back({matched.timestamps_s[i], (placed - matched.truth[i].translation()).norm()});
+  }
+  return errors;
 }
 
 /// Length of the true path from the first pose to each.
@@ -80,6 +91,11 @@ void score_relative(const Matched& matched, const std::vector<double>& lengths,
 
 }  // namespace
 
+std::vector<PoseError> pose_errors(const Trajectory& estimate, const Trajectory& truth,
+                                   const Pose& truth_from_estimate) {
+  return errors_of(match(estimate, truth), truth_from_estimate);
+}
+
 std::optional<TrajectoryScore> score_trajectory(const Trajectory& estimate,
                                                 const Trajectory& truth) {
   const Matched matched = match(estimate, truth);
@@ -88,11 +104,9 @@ std::optional<TrajectoryScore> score_trajectory(const Trajectory& estimate,
   score.matched = static_cast<int>(matched.estimate.size());
   score.truth_from_estimate = align(matched);
   double sum = 0;
-  for (std::size_t i = 0; i < matched.estimate.size(); ++i) {
-    const Eigen::Vector3d placed = score.truth_from_estimate * matched.estimate[i].translation();
-    const double error = (placed - matched.truth[i].translation()).norm();
-    sum += error * error;
-    score.ate_max_m = std::max(score.ate_max_m, error);
+  for (const PoseError& pose : errors_of(matched, score.truth_from_estimate)) {
+    sum += pose.error_m * pose.error_m;
+    score.ate_max_m = std::max(score.ate_max_m, pose.error_m);
   }
   score.ate_rmse_m = std::sqrt(sum / score.matched);
   const std::vector<double> lengths = path_lengths(matched.truth);

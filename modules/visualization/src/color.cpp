@@ -6,22 +6,31 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include <tofmap/core/error.hpp>
 
 namespace tofmap {
 namespace {
 
-/// From dark to light; in between colours are mixed linearly, over steps short enough for it.
-constexpr std::array<Rgb, 9> scale_colors{{{24, 16, 80},
-                                           {30, 48, 128},
-                                           {22, 82, 152},
-                                           {16, 114, 158},
-                                           {24, 144, 150},
-                                           {64, 172, 128},
-                                           {128, 196, 100},
-                                           {196, 214, 84},
-                                           {252, 232, 112}}};
+// In between colours are mixed linearly, over steps short enough for it.
+constexpr std::array<Rgb, 9> quantity_colors{{{24, 16, 80},
+                                              {30, 48, 128},
+                                              {22, 82, 152},
+                                              {16, 114, 158},
+                                              {24, 144, 150},
+                                              {64, 172, 128},
+                                              {128, 196, 100},
+                                              {196, 214, 84},
+                                              {252, 232, 112}}};
+
+constexpr std::array<Rgb, 6> error_colors{
+    {{218, 224, 230}, {238, 196, 140}, {232, 150, 70}, {204, 98, 40}, {150, 44, 36}, {84, 8, 32}}};
+
+std::span<const Rgb> colors_of(ColorRamp ramp) {
+  if (ramp == ColorRamp::error) return error_colors;
+  return quantity_colors;
+}
 
 std::uint8_t mixed(std::uint8_t a, std::uint8_t b, double share) {
   return static_cast<std::uint8_t>(std::lround(a + (b - a) * share));
@@ -33,8 +42,8 @@ std::uint8_t to_byte(float share) {
 
 }  // namespace
 
-ColorScale::ColorScale(double low, double high, std::string label)
-    : low_(low), high_(high), label_(std::move(label)) {
+ColorScale::ColorScale(double low, double high, std::string label, ColorRamp ramp)
+    : low_(low), high_(high), label_(std::move(label)), ramp_(ramp) {
   if (!(low < high)) {
     throw UsageError("color scale: low is " + std::to_string(low) + " and high " +
                      std::to_string(high) + "; low must be less than high");
@@ -43,11 +52,12 @@ ColorScale::ColorScale(double low, double high, std::string label)
 
 Rgb ColorScale::operator()(double value) const {
   if (std::isnan(value)) return colors::invalid;
-  constexpr auto steps = static_cast<double>(scale_colors.size() - 1);
+  const std::span<const Rgb> colors = colors_of(ramp_);
+  const auto steps = static_cast<double>(colors.size() - 1);
   const double place = std::clamp((value - low_) / (high_ - low_), 0.0, 1.0) * steps;
   const auto step = static_cast<std::size_t>(std::min(std::floor(place), steps - 1));
-  const Rgb& a = scale_colors[step];
-  const Rgb& b = scale_colors[step + 1];
+  const Rgb& a = colors[step];
+  const Rgb& b = colors[step + 1];
   const double share = place - static_cast<double>(step);
   return {mixed(a.red, b.red, share), mixed(a.green, b.green, share), mixed(a.blue, b.blue, share)};
 }

@@ -3,7 +3,7 @@
 
 #include "tofmap/visualization/frame_pictures.hpp"
 
-#include "quantile.hpp"
+#include "frame_colors.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,47 +19,9 @@ constexpr int gap_px = 16;
 template <class Color>
 Picture image_picture(Eigen::Index rows, Eigen::Index cols, const Color& color,
                       Eigen::Index wanted_width_px = 530) {
-  Picture small(static_cast<int>(cols), static_cast<int>(rows));
-  for (int v = 0; v < small.height_px; ++v) {
-    for (int u = 0; u < small.width_px; ++u) small.at(u, v) = color(v, u);
-  }
   const Eigen::Index factor = wanted_width_px / std::max<Eigen::Index>(1, cols);
-  return magnified(small, static_cast<int>(std::max<Eigen::Index>(1, factor)));
-}
-
-/// A round number that all but the farthest few of the ranges stay below; 1 if there are none.
-double round_limit_m(const ImageF& range_m) {
-  constexpr double share = 0.998;
-  return std::max(1.0F, std::ceil(finite_quantile(range_m, share).value_or(1)));
-}
-
-/// How many wraps a pixel is off, and whether it is farther or nearer than the truth.
-namespace wrap_errors {
-constexpr Rgb none{232, 232, 232};
-constexpr Rgb too_near{0, 90, 181};
-constexpr Rgb too_far{220, 120, 0};
-}  // namespace wrap_errors
-
-Rgb wrap_error_color(float range_m, float truth_m, double wavelength_m) {
-  if (std::isnan(range_m) || std::isnan(truth_m)) return colors::white;
-  const double wraps = std::round((range_m - truth_m) / wavelength_m);
-  return wraps < 0 ? wrap_errors::too_near : wraps > 0 ? wrap_errors::too_far : wrap_errors::none;
-}
-
-/// Colours that stand out of those of ranges, from dark blue to light yellow.
-Rgb reason_color(InvalidReason reason) {
-  switch (reason) {
-    case InvalidReason::jump_edge:
-      return {214, 39, 40};
-    case InvalidReason::low_amplitude:
-      return {0, 0, 0};
-    case InvalidReason::low_confidence:
-      return {255, 255, 255};
-    case InvalidReason::isolated_wrap:
-      return {204, 121, 167};
-    default:
-      return {230, 120, 0};
-  }
+  return magnified(pixel_picture(rows, cols, color),
+                   static_cast<int>(std::max<Eigen::Index>(1, factor)));
 }
 
 Picture jump_panel(const std::array<ImageF, 3>& planes) {

@@ -10,6 +10,8 @@
 #include <numbers>
 #include <utility>
 
+#include <tofmap/core/error.hpp>
+
 namespace tofmap {
 namespace {
 
@@ -48,6 +50,31 @@ Picture with_scale_bar(const Picture& picture, double metres_per_px) {
   return stacked({picture, beside({bar, label}, gap_px / 2)}, gap_px / 2);
 }
 
+LineLayer path_line(const Trajectory& trajectory, const LevelFrame& frame, Rgb color,
+                    float width_px) {
+  LineLayer line{{}, color, width_px};
+  for (const StampedPose& pose : trajectory) {
+    line.points_m.push_back(
+        (frame.level_from_map * pose.world_from_camera.translation()).cast<float>());
+  }
+  return line;
+}
+
+/// A drawing from straight above, in parallel projection, with a scale in metres.
+Picture drawn_from_above(const Drawing& drawing, const Eigen::AlignedBox3d& box_m, int size_px) {
+  constexpr double margin_m = 0.3;
+  const Eigen::Vector3d size = box_m.sizes().array() + 2 * margin_m;
+  const double metres_per_px = std::max(size.x(), size.y()) / size_px;
+  const int width_px = static_cast<int>(std::ceil(size.x() / metres_per_px));
+  const int height_px = static_cast<int>(std::ceil(size.y() / metres_per_px));
+  Viewpoint viewpoint;
+  viewpoint.target_m = box_m.center();
+  viewpoint.eye_m = viewpoint.target_m + 2 * size.z() * Eigen::Vector3d::UnitZ();
+  viewpoint.up = Eigen::Vector3d::UnitY();
+  viewpoint.parallel_height_m = height_px * metres_per_px;
+  return with_scale_bar(draw(drawing, viewpoint, width_px, height_px), metres_per_px);
+}
+
 Viewpoint viewpoint_of(const Pose& level_from_camera, double vertical_fov_deg) {
   Viewpoint viewpoint;
   viewpoint.eye_m = level_from_camera.translation();
@@ -75,27 +102,40 @@ int count_seen(const PointLayer& layer, const Pose& level_from_camera, double ta
 
 }  // namespace
 
-Drawing map_drawing(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame) {
-  const ColorScale scale = height_scale(frame);
+MapColoring color_by_height(const MapCloud& map, const LevelFrame& frame) {
+  const Eigen::Vector3f up = frame.level_from_map.row(2).transpose().cast<float>();
+  const float floor_m = frame.box_m.isEmpty() ? 0 : static_cast<float>(frame.box_m.min().z());
+  MapColoring coloring{{}, height_scale(frame)};
+  coloring.values.reserve(map.size());
+  for (const MapPoint& point : map) {
+    coloring.values.push_back(up.dot(point.getVector3fMap()) - floor_m);
+  }
+  return coloring;
+}
+
+Drawing map_drawing(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame,
+                    const MapColoring& coloring) {
+  if (coloring.values.size() != map.size()) {
+    throw UsageError("map colours: there are not as many values as points");
+  }
   const Eigen::Matrix3f level_from_map = frame.level_from_map.cast<float>();
-  const double floor_m = frame.box_m.isEmpty() ? 0 : frame.box_m.min().z();
   PointLayer layer;
   layer.size_m = 1.6F * typical_spacing_m(map);  // overlap a little, so that no gaps show
   const bool has_normals =
       std::ranges::all_of(map, [](const MapPoint& point) { return std::isfinite(point.normal_z); });
-  for (const MapPoint& point : map) {
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const MapPoint& point = map[i];
     const Eigen::Vector3f p = level_from_map * point.getVector3fMap();
     if (!p.allFinite()) continue;
     layer.points_m.push_back(p);
-    layer.colors.push_back(scale(p.z() - floor_m));
+    layer.colors.push_back(coloring.scale(coloring.values[i]));
     if (has_normals) layer.normals.push_back(level_from_map * point.getNormalVector3fMap());
   }
-  LineLayer path{{}, colors::path, 2.5F};
-  for (const StampedPose& pose : trajectory) {
-    path.points_m.push_back(
-        (frame.level_from_map * pose.world_from_camera.translation()).cast<float>());
-  }
-  return {{std::move(layer)}, {std::move(path)}, {}};
+  return {{std::move(layer)}, {path_line(trajectory, frame, colors::path, 2.5F)}, {}};
+}
+
+Drawing map_drawing(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame) {
+  return map_drawing(map, trajectory, frame, color_by_height(map, frame));
 }
 
 LineLayer camera_outline(const Pose& level_from_camera) {
@@ -139,23 +179,41 @@ Viewpoint viewpoint_outside(const Eigen::AlignedBox3d& box_m) {
 }
 
 Picture map_from_above(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame,
-                       int size_px) {
+                       const MapColoring& coloring, int size_px) {
   if (frame.box_m.isEmpty()) return titled(Picture(size_px, size_px / 2), "the map is empty");
-  constexpr double margin_m = 0.3;
-  const Eigen::Vector3d size = frame.box_m.sizes().array() + 2 * margin_m;
-  const double metres_per_px = std::max(size.x(), size.y()) / size_px;
-  const int width_px = static_cast<int>(std::ceil(size.x() / metres_per_px));
-  const int height_px = static_cast<int>(std::ceil(size.y() / metres_per_px));
-  Viewpoint viewpoint;
-  viewpoint.target_m = frame.box_m.center();
-  viewpoint.eye_m = viewpoint.target_m + 2 * size.z() * Eigen::Vector3d::UnitZ();
-  viewpoint.up = Eigen::Vector3d::UnitY();
-  viewpoint.parallel_height_m = height_px * metres_per_px;
-  const Picture picture = draw(map_drawing(map, trajectory, frame), viewpoint, width_px, height_px);
-  const Picture legend = stacked({color_bar(height_scale(frame), std::min(height_px, 400)),
+  const Picture picture =
+      drawn_from_above(map_drawing(map, trajectory, frame, coloring), frame.box_m, size_px);
+  const Picture legend = stacked({color_bar(coloring.scale, std::min(picture.height_px, 400)),
                                   color_key({{colors::path, "camera"}})},
                                  gap_px);
-  return with_margin(beside({with_scale_bar(picture, metres_per_px), legend}, gap_px), gap_px);
+  return with_margin(beside({picture, legend}, gap_px), gap_px);
+}
+
+Picture map_from_above(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame,
+                       int size_px) {
+  return map_from_above(map, trajectory, frame, color_by_height(map, frame), size_px);
+}
+
+Picture paths_from_above(const MapCloud& map, const std::vector<NamedPath>& paths,
+                         const LevelFrame& frame, int size_px) {
+  Drawing drawing = map_drawing(map, {}, frame);
+  for (PointLayer& layer : drawing.points) std::ranges::fill(layer.colors, Rgb{225, 228, 232});
+  Eigen::AlignedBox3d box_m = frame.box_m;
+  std::vector<LegendEntry> entries;
+  drawing.lines.clear();
+  for (const NamedPath& path : paths) {
+    drawing.lines.push_back(path_line(path.trajectory, frame, path.color, path.width_px));
+    for (Eigen::Vector3f& point : drawing.lines.back().points_m) {
+      // Above all of the map, and above the paths before it.
+      point.z() = static_cast<float>(frame.box_m.isEmpty() ? 0 : frame.box_m.max().z()) +
+                  0.02F * static_cast<float>(drawing.lines.size());
+      box_m.extend(point.cast<double>());
+    }
+    entries.push_back({path.color, path.name});
+  }
+  if (box_m.isEmpty()) return titled(Picture(size_px, size_px / 2), "there is no path");
+  return with_margin(
+      beside({drawn_from_above(drawing, box_m, size_px), color_key(entries)}, gap_px), gap_px);
 }
 
 Viewpoint viewpoint_inside(const Drawing& drawing, const Trajectory& trajectory,

@@ -124,7 +124,7 @@ Picture color_key(const std::vector<LegendEntry>& entries) {
   return stacked(lines, gap_px);
 }
 
-void write_picture(const std::filesystem::path& file, const Picture& picture) {
+std::string encoded_png(const Picture& picture) {
   vtkNew<vtkImageData> image;
   image->SetDimensions(picture.width_px, picture.height_px, 1);
   image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
@@ -144,8 +144,14 @@ void write_picture(const std::filesystem::path& file, const Picture& picture) {
   writer->SetInputData(image);
   writer->Write();
   vtkUnsignedCharArray* png = writer->GetResult();
+  return {reinterpret_cast<const char*>(png->GetPointer(0)),
+          static_cast<std::size_t>(png->GetNumberOfValues())};
+}
+
+void write_picture(const std::filesystem::path& file, const Picture& picture) {
+  const std::string png = encoded_png(picture);
   std::ofstream out(file, std::ios::binary);
-  out.write(reinterpret_cast<const char*>(png->GetPointer(0)), png->GetNumberOfValues());
+  out.write(png.data(), static_cast<std::streamsize>(png.size()));
   out.close();
   if (!out) {
     std::error_code ignored;

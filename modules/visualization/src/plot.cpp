@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <vtkAxis.h>
 #include <vtkChartLegend.h>
@@ -57,7 +58,9 @@ void add_line(const PlotLine& line, std::size_t number, vtkChartXY& chart) {
   drawn->SetColor(color.red, color.green, color.blue, 255);
   drawn->SetWidth(2);
   drawn->GetPen()->SetLineType(line_dashes[number % line_dashes.size()]);
-  drawn->SetMarkerStyle(line_marks[number % line_marks.size()]);
+  constexpr std::size_t most_marks = 40;
+  drawn->SetMarkerStyle(line.x.size() > most_marks ? vtkPlotPoints::NONE
+                                                   : line_marks[number % line_marks.size()]);
   drawn->SetMarkerSize(7);
 }
 
@@ -83,6 +86,30 @@ double limit_or(double limit, const Plot& plot, std::vector<double> PlotLine::*v
   return greatest > 0 ? 1.1 * greatest : 1;
 }
 
+/// A logarithmic axis over whole decades.
+void set_log_axis(vtkAxis& axis, const Plot& plot) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const PlotLine& line : plot.lines) {
+    for (const double value : line.y) {
+      if (value > 0) least = std::min(least, value);
+    }
+  }
+  const double greatest = limit_or(plot.y_limit, plot, &PlotLine::y);
+  const double low = std::isfinite(least) ? std::floor(std::log10(least)) : 0;
+  const double high = std::max(low + 1, std::ceil(std::log10(greatest)));
+  set_axis(axis, plot.y_label, 0);
+  axis.SetRange(std::pow(10, low), std::pow(10, high));
+  axis.LogScaleOn();
+}
+
+/// The line as a logarithmic axis can show it.
+PlotLine positive(PlotLine line) {
+  for (double& value : line.y) {
+    if (!(value > 0)) value = std::numeric_limits<double>::quiet_NaN();
+  }
+  return line;
+}
+
 }  // namespace
 
 Picture plot_picture(const Plot& plot, int width_px, int height_px) {
@@ -95,12 +122,16 @@ Picture plot_picture(const Plot& plot, int width_px, int height_px) {
     if (line.x.size() != line.y.size()) {
       throw UsageError("plot: line '" + line.name + "' has not as many x as y");
     }
-    add_line(line, i, *chart);
+    add_line(plot.has_log_y ? positive(line) : line, i, *chart);
   }
   set_axis(*chart->GetAxis(vtkAxis::BOTTOM), plot.x_label,
            limit_or(plot.x_limit, plot, &PlotLine::x));
-  set_axis(*chart->GetAxis(vtkAxis::LEFT), plot.y_label,
-           limit_or(plot.y_limit, plot, &PlotLine::y));
+  vtkAxis& left = *chart->GetAxis(vtkAxis::LEFT);
+  if (plot.has_log_y) {
+    set_log_axis(left, plot);
+  } else {
+    set_axis(left, plot.y_label, limit_or(plot.y_limit, plot, &PlotLine::y));
+  }
   chart->GetLegend()->SetLabelSize(14);
   chart->GetLegend()->SetInline(false);  // beside the lines, not over them
   vtkNew<vtkContextActor> actor;

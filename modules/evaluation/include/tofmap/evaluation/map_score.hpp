@@ -34,9 +34,14 @@ struct MapScore {
   double completeness_percent = 0;  ///< true points with a map point within 0.1 m
 };
 
-/// Scores a map that `truth_from_map` moves into the frame of the reference. Near the reference
-/// (0.1 m) the distance is taken along its normal, so that its sampling does not count as error.
-/// An empty map has an accuracy of NaN. Throws UsageError if the reference is empty.
+/// How far each point of a map is from the true surface, metres; `truth_from_map` moves it into the
+/// frame of the reference. Near the reference (0.1 m) the distance is taken along its normal, so
+/// that its sampling does not count as error. Throws UsageError if the reference is empty.
+std::vector<float> map_errors_m(const MapCloud& map, const Pose& truth_from_map,
+                                const ReferenceSurface& reference);
+
+/// Scores a map by these errors. An empty map has an accuracy of NaN. Throws UsageError if the
+/// reference is empty.
 MapScore score_map(const MapCloud& map, const Pose& truth_from_map,
                    const ReferenceSurface& reference);
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include <tofmap/core/range_image.hpp>
@@ -21,5 +22,35 @@ RangeScore score_ranges(const RangeImage& image, const ImageF& truth_m, double w
 
 /// Mean over frames; frames without an RMSE do not count for it.
 RangeScore mean_score(const std::vector<RangeScore>& frames);
+
+/// Errors by how far away the surface truly is, over any number of frames.
+class ErrorsOverRange {
+ public:
+  static constexpr double bin_m = 0.5;  ///< how wide a bin is
+
+  /// Adds a frame; pixels and errors count as in score_ranges.
+  void add(const RangeImage& image, const ImageF& truth_m, double wavelength_a_m);
+
+  /// Adds what other frames gave.
+  void add(const ErrorsOverRange& others);
+
+  struct Bin {
+    double range_m = 0;       ///< its middle
+    std::int64_t pixels = 0;  ///< with a range
+    double wrong_wrap_percent = 0;
+    double range_rmse_m = 0;  ///< of those that are not wrong; NaN if there is none
+  };
+
+  /// Those with a pixel, the nearest first.
+  std::vector<Bin> bins() const;
+
+ private:
+  struct Sums {
+    std::int64_t pixels = 0;
+    std::int64_t wrong = 0;
+    double square_m2 = 0;
+  };
+  std::vector<Sums> sums_;
+};
 
 }  // namespace tofmap

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <tofmap/core/trajectory.hpp>
 
@@ -24,5 +25,15 @@ struct TrajectoryScore {
 /// Scores an estimate; nothing if fewer than three poses can be matched.
 std::optional<TrajectoryScore> score_trajectory(const Trajectory& estimate,
                                                 const Trajectory& truth);
+
+/// How far one pose of an aligned trajectory is from the true one.
+struct PoseError {
+  double timestamp_s = 0;
+  double error_m = 0;
+};
+
+/// The errors of all poses that have a true pose within 20 ms, after the alignment of a score.
+std::vector<PoseError> pose_errors(const Trajectory& estimate, const Trajectory& truth,
+                                   const Pose& truth_from_estimate);
 
 }  // namespace tofmap

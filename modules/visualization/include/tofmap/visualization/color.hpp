@@ -24,13 +24,18 @@ inline constexpr Rgb corrected{214, 39, 40};  ///< red: a point that unwrapping 
 inline constexpr Rgb path{230, 90, 0};        ///< where the camera went
 }  // namespace colors
 
-/// Colours of a quantity between two limits, from dark blue over green to light yellow. Lightness
-/// grows evenly with the value, so the order is seen in grey, too, and by those who do not tell
-/// red from green.
+/// Colours in an order. Lightness changes evenly along it, so the order is seen in grey, too, and
+/// by those who do not tell red from green.
+enum class ColorRamp {
+  quantity,  ///< from dark blue over green to light yellow
+  error,     ///< from light grey over orange to dark red: what is wrong stands out
+};
+
+/// Colours of a quantity between two limits.
 class ColorScale {
  public:
   /// `label` names quantity and unit, for the legend. Throws UsageError unless low < high.
-  ColorScale(double low, double high, std::string label);
+  ColorScale(double low, double high, std::string label, ColorRamp ramp = ColorRamp::quantity);
 
   /// Values beyond the limits get the colour of the limit; NaN is `colors::invalid`.
   Rgb operator()(double value) const;
@@ -46,6 +51,7 @@ class ColorScale {
   double low_;
   double high_;
   std::string label_;
+  ColorRamp ramp_;
 };
 
 /// The colour of a wrap count: neighbouring counts differ clearly, for all kinds of eyes; they

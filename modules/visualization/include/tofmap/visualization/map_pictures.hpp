@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include <Eigen/Geometry>
 
 #include <tofmap/cloud/cloud_file.hpp>
 #include <tofmap/core/trajectory.hpp>
+#include <tofmap/visualization/color.hpp>
 #include <tofmap/visualization/drawing.hpp>
 
 namespace tofmap {
@@ -26,7 +30,21 @@ LevelFrame level_frame(const MapCloud& map, const Trajectory& trajectory);
 /// The box of a level frame that was found before, of a map that has grown since.
 Eigen::AlignedBox3d level_box(const MapCloud& map, const Eigen::Matrix3d& level_from_map);
 
-/// The map in its level frame, coloured by height above the lowest surface, and the camera's path.
+/// What the points of a map are coloured by: a value each, and its scale.
+struct MapColoring {
+  std::vector<float> values;
+  ColorScale scale;
+};
+
+/// By height above the lowest surface of the frame's box.
+MapColoring color_by_height(const MapCloud& map, const LevelFrame& frame);
+
+/// The map in its level frame, and the camera's path. Points without a place are left out. Throws
+/// UsageError if there are not as many values as points.
+Drawing map_drawing(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame,
+                    const MapColoring& coloring);
+
+/// The same, coloured by height.
 Drawing map_drawing(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame);
 
 /// The pyramid that a camera sees, as far as half a metre.
@@ -41,9 +59,26 @@ Viewpoint viewpoint_inside(const Drawing& drawing, const Trajectory& trajectory,
                            const LevelFrame& frame, double aspect);
 
 /// The map from straight above, in parallel projection, with the camera's path, a legend of
-/// height, and a scale in metres. The longer side of the map is `size_px` long.
+/// its colours, and a scale in metres. The longer side of the frame's box is `size_px` long.
+Picture map_from_above(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame,
+                       const MapColoring& coloring, int size_px);
+
+/// The same, coloured by height.
 Picture map_from_above(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame,
                        int size_px);
+
+/// A path to be compared with others; poses in the frame of the map.
+struct NamedPath {
+  std::string name;
+  Trajectory trajectory;
+  Rgb color;
+  float width_px = 3;
+};
+
+/// Paths from straight above, over the map in light grey, with a legend and a scale in metres. The
+/// box of the frame, and all paths, are within. The first is drawn undermost.
+Picture paths_from_above(const MapCloud& map, const std::vector<NamedPath>& paths,
+                         const LevelFrame& frame, int size_px);
 
 /// The map as seen from inside, with a legend of height.
 Picture map_from_inside(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame,

@@ -53,6 +53,9 @@ struct LegendEntry {
 };
 Picture color_key(const std::vector<LegendEntry>& entries);
 
+/// The bytes of a PNG file.
+std::string encoded_png(const Picture& picture);
+
 /// Writes PNG. Throws InputError that names the file if it cannot be written whole.
 void write_picture(const std::filesystem::path& file, const Picture& picture);
 

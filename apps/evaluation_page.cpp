@@ -1,0 +1,226 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "evaluation_page.hpp"
+
+#include "evaluation_report.hpp"
+#include "report_sections.hpp"
+#include "sampled_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include <tofmap/core/text.hpp>
+#include <tofmap/visualization/plot.hpp>
+
+namespace tofmap::app {
+namespace {
+
+constexpr int plot_width_px = 640;
+constexpr int plot_height_px = 400;
+
+const MethodResult* find(const std::vector<MethodResult>& results, const std::string& name) {
+  const auto found = std::ranges::find(results, name, &MethodResult::name);
+  return found == results.end() ? nullptr : &*found;
+}
+
+/// The method that stands for unwrapping: the one that `map` would use, or else the last that
+/// unwraps.
+const MethodResult& with_unwrapping(const EvaluationPageSubject& subject) {
+  const MethodResult* found = find(subject.results, subject.options.pipeline.unwrap.method);
+  if (found) return *found;
+  const auto last =
+      std::ranges::find_if(subject.results.rbegin(), subject.results.rend(),
+                           [](const MethodResult& result) { return result.name != "none"; });
+  return last != subject.results.rend() ? *last : subject.results.back();
+}
+
+const MethodResult* without_unwrapping(const EvaluationPageSubject& subject) {
+  const MethodResult* found = find(subject.results, "none");
+  return found == &with_unwrapping(subject) ? nullptr : found;
+}
+
+/// "is 9 mm off and shows 98.6 % of the room", as far as it is known.
+std::string told(const MethodResult& result) {
+  std::string text;
+  if (result.surface) {
+    text = formatted("the map is %.0f mm off the true surface and shows %.1f %% of it",
+                     1000 * result.surface->accuracy_m, result.surface->completeness_percent);
+  } else if (result.trajectory) {
+    text = formatted("the path is %.0f mm off", 1000 * result.trajectory->ate_rmse_m);
+  } else if (result.map) {
+    text = std::to_string(result.map->trajectory.size()) + " of " +
+           counted(result.map->frames.size(), "frame") + " could be placed";
+  } else {
+    std::vector<RangeScore> scores;
+    for (const UnwrappingRecord& frame : result.frames) {
+      if (frame.score) scores.push_back(*frame.score);
+    }
+    if (scores.empty()) return counted(result.frames.size(), "frame") + " went through";
+    text = formatted("%.2f %% of the ranges are off by a wrap or more",
+                     mean_score(scores).wrong_wrap_percent);
+  }
+  return text;
+}
+
+std::string sentence_of(const EvaluationPageSubject& subject) {
+  const MethodResult& with = with_unwrapping(subject);
+  std::string text = "With unwrapping (" + with.name + ") " + told(with);
+  if (const MethodResult* without = without_unwrapping(subject)) {
+    text += "; without it, " + told(*without);
+  }
+  text += ".";
+  if (subject.truth.poses.empty()) text += " The true path is not known.";
+  return text;
+}
+
+Verdict verdict_of(const EvaluationPageSubject& subject) {
+  const MethodResult& with = with_unwrapping(subject);
+  if (with.name == "none") return Verdict::bad;
+  const double voxel_m = subject.options.pipeline.map.voxel_m;
+  if (with.surface) {
+    if (with.surface->accuracy_m > 5 * voxel_m) return Verdict::bad;
+    if (with.surface->accuracy_m > voxel_m) return Verdict::doubtful;
+  }
+  const bool is_lost = with.map && 100 * with.map->trajectory.size() < 95 * with.map->frames.size();
+  const bool is_known = with.surface || !with.map;
+  return is_lost || !is_known || !subject.warnings.empty() ? Verdict::doubtful : Verdict::good;
+}
+
+ShownMap shown_map(const MethodResult& result, const std::string& name, const Truth& truth) {
+  ShownMap map{name, &result.map->surface, &result.map->trajectory, std::nullopt, {}};
+  if (!result.trajectory) return map;
+  map.truth_from_map = result.trajectory->truth_from_estimate;
+  if (!truth.surface.points().empty()) {
+    map.errors_m = map_errors_m(*map.surface, *map.truth_from_map, truth.surface);
+  }
+  return map;
+}
+
+std::vector<ShownMap> shown_maps(const EvaluationPageSubject& subject) {
+  const MethodResult& with = with_unwrapping(subject);
+  const MethodResult* without = without_unwrapping(subject);
+  std::vector<ShownMap> maps;
+  maps.push_back(shown_map(with, "with unwrapping (" + with.name + ")", subject.truth));
+  if (without) maps.push_back(shown_map(*without, "without unwrapping", subject.truth));
+  return maps;
+}
+
+double start_s(const EvaluationPageSubject& subject) {
+  const auto& frames = subject.results.front().frames;
+  return frames.empty() ? 0 : frames.front().timestamp_s;
+}
+
+Plot path_error_plot(const EvaluationPageSubject& subject) {
+  Plot plot{"path error over time", "time, s", "distance to the true path, m", {}, 0, 0, true};
+  for (const MethodResult& result : subject.results) {
+    if (!result.trajectory) continue;
+    PlotLine line{result.name, {}, {}};
+    for (const PoseError& pose : pose_errors(result.map->trajectory, subject.truth.poses,
+                                             result.trajectory->truth_from_estimate)) {
+      line.x.push_back(pose.timestamp_s - start_s(subject));
+      line.y.push_back(pose.error_m);
+    }
+    plot.lines.push_back(std::move(line));
+  }
+  return plot;
+}
+
+Plot wrong_wraps_over_time(const EvaluationPageSubject& subject) {
+  Plot plot{"wrong wraps over time", "time, s", "ranges off by a wrap or more, %", {}};
+  for (const MethodResult& result : subject.results) {
+    PlotLine line{result.name, {}, {}};
+    for (const UnwrappingRecord& frame : result.frames) {
+      if (!frame.score) continue;
+      line.x.push_back(frame.timestamp_s - start_s(subject));
+      line.y.push_back(frame.score->wrong_wrap_percent);
+    }
+    if (!line.x.empty()) plot.lines.push_back(std::move(line));
+  }
+  return plot;
+}
+
+Plot over_range_plot(const EvaluationPageSubject& subject, Plot plot,
+                     double ErrorsOverRange::Bin::*value) {
+  for (const MethodResult& result : subject.results) {
+    PlotLine line{result.name, {}, {}};
+    for (const ErrorsOverRange::Bin& bin : over_range(result).bins()) {
+      line.x.push_back(bin.range_m);
+      line.y.push_back(bin.*value);
+    }
+    if (!line.x.empty()) plot.lines.push_back(std::move(line));
+  }
+  return plot;
+}
+
+void add_curves(ReportPage& page, const EvaluationPageSubject& subject) {
+  const std::vector<Plot> plots{
+      path_error_plot(subject), wrong_wraps_over_time(subject),
+      over_range_plot(
+          subject,
+          {"wrong wraps over range", "true range, m", "ranges off by a wrap or more, %", {}},
+          &ErrorsOverRange::Bin::wrong_wrap_percent),
+      over_range_plot(
+          subject,
+          {"range error over range, right wraps alone", "true range, m", "RMSE, m", {}, 0, 0, true},
+          &ErrorsOverRange::Bin::range_rmse_m)};
+  const bool has_any =
+      std::ranges::any_of(plots, [](const Plot& plot) { return !plot.lines.empty(); });
+  if (!has_any) return;
+  page.add_heading("Errors over time and over range");
+  add_drawn(page, [&] {
+    std::vector<PageFigure> figures;
+    for (const Plot& plot : plots) {
+      if (plot.lines.empty()) continue;
+      figures.push_back({plot_picture(plot, plot_width_px, plot_height_px), plot.title});
+    }
+    return figures;
+  });
+}
+
+/// The table of methods, its two lines of headings in one.
+PageTable methods_table(const nlohmann::ordered_json& report) {
+  std::vector<std::vector<std::string>> lines = table_of(report);
+  PageTable table{lines[0], {lines.begin() + 2, lines.end()}};
+  for (std::size_t i = 1; i < table.header.size(); ++i) table.header[i] += " " + lines[1][i];
+  return table;
+}
+
+void add_times(ReportPage& page, const EvaluationPageSubject& subject) {
+  std::vector<std::string> names;
+  std::vector<const RoomMap*> runs;
+  for (const MethodResult& result : subject.results) {
+    if (!result.map) continue;
+    names.push_back(result.name);
+    runs.push_back(&*result.map);
+  }
+  if (!runs.empty()) add_stage_times(page, names, runs);
+}
+
+}  // namespace
+
+void write_evaluation_page(const std::filesystem::path& result,
+                           const EvaluationPageSubject& subject) {
+  const MethodResult& with = with_unwrapping(subject);
+  ReportPage page("With and without unwrapping: " + subject.recording.folder().string(),
+                  "tofmap " TOFMAP_VERSION);
+  page.add_verdict(verdict_of(subject), sentence_of(subject));
+  page.add_warnings(subject.warnings);
+  page.add_heading("Methods");
+  page.add_table(methods_table(subject.report));
+  if (with.map) add_maps(page, shown_maps(subject), subject.truth.poses, subject.options.report);
+  add_curves(page, subject);
+  PipelineOptions pipeline = subject.options.pipeline;
+  pipeline.unwrap.method = with.name;
+  add_frames(
+      page, sampled_frames(subject.recording, subject.options.report.frames),
+      subject.recording.sensor(), pipeline,
+      [&](int index) { return subject.recording.range_truth(index); }, subject.options.report);
+  add_times(page, subject);
+  add_options(page, subject.options_yaml);
+  write_page(result, page);
+}
+
+}  // namespace tofmap::app

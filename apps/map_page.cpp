@@ -1,0 +1,215 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "map_page.hpp"
+
+#include "frame_report.hpp"
+#include "method_run.hpp"
+#include "report_sections.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <tofmap/core/text.hpp>
+#include <tofmap/visualization/plot.hpp>
+
+namespace tofmap::app {
+namespace {
+
+double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
+
+/// The map that the same path would give if nobody unwrapped.
+MapCloud wrapped_map(const MapPageSubject& subject) {
+  PipelineOptions options = subject.options.pipeline;
+  options.unwrap.method = "none";
+  options.map.min_observations = 1;  // there are but some of the frames
+  Unwrapper unwrapper(subject.sensor, options.unwrap);
+  const PixelRays rays = pixel_rays(subject.sensor.camera);
+  SurfaceMap map(options.map);
+  for (const DualFrequencyFrame& frame : subject.frames) {
+    const auto pose = pose_at(subject.map.trajectory, frame.timestamp_s);
+    if (!pose) continue;
+    map.integrate(*prepare_frame(frame, unwrapper, subject.sensor, rays, options).cloud, *pose);
+  }
+  return map.extract();
+}
+
+/// Share of the ranges, over some frames, that unwrapping moved.
+double moved_percent(const MapPageSubject& subject) {
+  Unwrapper unwrapper(subject.sensor, subject.options.pipeline.unwrap);
+  double moved = 0;
+  double valid = 0;
+  for (const DualFrequencyFrame& frame : subject.frames) {
+    const RangeImage image = unwrapper.unwrap(frame).image;
+    valid += image.count_valid();
+    moved += static_cast<double>((image.reason == 0 && image.wrap_count > 0).count());
+  }
+  return percent(moved, valid);
+}
+
+/// What is known of how right the map is.
+struct Scores {
+  std::optional<TrajectoryScore> trajectory;
+  std::optional<MapScore> surface;
+};
+
+Scores score(const RoomMap& map, const Truth& truth) {
+  Scores scores;
+  scores.trajectory = score_trajectory(map.trajectory, truth.poses);
+  if (scores.trajectory && !truth.surface.points().empty()) {
+    scores.surface = score_map(map.surface, scores.trajectory->truth_from_estimate, truth.surface);
+  }
+  return scores;
+}
+
+int degenerate_frames(const RoomMap& map) {
+  return static_cast<int>(std::ranges::count_if(map.frames, [](const FrameRecord& frame) {
+    return frame.tracking.registration.degenerate_directions > 0;
+  }));
+}
+
+Verdict verdict_of(const MapPageSubject& subject, const Scores& scores) {
+  const RoomMap& map = subject.map;
+  const double placed_percent =
+      percent(static_cast<double>(map.trajectory.size()), static_cast<double>(map.frames.size()));
+  const double open_percent =
+      percent(degenerate_frames(map), static_cast<double>(map.frames.size()));
+  if (scores.surface) {
+    const double voxel_m = subject.options.pipeline.map.voxel_m;
+    if (scores.surface->accuracy_m > 5 * voxel_m) return Verdict::bad;
+    if (scores.surface->accuracy_m > voxel_m) return Verdict::doubtful;
+  }
+  if (map.surface.empty() || placed_percent < 50 ||
+      subject.options.pipeline.unwrap.method == "none") {
+    return Verdict::bad;
+  }
+  const bool is_doubted =
+      !subject.warnings.empty() || placed_percent < 95 || open_percent > 10 || map.interrupted;
+  return is_doubted ? Verdict::doubtful : Verdict::good;
+}
+
+std::string sentence_of(const MapPageSubject& subject, const Scores& scores) {
+  const RoomMap& map = subject.map;
+  std::string text = std::to_string(map.trajectory.size()) + " of " +
+                     counted(map.frames.size(), "frame") + " could be placed. ";
+  if (subject.options.pipeline.unwrap.method == "none") {
+    text += "Nothing was unwrapped. ";
+  } else {
+    text += formatted(
+        "%.0f %% of the ranges were beyond the %.2f m that one frequency can tell and have been "
+        "unwrapped. ",
+        moved_percent(subject), subject.sensor.modulation.wavelength_a_m());
+  }
+  if (scores.surface) {
+    text +=
+        formatted("Against the truth, the map is %.0f mm off and shows %.1f %% of the surface. ",
+                  1000 * scores.surface->accuracy_m, scores.surface->completeness_percent);
+  }
+  if (scores.trajectory) {
+    text += formatted("The path is %.0f mm off.", 1000 * scores.trajectory->ate_rmse_m);
+  } else {
+    text += "The truth is not known.";
+  }
+  return text;
+}
+
+PageTable summary_table(const RoomMap& map, const Scores& scores) {
+  PageTable table{{"", ""}, {}};
+  const auto add = [&](const char* what, const std::string& value) {
+    table.rows.push_back({what, value});
+  };
+  const auto used = std::ranges::count_if(map.loops, [](const Loop& loop) { return loop.is_used; });
+  add("frames", std::to_string(map.frames.size()));
+  add("damaged", std::to_string(map.damaged()));
+  add("placed", std::to_string(map.trajectory.size()));
+  add("placed with a direction that no surface held", std::to_string(degenerate_frames(map)));
+  add("keyframes", std::to_string(map.keyframes.size()));
+  add("loops found, and believed", std::to_string(map.loops.size()) + ", " + std::to_string(used));
+  add("points of the map", std::to_string(map.surface.size()));
+  if (scores.trajectory) {
+    add("ATE, m (RMSE)", formatted("%.4f", scores.trajectory->ate_rmse_m));
+    add("ATE, m (greatest)", formatted("%.4f", scores.trajectory->ate_max_m));
+    add("RPE, m per m", formatted("%.4f", scores.trajectory->rpe_rmse_m_per_m));
+    add("RPE, degrees per m", formatted("%.3f", scores.trajectory->rpe_rmse_deg_per_m));
+  }
+  if (scores.surface) {
+    add("map error, m", formatted("%.4f", scores.surface->accuracy_m));
+    add("map points more than 0.2 m off, %", formatted("%.2f", scores.surface->far_percent));
+    add("surface shown, %", formatted("%.1f", scores.surface->completeness_percent));
+  }
+  return table;
+}
+
+/// How well each frame fitted, over time.
+Plot tracking_plot(const RoomMap& map) {
+  PlotLine overlap{"overlap with the map", {}, {}};
+  PlotLine inliers{"points that fit", {}, {}};
+  PlotLine kept{"pixels kept by filters", {}, {}};
+  for (const FrameRecord& frame : map.frames) {
+    if (!frame.damage.empty()) continue;
+    const double time_s = frame.timestamp_s - map.frames.front().timestamp_s;
+    for (PlotLine* line : {&overlap, &inliers, &kept}) line->x.push_back(time_s);
+    overlap.y.push_back(frame.tracking.registration.overlap);
+    inliers.y.push_back(frame.tracking.registration.inlier_share);
+    kept.y.push_back(frame.kept_pixels / std::max(1.0, static_cast<double>(frame.valid_pixels)));
+  }
+  return {"", "time, s", "share", {overlap, inliers, kept}, 0, 1};
+}
+
+std::vector<ShownMap> shown_maps(const MapPageSubject& subject, const Truth& truth,
+                                 const Scores& scores, const MapCloud& wrapped) {
+  const std::string& method = subject.options.pipeline.unwrap.method;
+  std::vector<ShownMap> maps;
+  maps.push_back({method == "none" ? "without unwrapping" : "with unwrapping (" + method + ")",
+                  &subject.map.surface,
+                  &subject.map.trajectory,
+                  std::nullopt,
+                  {}});
+  if (!wrapped.empty()) {
+    maps.push_back(
+        {"the same path, ranges as measured", &wrapped, &subject.map.trajectory, std::nullopt, {}});
+  }
+  for (ShownMap& map : maps) {
+    if (!scores.trajectory) continue;
+    map.truth_from_map = scores.trajectory->truth_from_estimate;
+    if (truth.surface.points().empty()) continue;
+    map.errors_m = map_errors_m(*map.surface, *map.truth_from_map, truth.surface);
+  }
+  return maps;
+}
+
+}  // namespace
+
+int frames_for_page(const ReportOptions& options) { return std::max(60, options.frames); }
+
+void write_map_page(const std::filesystem::path& result, const MapPageSubject& subject) {
+  const RoomMap& map = subject.map;
+  const Truth truth = subject.recording ? read_truth(*subject.recording) : Truth{};
+  const Scores scores = score(map, truth);
+  const bool is_unwrapped = subject.options.pipeline.unwrap.method != "none";
+  const MapCloud wrapped = is_unwrapped ? wrapped_map(subject) : MapCloud();
+
+  ReportPage page("Map of " + subject.source,
+                  "tofmap " TOFMAP_VERSION ", method " + subject.options.pipeline.unwrap.method);
+  page.add_verdict(verdict_of(subject, scores), sentence_of(subject, scores));
+  page.add_warnings(subject.warnings);
+  add_maps(page, shown_maps(subject, truth, scores, wrapped), truth.poses, subject.options.report);
+  add_frames(
+      page, subject.frames, subject.sensor, subject.options.pipeline,
+      [&](int index) {
+        return subject.recording ? subject.recording->range_truth(index) : std::nullopt;
+      },
+      subject.options.report);
+  page.add_heading("Figures");
+  page.add_table(summary_table(map, scores));
+  page.add_heading("Tracking over time");
+  add_drawn(page, [&] {
+    return std::vector<PageFigure>{
+        {plot_picture(tracking_plot(map), 1000, 420), "how each frame fitted what was there"}};
+  });
+  add_stage_times(page, {"mean"}, {&map});
+  add_options(page, subject.options_yaml);
+  write_page(result, page);
+}
+
+}  // namespace tofmap::app

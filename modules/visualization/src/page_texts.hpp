@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string_view>
+
+/// What is the same in every page, from src/page; three.js and its OrbitControls from Debian.
+namespace tofmap::page_texts {
+
+extern const std::string_view style;
+extern const std::string_view strip;
+extern const std::string_view scene;
+extern const std::string_view three_notice;
+extern const std::string_view three;
+extern const std::string_view orbit_controls;
+
+}  // namespace tofmap::page_texts

@@ -1,0 +1,288 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/visualization/report_page.hpp"
+
+#include "page_texts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+#include <vtkBase64Utilities.h>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+/// An element with a text in it; `start` is its name with its attributes.
+std::string element(std::string_view start, std::string_view text) {
+  const std::string name(start.substr(0, start.find(' ')));
+  return "<" + std::string(start) + ">" + escaped(text) + "</" + name + ">\n";
+}
+
+std::string base64(const void* data, std::size_t size) {
+  const auto* input = static_cast<const unsigned char*>(data);
+  std::string out(4 * (size / 3 + 1), '\0');
+  const auto length = vtkBase64Utilities::Encode(input, static_cast<unsigned long>(size),
+                                                 reinterpret_cast<unsigned char*>(out.data()), 0);
+  out.resize(length);
+  return out;
+}
+
+template <class Value>
+std::string base64(const std::vector<Value>& values) {
+  return base64(values.data(), values.size() * sizeof(Value));
+}
+
+std::string image(const Picture& picture, const std::string& caption) {
+  const std::string png = encoded_png(picture);
+  return "<img width=\"" + std::to_string(picture.width_px) + "\" height=\"" +
+         std::to_string(picture.height_px) + "\" alt=\"" + escaped(caption) +
+         "\" src=\"data:image/png;base64," + base64(png.data(), png.size()) + "\">\n";
+}
+
+std::string figure(const PageFigure& figure) {
+  return "<figure>" + image(figure.picture, figure.caption) +
+         element("figcaption", figure.caption) + "</figure>\n";
+}
+
+std::string figures(std::string_view css_class, const std::vector<PageFigure>& all) {
+  std::string out = "<div class=\"" + std::string(css_class) + "\">\n";
+  for (const PageFigure& one : all) out += figure(one);
+  return out + "</div>\n";
+}
+
+std::string table_row(const std::vector<std::string>& cells, std::string_view name) {
+  std::string out = "<tr>";
+  for (const std::string& cell : cells) out += element(name, cell);
+  return out + "</tr>\n";
+}
+
+std::string_view word_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::good:
+      return "good";
+    case Verdict::doubtful:
+      return "doubtful";
+    case Verdict::bad:
+      return "bad";
+  }
+  return "";
+}
+
+using Box = Eigen::AlignedBox3f;
+
+Box box_of(const PageScene& scene) {
+  Box box;
+  for (const SceneCloud& cloud : scene.clouds) {
+    for (const Eigen::Vector3f& point : cloud.points_m) box.extend(point);
+  }
+  for (const ScenePath& path : scene.paths) {
+    for (const Eigen::Vector3f& point : path.points_m) box.extend(point);
+  }
+  if (box.isEmpty()) box = Box(Eigen::Vector3f::Zero(), Eigen::Vector3f::Ones());
+  return box;
+}
+
+/// Places as shares of the box, in 65535 steps.
+std::string packed_places(const std::vector<Eigen::Vector3f>& points_m, const Box& box) {
+  const Eigen::Array3f steps = 65535 / box.sizes().array().max(1e-6F);
+  std::vector<std::uint16_t> packed;
+  for (const Eigen::Vector3f& point : points_m) {
+    const Eigen::Array3f place = (point - box.min()).array() * steps;
+    for (int i = 0; i < 3; ++i) packed.push_back(static_cast<std::uint16_t>(std::lround(place[i])));
+  }
+  return base64(packed);
+}
+
+std::string packed_normals(const std::vector<Eigen::Vector3f>& normals) {
+  std::vector<std::int8_t> packed;
+  for (const Eigen::Vector3f& normal : normals) {
+    for (int i = 0; i < 3; ++i) packed.push_back(static_cast<std::int8_t>(127 * normal[i]));
+  }
+  return base64(packed);
+}
+
+Json json_of(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
+
+Json json_of(const SceneCloud& cloud, const Box& box) {
+  Json colorings = Json::array();
+  for (const std::vector<Rgb>& colors : cloud.colorings) colorings.push_back(base64(colors));
+  return {{"name", cloud.name},
+          {"points", packed_places(cloud.points_m, box)},
+          {"normals", packed_normals(cloud.normals)},
+          {"colorings", std::move(colorings)}};
+}
+
+Json json_of(const ScenePath& path, const Box& box) {
+  const int color = path.color.red << 16 | path.color.green << 8 | path.color.blue;
+  return {{"name", path.name}, {"points", packed_places(path.points_m, box)}, {"color", color}};
+}
+
+Json json_of(const PageScene& scene) {
+  const Box box = box_of(scene);
+  Json json = {{"box", {{"min", json_of(box.min())}, {"max", json_of(box.max())}}},
+               {"point_size_m", scene.point_size_m},
+               {"clouds", Json::array()},
+               {"paths", Json::array()}};
+  for (const SceneCloud& cloud : scene.clouds) json["clouds"].push_back(json_of(cloud, box));
+  for (const ScenePath& path : scene.paths) json["paths"].push_back(json_of(path, box));
+  return json;
+}
+
+void check(const PageScene& scene) {
+  for (const SceneCloud& cloud : scene.clouds) {
+    const auto as_many = [&](const std::vector<Rgb>& colors) {
+      return colors.size() == cloud.points_m.size();
+    };
+    if (cloud.normals.size() != cloud.points_m.size() ||
+        cloud.colorings.size() != scene.colorings.size() ||
+        !std::ranges::all_of(cloud.colorings, as_many)) {
+      throw UsageError("page: cloud '" + cloud.name + "' lacks normals or colours");
+    }
+  }
+}
+
+/// A choice of one of several names; the first is chosen.
+template <class Named>
+std::string choice(const std::string& group, const std::string& label,
+                   const std::vector<Named>& all) {
+  if (all.size() < 2) {
+    return "<input type=\"radio\" name=\"" + group + "\" value=\"0\" checked hidden>\n";
+  }
+  std::string out = element("span", label);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    out += "<label><input type=\"radio\" name=\"" + group + "\" value=\"" + std::to_string(i) +
+           "\"" + (i == 0 ? " checked" : "") + "> " + escaped(all[i].name) + "</label>\n";
+  }
+  return out;
+}
+
+std::string script(std::string_view text) { return "<script>" + std::string(text) + "</script>\n"; }
+
+}  // namespace
+
+ReportPage::ReportPage(std::string title, const std::string& subtitle) : title_(std::move(title)) {
+  body_ = element("h1", title_) + element("p class=\"subtitle\"", subtitle);
+}
+
+void ReportPage::add_verdict(Verdict verdict, const std::string& sentence) {
+  constexpr std::array names{"Looks right.", "To be looked at with care.", "Not to be trusted."};
+  body_ += "<div class=\"verdict " + std::string(word_of(verdict)) + "\">" +
+           element("b", names.at(static_cast<std::size_t>(verdict))) + escaped(sentence) +
+           "</div>\n";
+}
+
+void ReportPage::add_warnings(const std::vector<std::string>& warnings) {
+  if (warnings.empty()) return;
+  body_ += "<ul class=\"warnings\">\n";
+  for (const std::string& warning : warnings) body_ += element("li", warning);
+  body_ += "</ul>\n";
+}
+
+void ReportPage::add_heading(const std::string& heading) { body_ += element("h2", heading); }
+
+void ReportPage::add_text(const std::string& paragraph) { body_ += element("p", paragraph); }
+
+void ReportPage::add_figures(const std::vector<PageFigure>& all) {
+  body_ += figures(all.size() > 1 ? "figures halves" : "figures", all);
+}
+
+void ReportPage::add_table(const PageTable& table) {
+  body_ += "<div class=\"scroll\"><table>\n<thead>" + table_row(table.header, "th") +
+           "</thead>\n<tbody>";
+  for (const auto& row : table.rows) body_ += table_row(row, "td");
+  body_ += "</tbody></table></div>\n";
+}
+
+void ReportPage::add_folded(const std::string& summary, const std::string& text) {
+  body_ += "<details>" + element("summary", summary) + element("pre", text) + "</details>\n";
+}
+
+void ReportPage::add_strip(const std::vector<StripFrame>& frames,
+                           const std::vector<PageFigure>& legends) {
+  if (frames.empty()) return;
+  has_strip_ = true;
+  body_ +=
+      "<div class=\"strip\" tabindex=\"0\" aria-label=\"frames\">\n"
+      "<div class=\"controls\" hidden><button type=\"button\" class=\"previous\">Previous"
+      "</button><input type=\"range\" min=\"0\" value=\"0\" aria-label=\"frame\" max=\"" +
+      std::to_string(frames.size() - 1) +
+      "\"><button type=\"button\" class=\"next\">Next</button><output></output></div>\n";
+  for (const StripFrame& frame : frames) {
+    body_ +=
+        "<section class=\"frame\">" + element("h3", frame.title) + figures("panels", frame.panels);
+    if (!frame.remark.empty()) body_ += element("p", frame.remark);
+    body_ += "</section>\n";
+  }
+  body_ += figures("figures", legends) + "</div>\n";
+}
+
+void ReportPage::add_scene(const PageScene& scene) {
+  check(scene);
+  const std::string number = has_scene_ ? std::to_string(body_.size()) : "";  // names groups apart
+  has_scene_ = true;
+  std::string json = json_of(scene).dump();
+  body_ += "<div class=\"scene\">\n<div class=\"controls\" hidden>\n" +
+           choice("cloud" + number, "Map:", scene.clouds) + "</div>\n" +
+           "<div class=\"controls\" hidden>\n" +
+           choice("coloring" + number, "Colour:", scene.colorings) +
+           "<button type=\"button\" data-view=\"corner\">From a corner</button>\n"
+           "<button type=\"button\" data-view=\"above\">From above</button>\n"
+           "<button type=\"button\" data-view=\"side\">From the side</button>\n</div>\n"
+           "<div class=\"canvas\">This needs scripts and WebGL.</div>\n<div class=\"figures\">";
+  for (const SceneColoring& coloring : scene.colorings) {
+    body_ += "<figure class=\"legend\">" + image(coloring.legend, "colours of " + coloring.name) +
+             "</figure>\n";
+  }
+  body_ += "</div>\n<script type=\"application/json\">";
+  for (const char c : json) body_ += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  body_ += "</script>\n</div>\n";
+}
+
+std::string ReportPage::html() const {
+  std::string out =
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n" +
+      element("title", title_) + "<link rel=\"icon\" href=\"data:,\">\n<style>" +
+      std::string(page_texts::style) + "</style>\n</head>\n<body>\n<main>\n" + body_ + "</main>\n";
+  if (has_strip_) out += script(page_texts::strip);
+  if (has_scene_) {
+    out += "<!--\n" + std::string(page_texts::three_notice) + "-->\n" + script(page_texts::three) +
+           script(page_texts::orbit_controls) + script(page_texts::scene);
+  }
+  return out + "</body>\n</html>\n";
+}
+
+}  // namespace tofmap

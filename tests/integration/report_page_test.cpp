@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What report.html says; report_page_browser.py looks at it.
+
+#include "program.hpp"
+
+#include <filesystem>
+
+#include <gmock/gmock.h>
+
+namespace tofmap::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class ReportPage : public WithRecording {
+ protected:
+  std::string page() const { return read_text(out_ / "report.html"); }
+
+  /// How many frames its strip has.
+  static int frames_in(const std::string& page) {
+    int count = 0;
+    const std::string start = "<section class=\"frame\">";
+    for (std::size_t i = 0; (i = page.find(start, i)) != std::string::npos; ++i) ++count;
+    return count;
+  }
+};
+
+TEST_F(ReportPage, OfAMapTellsVerdictFiguresAndOptions) {
+  ASSERT_EQ(run("map").status, 0);
+  EXPECT_THAT(page(), AllOf(HasSubstr("4 of 4 frames could be placed"),
+                            HasSubstr("with unwrapping (joint), coloured by height"),
+                            HasSubstr("the same path, ranges as measured, coloured by height"),
+                            HasSubstr("ATE, m (RMSE)"), HasSubstr("map error, m"),
+                            HasSubstr("unwrap:\n  method: joint")));
+  EXPECT_EQ(frames_in(page()), frames);
+}
+
+TEST_F(ReportPage, OfWrappedRangesIsNotToBeTrusted) {
+  ASSERT_EQ(run("map", {"--method", "none", "--set", "report.frames=2"}).status, 0);
+  EXPECT_THAT(page(), AllOf(HasSubstr("Not to be trusted."), HasSubstr("Nothing was unwrapped"),
+                            Not(HasSubstr("the same path, ranges as measured"))));
+  EXPECT_EQ(frames_in(page()), 2);
+}
+
+TEST_F(ReportPage, DoesWithoutTruth) {
+  std::filesystem::remove(sequence_ / "groundtruth.txt");
+  std::filesystem::remove_all(sequence_ / "range_truth");
+  ASSERT_EQ(run("map").status, 0);
+  EXPECT_THAT(page(), AllOf(HasSubstr("The truth is not known."), Not(HasSubstr("ATE, m")),
+                            Not(HasSubstr("wraps against the truth"))));
+  ASSERT_EQ(run("evaluate", {"--set", "evaluation.methods=none joint"}).status, 0);
+  EXPECT_THAT(page(), AllOf(HasSubstr("The true path is not known."),
+                            Not(HasSubstr("Errors over time")), Not(HasSubstr("Looks right."))));
+}
+
+TEST_F(ReportPage, OfADeviceShowsItsFrames) {
+  const Finished finished = run_program({"map", "tofmap://" + sequence_.string() + "?speed=-1",
+                                         "--out", out_.string(), "--set", "report.frames=3"});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  EXPECT_THAT(page(), AllOf(HasSubstr("of 4 frames could be placed"),
+                            HasSubstr("the same path, ranges as measured")));
+  EXPECT_EQ(frames_in(page()), 3);
+}
+
+TEST_F(ReportPage, OfAnEvaluationComparesWithAndWithout) {
+  ASSERT_EQ(run("evaluate", {"--set", "evaluation.methods=joint none"}).status, 0);
+  EXPECT_THAT(page(),
+              AllOf(HasSubstr("With unwrapping (joint) the map is"),
+                    HasSubstr("; without it, the map is"), HasSubstr("path error over time"),
+                    HasSubstr("wrong wraps over range"), HasSubstr("<td>none</td>")));
+}
+
+TEST_F(ReportPage, OfRangesAloneHasNoMap) {
+  ASSERT_EQ(run("evaluate", {"--set", "evaluation.methods=pixel none", "--set",
+                             "evaluation.down_to=unwrapping"})
+                .status,
+            0);
+  EXPECT_THAT(page(), AllOf(HasSubstr("With unwrapping (pixel)"),
+                            HasSubstr("ranges are off by a wrap or more"),
+                            Not(HasSubstr("The map from above"))));
+}
+
+}  // namespace
+}  // namespace tofmap::test
