@@ -188,15 +188,19 @@ PageTable methods_table(const nlohmann::ordered_json& report) {
   return table;
 }
 
-void add_times(ReportPage& page, const EvaluationPageSubject& subject) {
+void add_runs(ReportPage& page, const EvaluationPageSubject& subject) {
   std::vector<std::string> names;
+  std::vector<Consistency> consistencies;
   std::vector<const RoomMap*> runs;
   for (const MethodResult& result : subject.results) {
     if (!result.map) continue;
     names.push_back(result.name);
+    consistencies.push_back(*result.consistency);
     runs.push_back(&*result.map);
   }
-  if (!runs.empty()) add_stage_times(page, names, runs);
+  if (runs.empty()) return;
+  add_consistency(page, names, consistencies);
+  add_stage_times(page, names, runs);
 }
 
 }  // namespace
@@ -218,7 +222,7 @@ void write_evaluation_page(const std::filesystem::path& result,
       page, sampled_frames(subject.recording, subject.options.report.frames),
       subject.recording.sensor(), pipeline,
       [&](int index) { return subject.recording.range_truth(index); }, subject.options.report);
-  add_times(page, subject);
+  add_runs(page, subject);
   add_options(page, subject.options_yaml);
   write_page(result, page);
 }

@@ -3,6 +3,7 @@
 
 #include "evaluation_report.hpp"
 
+#include "consistency_report.hpp"
 #include "frame_report.hpp"
 
 #include <array>
@@ -16,9 +17,6 @@ namespace tofmap::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// JSON has no NaN: what could not be had is null.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json unwrapping_json(const MethodResult& result) {
   Json json;
@@ -34,14 +32,14 @@ Json unwrapping_json(const MethodResult& result) {
   }
   if (!scores.empty()) {
     const RangeScore mean = mean_score(scores);
-    json["wrong_wrap_percent"] = number(mean.wrong_wrap_percent);
-    json["coverage_percent"] = number(mean.coverage_percent);
-    json["range_rmse_m"] = number(mean.range_rmse_m);
+    json["wrong_wrap_percent"] = json_number(mean.wrong_wrap_percent);
+    json["coverage_percent"] = json_number(mean.coverage_percent);
+    json["range_rmse_m"] = json_number(mean.range_rmse_m);
   }
   const auto count = static_cast<double>(result.frames.size());
-  json["converged_percent"] = number(100 * converged / count);
-  json["iterations_per_frame"] = number(iterations / count);
-  json["milliseconds_per_frame"] = number(milliseconds / count);
+  json["converged_percent"] = json_number(100 * converged / count);
+  json["iterations_per_frame"] = json_number(iterations / count);
+  json["milliseconds_per_frame"] = json_number(milliseconds / count);
   return json;
 }
 
@@ -50,8 +48,8 @@ Json over_range_json(const MethodResult& result) {
   for (const ErrorsOverRange::Bin& bin : over_range(result).bins()) {
     bins.push_back({{"range_m", bin.range_m},
                     {"pixels", bin.pixels},
-                    {"wrong_wrap_percent", number(bin.wrong_wrap_percent)},
-                    {"range_rmse_m", number(bin.range_rmse_m)}});
+                    {"wrong_wrap_percent", json_number(bin.wrong_wrap_percent)},
+                    {"range_rmse_m", json_number(bin.range_rmse_m)}});
   }
   return bins;
 }
@@ -59,10 +57,10 @@ Json over_range_json(const MethodResult& result) {
 Json trajectory_json(const MethodResult& result) {
   Json json = {{"registered_frames", result.map->trajectory.size()}};
   if (!result.trajectory) return json;
-  json["ate_rmse_m"] = number(result.trajectory->ate_rmse_m);
-  json["ate_max_m"] = number(result.trajectory->ate_max_m);
-  json["rpe_rmse_m_per_m"] = number(result.trajectory->rpe_rmse_m_per_m);
-  json["rpe_rmse_deg_per_m"] = number(result.trajectory->rpe_rmse_deg_per_m);
+  json["ate_rmse_m"] = json_number(result.trajectory->ate_rmse_m);
+  json["ate_max_m"] = json_number(result.trajectory->ate_max_m);
+  json["rpe_rmse_m_per_m"] = json_number(result.trajectory->rpe_rmse_m_per_m);
+  json["rpe_rmse_deg_per_m"] = json_number(result.trajectory->rpe_rmse_deg_per_m);
   return json;
 }
 
@@ -76,17 +74,18 @@ Json filters_json(const MethodResult& result) {
     kept += frame.kept_pixels;
     for (const FilterCount& count : frame.filters) removed[count.name] += count.removed;
   }
-  Json json = {{"removed_percent", number(100 * (valid - kept) / valid)}};
-  for (const auto& [name, pixels] : removed) json[name + "_percent"] = number(100 * pixels / valid);
+  Json json = {{"removed_percent", json_number(100 * (valid - kept) / valid)}};
+  for (const auto& [name, pixels] : removed)
+    json[name + "_percent"] = json_number(100 * pixels / valid);
   return json;
 }
 
 Json map_json(const MethodResult& result) {
   Json json = {{"points", result.map->surface.size()}};
   if (result.surface) {
-    json["accuracy_m"] = number(result.surface->accuracy_m);
-    json["far_percent"] = number(result.surface->far_percent);
-    json["completeness_percent"] = number(result.surface->completeness_percent);
+    json["accuracy_m"] = json_number(result.surface->accuracy_m);
+    json["far_percent"] = json_number(result.surface->far_percent);
+    json["completeness_percent"] = json_number(result.surface->completeness_percent);
   }
   json["milliseconds_per_frame"] = summary_json(*result.map)["milliseconds_per_frame"];
   return json;
@@ -129,6 +128,7 @@ void add_to_report(Json& report, const MethodResult& result) {
   Json bins = over_range_json(result);
   if (!bins.empty()) report["over_range"][result.name] = std::move(bins);
   if (!result.map) return;
+  report["consistency"][result.name] = consistency_json(*result.consistency);
   report["filters"][result.name] = filters_json(result);
   report["trajectory"][result.name] = trajectory_json(result);
   report["map"][result.name] = map_json(result);

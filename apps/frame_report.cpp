@@ -4,6 +4,7 @@
 #include "frame_report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include <nlohmann/json.hpp>
@@ -58,6 +59,8 @@ double mean_of(const RoomMap& map, const std::function<double(const FrameRecord&
 }
 
 }  // namespace
+
+Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json damaged_json(const SourcedFrame& frame) {
   return {{"index", frame.index}, {"timestamp", frame.timestamp_s}, {"damage", frame.damage}};

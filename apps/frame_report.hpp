@@ -9,6 +9,9 @@
 
 namespace tofmap::app {
 
+/// JSON has no NaN: what could not be had is null.
+nlohmann::ordered_json json_number(double value);
+
 /// {"index", "timestamp", "damage"} of a frame that could not be read.
 nlohmann::ordered_json damaged_json(const SourcedFrame& frame);
 

@@ -62,9 +62,18 @@ struct MapOutput {
   std::string options_yaml;
   std::vector<std::string> doubts;     ///< about what was recorded
   nlohmann::ordered_json acquisition;  ///< of a device; else null
+  const SensorModel& sensor;
+  std::vector<DualFrequencyFrame> frames;  ///< some, spread over all
 };
 
-void write_result(const OutputFolder& out, const RoomMap& map, const MapOutput& output) {
+/// A map, and what tells whether it is right.
+struct FinishedMap {
+  RoomMap map;
+  Consistency consistency;
+};
+
+void write_result(const OutputFolder& out, const FinishedMap& finished, const MapOutput& output) {
+  const RoomMap& map = finished.map;
   write_map(out.path() / "map.ply", map.surface);
   if (output.arguments.pcd) write_map(out.path() / "map.pcd", map.surface);
   const double voxel_m = output.options.pipeline.map.voxel_m;
@@ -73,6 +82,7 @@ void write_result(const OutputFolder& out, const RoomMap& map, const MapOutput& 
   write_trajectory(out.path() / "keyframes.txt", map.keyframes);
   nlohmann::ordered_json report;
   report["summary"] = summary_json(map);
+  report["consistency"] = consistency_json(finished.consistency);
   report["doubts"] = output.doubts;
   if (!output.acquisition.is_null()) report["acquisition"] = output.acquisition;
   for (const FrameRecord& record : map.frames) report["frames"].push_back(frame_json(record));
@@ -88,16 +98,26 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
 }
 
 /// Puts the map in place.
-RoomMap finish_map(MapRun& run, OutputFolder& out, const MapOutput& output) {
-  RoomMap map = run.finish();
-  check_result(map);
-  write_result(out, map, output);
+FinishedMap finish_map(MapRun& run, OutputFolder& out, const MapOutput& output) {
+  FinishedMap finished{run.finish(), {}};
+  check_result(finished.map);
+  finished.consistency =
+      consistency_of(finished.map, output.frames, output.sensor, output.options.pipeline);
+  write_result(out, finished, output);
   out.commit();
   if (!output.arguments.common.quiet) {
-    print_summary(map, out.final_path());
+    print_summary(finished.map, out.final_path());
     print_doubts(output.doubts);
   }
-  return map;
+  return finished;
+}
+
+/// Adds report.html to a map that is in place; its truth is that of the recording, if there is one.
+void add_page(const OutputFolder& out, const FinishedMap& finished, const MapOutput& output,
+              const SequenceReader* recording, const std::vector<std::string>& warnings) {
+  write_map_page(out.final_path(), {output.arguments.recording.sequence.string(), finished.map,
+                                    output.sensor, output.frames, recording, warnings,
+                                    finished.consistency, output.options, output.options_yaml});
 }
 
 int status_of(const RoomMap& map) {
@@ -138,14 +158,17 @@ int map_recording(const MapArguments& arguments, const ProgramOptions& options,
   const std::unique_ptr<LiveView> view = open_view(arguments);
   MapRun run(source.sensor(), options.pipeline);
   if (arguments.resume) take_up_map(arguments.out, run, source, options.pipeline);
-  const std::vector<std::string> doubts = doubts_about(source);
-  RoomMap map;
+  MapOutput output{arguments,       options, table.to_yaml(false), doubts_about(source), {},
+                   source.sensor(), {}};
+  FinishedMap finished;
   accompany(view.get(), [&] {
     follow_camera(run, source, arguments.common.quiet, view.get(),
                   [&] { return status_line(run); });
     if (run.is_interrupted()) write_map_state(out.path(), run, source, options.pipeline);
-    map = finish_map(run, out, {arguments, options, table.to_yaml(false), doubts, {}});
+    output.frames = sampled_frames(source, frames_for_page(options.report));
+    finished = finish_map(run, out, output);
   });
+  const RoomMap& map = finished.map;
   if (map.interrupted && !arguments.common.quiet) {
     std::printf("interrupted; --resume goes on from %s\n", out.final_path().c_str());
   }
@@ -154,10 +177,7 @@ int map_recording(const MapArguments& arguments, const ProgramOptions& options,
     if (map.interrupted) return;
     write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures);
   });
-  write_map_page(out.final_path(),
-                 {arguments.recording.sequence.string(), map, source.sensor(),
-                  sampled_frames(source, frames_for_page(options.report)),
-                  map.interrupted ? nullptr : &source, doubts, options, table.to_yaml(false)});
+  add_page(out, finished, output, map.interrupted ? nullptr : &source, output.doubts);
   if (view) view->show_result(map);
   return status_of(map);
 }
@@ -179,12 +199,16 @@ int map_device(const MapArguments& arguments, const ProgramOptions& options,
     const std::string losses = input.losses();
     return status_line(run) + (losses.empty() ? "" : ", " + losses);
   };
-  RoomMap map;
+  MapOutput output{arguments, options, table.to_yaml(false), {}, {}, input.sensor(), {}};
+  FinishedMap finished;
   accompany(view.get(), [&] {
     follow_camera(run, frames, arguments.common.quiet, view.get(), remark);
-    map = finish_map(run, out,
-                     {arguments, options, table.to_yaml(false), input.doubts(), input.report()});
+    output.doubts = input.doubts();
+    output.acquisition = input.report();
+    output.frames = frames.kept();
+    finished = finish_map(run, out, output);
   });
+  const RoomMap& map = finished.map;
   const std::string losses = input.losses();
   if (!losses.empty() && !arguments.common.quiet) {
     std::printf("not mapped: %s; see report.json\n", losses.c_str());
@@ -192,10 +216,9 @@ int map_device(const MapArguments& arguments, const ProgramOptions& options,
   add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
     write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
   });
-  std::vector<std::string> warnings = input.doubts();
+  std::vector<std::string> warnings = output.doubts;
   if (!losses.empty()) warnings.push_back("not mapped: " + losses);
-  write_map_page(out.final_path(), {uri, map, input.sensor(), frames.kept(), nullptr, warnings,
-                                    options, table.to_yaml(false)});
+  add_page(out, finished, output, nullptr, warnings);
   if (view) view->show_result(map);
   const std::string silence = input.silence();
   if (!silence.empty()) throw InputError(silence);

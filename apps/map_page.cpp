@@ -207,6 +207,7 @@ void write_map_page(const std::filesystem::path& result, const MapPageSubject& s
     return std::vector<PageFigure>{
         {plot_picture(tracking_plot(map), 1000, 420), "how each frame fitted what was there"}};
   });
+  add_consistency(page, {"map"}, {subject.consistency});
   add_stage_times(page, {"mean"}, {&map});
   add_options(page, subject.options_yaml);
   write_page(result, page);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "consistency_report.hpp"
 #include "options.hpp"
 
 #include <filesystem>
@@ -17,9 +18,10 @@ struct MapPageSubject {
   std::string source;  ///< folder of the recording, or device
   const RoomMap& map;
   const SensorModel& sensor;
-  std::vector<DualFrequencyFrame> frames;  ///< some, spread over all
-  const SequenceReader* recording;         ///< for its truth; none of a device
+  const std::vector<DualFrequencyFrame>& frames;  ///< some, spread over all
+  const SequenceReader* recording;                ///< for its truth; none of a device
   std::vector<std::string> warnings;
+  Consistency consistency;
   const ProgramOptions& options;
   std::string options_yaml;
 };

@@ -6,6 +6,7 @@
 #include "frame_report.hpp"
 #include "interruption.hpp"
 #include "progress.hpp"
+#include "sampled_frames.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -17,6 +18,8 @@
 
 namespace tofmap::app {
 namespace {
+
+constexpr int consistency_frames = 60;
 
 UnwrappingRecord record_of(const UnwrapResult& unwrapped, double milliseconds,
                            const SequenceReader& recording, int index) {
@@ -88,6 +91,8 @@ MethodResult run_down_to_map(const std::string& method, const SequenceReader& re
   result.map = map_room(source, options, hooks);
   refuse_mostly_damaged(*result.map);
   result.interrupted = result.map->interrupted;
+  result.consistency = consistency_of(*result.map, sampled_frames(recording, consistency_frames),
+                                      recording.sensor(), options);
   result.trajectory = score_trajectory(result.map->trajectory, truth.poses);
   if (result.trajectory && !truth.surface.points().empty()) {
     result.surface =

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "consistency_report.hpp"
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +41,7 @@ struct MethodResult {
   std::optional<RoomMap> map;            ///< if asked for
   std::optional<TrajectoryScore> trajectory;
   std::optional<MapScore> surface;
+  std::optional<Consistency> consistency;  ///< of a map
   bool interrupted = false;
 };
 

@@ -224,6 +224,32 @@ void add_frames(ReportPage& page, const std::vector<DualFrequencyFrame>& frames,
   page.add_strip(strip.frames, strip.legends);
 }
 
+void add_consistency(ReportPage& page, const std::vector<std::string>& names,
+                     const std::vector<Consistency>& runs) {
+  PageTable table;
+  table.header = {"without any truth"};
+  table.header.insert(table.header.end(), names.begin(), names.end());
+  const auto add_row = [&](const char* measure, const char* format, double Consistency::*value) {
+    std::vector<std::string> row{measure};
+    for (const Consistency& run : runs) {
+      row.push_back(std::isfinite(run.*value) ? formatted(format, run.*value) : "-");
+    }
+    table.rows.push_back(std::move(row));
+  };
+  add_row("points that other frames see through, %", "%.2f", &Consistency::contradicted_percent);
+  add_row("pixels that fit the beat better with another count, %", "%.2f",
+          &Consistency::beat_misfit_percent);
+  add_row("difference of B from what A says, cycles (RMS)", "%.4f",
+          &Consistency::beat_residual_cycles);
+  add_row("pixels whose count the frequencies cannot tell, %", "%.2f",
+          &Consistency::ambiguous_percent);
+  add_row("thickness of planes in the map, m (median)", "%.4f", &Consistency::plane_thickness_m);
+  add_row("curls that did not vanish, a frame (jump, single)", "%.1f",
+          &Consistency::curl_violations_per_frame);
+  page.add_heading("Does it agree with itself?");
+  page.add_table(table);
+}
+
 void add_stage_times(ReportPage& page, const std::vector<std::string>& names,
                      const std::vector<const RoomMap*>& runs) {
   PageTable table;

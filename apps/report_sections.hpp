@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "consistency_report.hpp"
+
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -43,6 +45,10 @@ void add_frames(ReportPage& page, const std::vector<DualFrequencyFrame>& frames,
                 const SensorModel& sensor, const PipelineOptions& pipeline,
                 const std::function<std::optional<ImageF>(int index)>& truth_m,
                 const ReportOptions& options);
+
+/// What tells without truth whether unwrapping was right, a column a run.
+void add_consistency(ReportPage& page, const std::vector<std::string>& names,
+                     const std::vector<Consistency>& runs);
 
 /// Mean times of the stages, a column a run. Names are as many as runs.
 void add_stage_times(ReportPage& page, const std::vector<std::string>& names,

@@ -2,161 +2,126 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "command.hpp"
+#include "interruption.hpp"
 #include "options.hpp"
-#include "recording.hpp"
+#include "viewed.hpp"
 
-#include <algorithm>
+#include <chrono>
 #include <cstdio>
-#include <fstream>
 #include <memory>
+#include <thread>
 
 #include <CLI/CLI.hpp>
 
-#include <tofmap/acquisition/sequence.hpp>
-#include <tofmap/acquisition/triangle_mesh.hpp>
 #include <tofmap/core/error.hpp>
-#include <tofmap/filters/filter_chain.hpp>
-#include <tofmap/visualization/cloud_pictures.hpp>
-#include <tofmap/visualization/map_pictures.hpp>
+#include <tofmap/unwrap/unwrap.hpp>
 #include <tofmap/visualization/window.hpp>
 
 namespace tofmap::app {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct ViewArguments {
-  fs::path path;
-  fs::path screenshot;
+  ViewRequest request;
+  std::filesystem::path screenshot;
   std::string from = "outside";
   std::string method;
-  int frame = 0;
   int width_px = 1280;
   int height_px = 800;
   CommonArguments common;
+
+  double aspect() const { return static_cast<double>(width_px) / height_px; }
 };
 
-/// What is to be seen, and from where.
-struct View {
-  Drawing drawing;
-  Viewpoint viewpoint;
+/// What is viewed in a window, with its keys.
+class ViewWindow {
+ public:
+  ViewWindow(Viewed& viewed, const ViewArguments& arguments)
+      : viewed_(viewed),
+        aspect_(arguments.aspect()),
+        window_(arguments.request.path.string(), arguments.width_px, arguments.height_px) {
+    window_.on_key([this](const std::string& key) { take_key(key); });
+    window_.look_from(viewed_.viewpoint(arguments.from, aspect_));
+    show();
+  }
+
+  /// Until it is closed, or the program interrupted.
+  void run() {
+    constexpr std::chrono::milliseconds a_screen_refresh(16);
+    while (!is_interrupted() && window_.handle_events()) {
+      std::this_thread::sleep_for(a_screen_refresh);
+    }
+  }
+
+ private:
+  void show() {
+    window_.show(viewed_.drawing());
+    window_.set_legend(viewed_.legend());
+    tell();
+  }
+
+  void tell() {
+    std::string help = "h: help";
+    if (has_help_) {
+      const std::string own = viewed_.help();
+      help =
+          "left button: turn, middle: shift, wheel: zoom; 1, 2, 3: from outside, above, inside\n" +
+          (own.empty() ? "" : own + "\n") + "c: colour, h: no help, q: close";
+    }
+    window_.set_text(viewed_.status(), help);
+  }
+
+  void take_key(const std::string& key) {
+    if (key == "h") {
+      has_help_ = !has_help_;
+      tell();
+    } else if (key == "c") {
+      viewed_.color_by_next();
+      show();
+    } else if (key == "1" || key == "2" || key == "3") {
+      const char* from = key == "1" ? "outside" : key == "2" ? "above" : "inside";
+      window_.look_from(viewed_.viewpoint(from, aspect_));
+    } else if (viewed_.take_key(key)) {
+      show();
+    }
+  }
+
+  Viewed& viewed_;
+  double aspect_;
+  Window window_;
+  bool has_help_ = true;
 };
 
-Viewpoint viewpoint_above(const Eigen::AlignedBox3d& box_m, double aspect) {
-  Viewpoint viewpoint;
-  viewpoint.up = Eigen::Vector3d::UnitY();
-  if (box_m.isEmpty()) return viewpoint;
-  const Eigen::Vector3d size = box_m.sizes();
-  viewpoint.target_m = box_m.center();
-  viewpoint.eye_m = viewpoint.target_m + 2 * (size.z() + 1) * Eigen::Vector3d::UnitZ();
-  viewpoint.parallel_height_m = 1.05 * std::max({size.y(), size.x() / aspect, 0.1});
-  return viewpoint;
-}
-
-View view_of_map(const ViewArguments& arguments, const fs::path& map_file,
-                 const fs::path& trajectory_file) {
-  const MapCloud map = read_map(map_file);
-  if (map.empty()) throw InputError(map_file.string() + ": holds no point; nothing to view");
-  const Trajectory trajectory =
-      fs::exists(trajectory_file) ? read_trajectory(trajectory_file) : Trajectory{};
-  const LevelFrame frame = level_frame(map, trajectory);
-  const double aspect = static_cast<double>(arguments.width_px) / arguments.height_px;
-  View view{map_drawing(map, trajectory, frame), viewpoint_outside(frame.box_m)};
-  if (arguments.from == "above") view.viewpoint = viewpoint_above(frame.box_m, aspect);
-  if (arguments.from == "inside") {
-    view.viewpoint = viewpoint_inside(view.drawing, trajectory, frame, aspect);
-    view.drawing.lines.clear();
-  }
-  return view;
-}
-
-View view_of_mesh(const ViewArguments& arguments, const fs::path& file) {
-  const TriangleMesh mesh = read_mesh(file);
-  MeshLayer layer;
-  layer.points_m = mesh.vertices;
-  layer.triangles = mesh.triangles;
-  for (const float reflectance : mesh.reflectance) {
-    const auto gray = static_cast<std::uint8_t>(255 * std::clamp(reflectance, 0.0F, 1.0F));
-    layer.colors.push_back({gray, gray, gray});
-  }
-  const Eigen::AlignedBox3d box = bounds(mesh);
-  const double aspect = static_cast<double>(arguments.width_px) / arguments.height_px;
-  return {{{}, {}, {std::move(layer)}},
-          arguments.from == "above" ? viewpoint_above(box, aspect) : viewpoint_outside(box)};
-}
-
-/// One frame of a recording, unwrapped and filtered as the options say.
-View view_of_frame(const ViewArguments& arguments, const ProgramOptions& all) {
-  const PipelineOptions& options = all.pipeline;
-  const SequenceReader source = open_recording(arguments.path, all.camera);
-  const SourcedFrame sourced = source.read(arguments.frame);
-  if (!sourced.frame) throw InputError(sourced.damage);
-  const PixelRays rays = pixel_rays(source.sensor().camera);
-  const RangeImage unwrapped = unwrap(*sourced.frame, source.sensor(), options.unwrap).image;
-  const RangeImage kept =
-      apply_filters(unwrapped, *sourced.frame, source.sensor().modulation, rays, options.filters)
-          .image;
-  View view;
-  view.drawing = frame_drawing(kept, kept.range_m, rays);
-  view.viewpoint = arguments.from == "above" ? frame_viewpoint_above(kept.range_m, rays)
-                                             : frame_viewpoint_left(kept.range_m, rays);
-  return view;
-}
-
-/// Whether a PLY file has faces, an OBJ file always.
-bool is_mesh(const fs::path& file) {
-  if (file.extension() == ".obj") return true;
-  if (file.extension() != ".ply") return false;
-  std::ifstream in(file, std::ios::binary);
-  for (std::string line; std::getline(in, line) && line.rfind("end_header", 0) != 0;) {
-    if (line.rfind("element face ", 0) == 0) return line.rfind("element face 0", 0) != 0;
-  }
-  return false;
-}
-
-View make_view(const ViewArguments& arguments, const ProgramOptions& options) {
-  const fs::path& path = arguments.path;
-  if (!fs::exists(path)) {
-    throw InputError(path.string() +
-                     ": not found; give a result folder of 'tofmap map', a map, "
-                     "cloud or mesh (PLY, PCD, OBJ), or a recording");
-  }
-  if (!fs::is_directory(path)) {
-    return is_mesh(path) ? view_of_mesh(arguments, path)
-                         : view_of_map(arguments, path, path.parent_path() / "trajectory.txt");
-  }
-  if (fs::exists(path / "map.ply")) {
-    return view_of_map(arguments, path / "map.ply", path / "trajectory.txt");
-  }
-  if (fs::exists(path / "merged.ply")) return view_of_map(arguments, path / "merged.ply", {});
-  if (fs::exists(path / "sequence.yaml")) return view_of_frame(arguments, options);
-  throw InputError(path.string() +
-                   ": holds no map.ply, merged.ply or sequence.yaml; nothing to view");
-}
-
-void open_window(const View& view, const std::string& title) {
+void open_window(Viewed& viewed, const ViewArguments& arguments) {
   try {
-    Window window(title);
-    window.show(view.drawing);
-    window.look_from(view.viewpoint);
-    window.set_text("", "left button: turn, middle: shift, wheel: zoom, q: close");
-    window.run();
+    ViewWindow(viewed, arguments).run();
   } catch (const DrawingError& error) {
     throw UsageError(std::string(error.what()) + "; --screenshot FILE.png needs none");
   }
+}
+
+/// Of the size that is asked for, with the legend in its corner.
+void write_screenshot(const Viewed& viewed, const ViewArguments& arguments) {
+  Drawing drawing = viewed.drawing();
+  if (arguments.from == "inside") drawing.lines.clear();  // the path would go through the picture
+  Picture picture = draw(drawing, viewed.viewpoint(arguments.from, arguments.aspect()),
+                         arguments.width_px, arguments.height_px);
+  constexpr int margin_px = 10;
+  const Picture legend = viewed.legend();
+  paste(picture, legend, picture.width_px - legend.width_px - margin_px, margin_px);
+  write_picture(arguments.screenshot, picture);
 }
 
 int run_view(const ViewArguments& arguments) {
   ProgramOptions options;
   OptionTable table = arguments.common.resolve("view", options);
   if (!arguments.method.empty()) table.set("unwrap.method", arguments.method);
-  const View view = make_view(arguments, options);
+  const std::unique_ptr<Viewed> viewed = open_viewed(arguments.request, options);
+  if (!arguments.request.color.empty()) viewed->color_by(arguments.request.color);
   if (arguments.screenshot.empty()) {
-    open_window(view, arguments.path.string());
+    open_window(*viewed, arguments);
     return exit_status::done;
   }
-  write_picture(arguments.screenshot,
-                draw(view.drawing, view.viewpoint, arguments.width_px, arguments.height_px));
+  write_screenshot(*viewed, arguments);
   if (!arguments.common.quiet) std::printf("picture: %s\n", arguments.screenshot.c_str());
   return exit_status::done;
 }
@@ -165,21 +130,28 @@ int run_view(const ViewArguments& arguments) {
 
 void add_view_command(CLI::App& program, Outcome& outcome) {
   auto arguments = std::make_shared<ViewArguments>();
+  ViewRequest& request = arguments->request;
   CLI::App* app = program.add_subcommand("view", "look at a map, cloud, mesh or recording");
-  app->add_option("PATH", arguments->path,
+  app->add_option("PATH", request.path,
                   "result folder of map, a PLY, PCD or OBJ file, or the folder of a recording")
       ->required();
   app->add_option("--screenshot", arguments->screenshot,
                   "write a PNG picture instead of opening a window; needs no display");
   app->add_option("--from", arguments->from, "viewpoint: outside, above, inside")
       ->check(CLI::IsMember({"outside", "above", "inside"}));
+  app->add_option(
+      "--color", request.color,
+      "what a map is coloured by (height, confidence, count, plain), or a frame (moved, "
+      "range, wrap, confidence, height, amplitude)");
+  app->add_flag("--cameras", request.cameras, "show what the camera saw from keyframes");
+  app->add_flag("--wrapped", request.wrapped, "show a frame's ranges as measured");
   app->add_option("--method", arguments->method,
                   "how to unwrap a recording: " + unwrap_method_names(", "));
-  app->add_option("--frame", arguments->frame, "frame of a recording, from 0")
+  app->add_option("--frame", request.frame, "frame of a recording, from 0")
       ->check(CLI::Range(0, 1000000));
-  app->add_option("--width", arguments->width_px, "of the picture, pixels")
+  app->add_option("--width", arguments->width_px, "of the picture or window, pixels")
       ->check(CLI::Range(16, 8000));
-  app->add_option("--height", arguments->height_px, "of the picture, pixels")
+  app->add_option("--height", arguments->height_px, "of the picture or window, pixels")
       ->check(CLI::Range(16, 8000));
   arguments->common.add_to(*app);
   app->callback([arguments, &outcome] { outcome.status = run_view(*arguments); });

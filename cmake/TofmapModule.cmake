@@ -58,6 +58,13 @@ function(tofmap_add_module name)
   install(DIRECTORY include/tofmap DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endfunction()
 
+# Has the loops of files of this folder become vector instructions: no error flags of the C library,
+# no traps. Headers precompiled otherwise do not fit these flags.
+function(tofmap_vectorize)
+  set_source_files_properties(${ARGN} PROPERTIES
+    COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math" SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
+
 # PCL without its directory-wide flags: a target that carries its include folders
 # (as system headers) and the libraries of the components that the project uses.
 function(tofmap_use_pcl target)

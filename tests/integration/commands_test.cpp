@@ -6,6 +6,7 @@
 #include "program.hpp"
 
 #include <fstream>
+#include <set>
 
 #include <gmock/gmock.h>
 
@@ -230,6 +231,30 @@ TEST_F(Commands, ViewNamesWhatItCannotShow) {
           .status,
       2);
   EXPECT_FALSE(fs::exists(picture));
+}
+
+TEST_F(Commands, ViewColoursByWhatIsAskedFor) {
+  ASSERT_EQ(run("map", {"--set", "map.min_observations=1"}).status, 0);
+  const auto picture_of = [&](const fs::path& path, const std::vector<std::string>& more) {
+    const fs::path picture = folder_.path() / "view.png";
+    std::vector<std::string> arguments{"view", path.string(), "--screenshot", picture.string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(run_program(arguments).status, 0) << path;
+    return read_text(picture);
+  };
+  std::set<std::string> pictures;
+  for (const char* color : {"height", "confidence", "count", "plain"}) {
+    pictures.insert(picture_of(out_, {"--color", color}));
+  }
+  pictures.insert(picture_of(out_, {"--cameras"}));
+  for (const char* color : {"moved", "range", "wrap", "confidence", "height", "amplitude"}) {
+    pictures.insert(picture_of(sequence_, {"--color", color}));
+  }
+  pictures.insert(picture_of(sequence_, {"--wrapped"}));
+  EXPECT_EQ(pictures.size(), 12U) << "each shows something else";
+  const Finished finished = run_program({"view", out_.string(), "--color", "wrap"});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_THAT(finished.err, HasSubstr("height, confidence, count, plain"));
 }
 
 TEST_F(Commands, ViewWithoutADisplayNamesTheRemedy) {

@@ -3,9 +3,11 @@
 
 #include "virtual_display.hpp"
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <set>
+#include <thread>
 
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
@@ -104,20 +106,36 @@ void VirtualDisplay::press(const std::string& key, unsigned long window) const {
   XFlush(screen);
 }
 
-int VirtualDisplay::count_colors() const {
+bool VirtualDisplay::changes_by(const std::string& key, const std::string& title) const {
+  const std::vector<unsigned long> before = pixels();
+  return comes_true([&] {
+    const auto window = find(title);
+    if (window) press(key, *window);
+    constexpr std::chrono::milliseconds to_be_drawn(300);
+    std::this_thread::sleep_for(to_be_drawn);
+    return pixels() != before;
+  });
+}
+
+std::vector<unsigned long> VirtualDisplay::pixels() const {
   Display* screen = display(connection_);
   constexpr unsigned width_px = 1280;
   constexpr unsigned height_px = 800;
   XImage* image =
       XGetImage(screen, DefaultRootWindow(screen), 0, 0, width_px, height_px, AllPlanes, ZPixmap);
-  std::set<unsigned long> colors;
+  std::vector<unsigned long> pixels;
   for (unsigned y = 0; y < height_px; y += 4) {
     for (unsigned x = 0; x < width_px; x += 4) {
-      colors.insert(XGetPixel(image, static_cast<int>(x), static_cast<int>(y)));
+      pixels.push_back(XGetPixel(image, static_cast<int>(x), static_cast<int>(y)));
     }
   }
   XDestroyImage(image);
-  return static_cast<int>(colors.size());
+  return pixels;
+}
+
+int VirtualDisplay::count_colors() const {
+  const std::vector<unsigned long> all = pixels();
+  return static_cast<int>(std::set<unsigned long>(all.begin(), all.end()).size());
 }
 
 }  // namespace tofmap::test

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <sys/types.h>
 
@@ -27,10 +28,15 @@ class VirtualDisplay {
   /// false if it stays.
   bool close_by(const std::string& key, const std::string& title) const;
 
+  /// Presses a key in the window of this title until what is on the screen changes; false if it
+  /// stays as it is.
+  bool changes_by(const std::string& key, const std::string& title) const;
+
   /// How many different colours are on the screen.
   int count_colors() const;
 
  private:
+  std::vector<unsigned long> pixels() const;  ///< every fourth, in both directions
   std::optional<unsigned long> find(const std::string& title) const;
   void press(const std::string& key, unsigned long window) const;
 

@@ -79,6 +79,37 @@ TEST_F(ProgramWindow, ViewsAMap) {
   EXPECT_EQ(program.wait().status, 0);
 }
 
+TEST_F(ProgramWindow, ShowsAMapInSeveralWays) {
+  ASSERT_EQ(run("map", {"--set", "map.min_observations=1"}).status, 0);
+  RunningProgram program({"view", out_.string()});
+  ASSERT_TRUE(display_.has_window(out_.string()));
+  EXPECT_TRUE(comes_true([&] { return display_.count_colors() > colors_of_a_map; }));
+  for (const char* key : {"c", "f", "p", "h", "2", "1"}) {
+    EXPECT_TRUE(display_.changes_by(key, out_.string())) << key;
+  }
+  EXPECT_TRUE(display_.close_by("q", out_.string()));
+  EXPECT_EQ(program.wait().status, 0);
+}
+
+TEST_F(ProgramWindow, StepsThroughARecording) {
+  fs::remove(sequence_ / "phase_b" / "000002.png");  // a damaged frame is passed through
+  RunningProgram program({"view", sequence_.string(), "--color", "range"});
+  ASSERT_TRUE(display_.has_window(sequence_.string()));
+  EXPECT_TRUE(comes_true([&] { return display_.count_colors() > colors_of_a_map; }));
+  for (const char* key : {"Right", "Right", "Right", "u", "x", "c", "Left"}) {
+    EXPECT_TRUE(display_.changes_by(key, sequence_.string())) << key;
+  }
+  EXPECT_TRUE(display_.close_by("q", sequence_.string()));
+  EXPECT_EQ(program.wait().status, 0);
+}
+
+TEST_F(ProgramWindow, OfAViewGoesWhenTheProgramIsInterrupted) {
+  RunningProgram program({"view", sequence_.string()});
+  ASSERT_TRUE(display_.has_window(sequence_.string()));
+  program.send(SIGINT);
+  EXPECT_EQ(program.wait().status, 0);
+}
+
 using ProgramWithoutDisplay = WithRecording;
 
 TEST_F(ProgramWithoutDisplay, RefusesToViewBeforeItWorks) {

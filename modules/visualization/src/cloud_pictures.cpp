@@ -17,21 +17,6 @@ constexpr int panel_height_px = 480;
 constexpr int gap_px = 16;
 constexpr Rgb untouched{60, 90, 130};
 
-/// The points of ranges; those of pixels with a wrap count above 0 are red.
-PointLayer points_of(const ImageF& range_m, const ImageU8& wrap_count, const PixelRays& rays) {
-  PointLayer layer;
-  for (Eigen::Index v = 0; v < range_m.rows(); ++v) {
-    for (Eigen::Index u = 0; u < range_m.cols(); ++u) {
-      const int count = wrap_count(v, u);
-      if (count == invalid_wrap_count || !std::isfinite(range_m(v, u))) continue;
-      layer.points_m.push_back(range_m(v, u) *
-                               Eigen::Vector3f(rays.x(v, u), rays.y(v, u), rays.z(v, u)));
-      layer.colors.push_back(count > 0 ? colors::corrected : untouched);
-    }
-  }
-  return layer;
-}
-
 /// The camera as a small pyramid with its tip where it stands.
 LineLayer camera_outline(const PixelRays& rays, float depth_m) {
   const Eigen::Index bottom = rays.z.rows() - 1;
@@ -55,9 +40,26 @@ double reach_m(const ImageF& range_m, const PixelRays& rays) {
 
 }  // namespace
 
+Drawing frame_drawing(const ImageF& range_m, const PixelRays& rays,
+                      const std::function<Rgb(Eigen::Index row, Eigen::Index col)>& color) {
+  PointLayer layer;
+  for (Eigen::Index v = 0; v < range_m.rows(); ++v) {
+    for (Eigen::Index u = 0; u < range_m.cols(); ++u) {
+      if (!std::isfinite(range_m(v, u))) continue;
+      layer.points_m.push_back(range_m(v, u) *
+                               Eigen::Vector3f(rays.x(v, u), rays.y(v, u), rays.z(v, u)));
+      layer.colors.push_back(color(v, u));
+    }
+  }
+  const auto camera_m = static_cast<float>(reach_m(range_m, rays) / 12);
+  return {{std::move(layer)}, {camera_outline(rays, camera_m)}, {}};
+}
+
 Drawing frame_drawing(const RangeImage& unwrapped, const ImageF& range_m, const PixelRays& rays) {
-  const auto camera_m = static_cast<float>(reach_m(unwrapped.range_m, rays) / 12);
-  return {{points_of(range_m, unwrapped.wrap_count, rays)}, {camera_outline(rays, camera_m)}, {}};
+  const ImageF valid_m = (unwrapped.wrap_count == invalid_wrap_count).select(NAN, range_m);
+  return frame_drawing(valid_m, rays, [&](Eigen::Index row, Eigen::Index col) {
+    return unwrapped.wrap_count(row, col) > 0 ? colors::corrected : untouched;
+  });
 }
 
 Viewpoint frame_viewpoint_left(const ImageF& range_m, const PixelRays& rays) {

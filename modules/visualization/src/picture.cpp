@@ -4,6 +4,7 @@
 #include "tofmap/visualization/picture.hpp"
 
 #include "text.hpp"
+#include "vtk_image.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -124,8 +125,8 @@ Picture color_key(const std::vector<LegendEntry>& entries) {
   return stacked(lines, gap_px);
 }
 
-std::string encoded_png(const Picture& picture) {
-  vtkNew<vtkImageData> image;
+vtkSmartPointer<vtkImageData> vtk_image(const Picture& picture) {
+  auto image = vtkSmartPointer<vtkImageData>::New();
   image->SetDimensions(picture.width_px, picture.height_px, 1);
   image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
   for (int y = 0; y < picture.height_px; ++y) {
@@ -139,9 +140,13 @@ std::string encoded_png(const Picture& picture) {
       *row++ = color.blue;
     }
   }
+  return image;
+}
+
+std::string encoded_png(const Picture& picture) {
   vtkNew<vtkPNGWriter> writer;
   writer->WriteToMemoryOn();
-  writer->SetInputData(image);
+  writer->SetInputData(vtk_image(picture));
   writer->Write();
   vtkUnsignedCharArray* png = writer->GetResult();
   return {reinterpret_cast<const char*>(png->GetPointer(0)),

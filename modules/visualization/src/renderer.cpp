@@ -142,10 +142,8 @@ void look_from(vtkRenderer& renderer, const Viewpoint& viewpoint) {
   camera->SetFocalPoint(viewpoint.target_m.data());
   camera->SetViewUp(viewpoint.up.data());
   camera->SetViewAngle(viewpoint.vertical_fov_deg);
-  if (viewpoint.parallel_height_m > 0) {
-    camera->ParallelProjectionOn();
-    camera->SetParallelScale(viewpoint.parallel_height_m / 2);
-  }
+  camera->SetParallelProjection(viewpoint.parallel_height_m > 0 ? 1 : 0);
+  if (viewpoint.parallel_height_m > 0) camera->SetParallelScale(viewpoint.parallel_height_m / 2);
   renderer.ResetCameraClippingRange();
 }
 

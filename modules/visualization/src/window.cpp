@@ -4,13 +4,17 @@
 #include "tofmap/visualization/window.hpp"
 
 #include "renderer.hpp"
+#include "vtk_image.hpp"
 
 #include <chrono>
 #include <thread>
 #include <utility>
 
 #include <X11/Xlib.h>
+#include <vtkActor2D.h>
 #include <vtkCoordinate.h>
+#include <vtkImageData.h>
+#include <vtkImageMapper.h>
 #include <vtkInteractorStyleTrackballCamera.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
@@ -88,6 +92,10 @@ class Window::Impl {
     window_->SetMultiSamples(0);
     hang(*upper_, 1);
     hang(*lower_, 0);
+    legend_image_->SetColorWindow(255);
+    legend_image_->SetColorLevel(127.5);
+    legend_->SetMapper(legend_image_);
+    set_legend({});
     show({});
     window_->AddRenderer(renderer_);
     interactor_->SetRenderWindow(window_);
@@ -100,6 +108,7 @@ class Window::Impl {
     replace_drawing(*renderer_, drawing);
     renderer_->AddViewProp(upper_);
     renderer_->AddViewProp(lower_);
+    renderer_->AddViewProp(legend_);
     is_drawn_ = false;
   }
 
@@ -117,16 +126,36 @@ class Window::Impl {
     is_drawn_ = false;
   }
 
+  void set_legend(const Picture& legend) {
+    legend_->SetVisibility(legend.pixels.empty() ? 0 : 1);
+    if (!legend.pixels.empty()) {
+      legend_image_->SetInputData(vtk_image(legend));
+      legend_size_px_ = Eigen::Vector2i(legend.width_px, legend.height_px);
+    }
+    is_drawn_ = false;
+  }
+
   void on_key(std::function<void(const std::string&)> handler) { handler_ = std::move(handler); }
 
   bool handle_events() {
-    if (!interactor_->GetDone() && !std::exchange(is_drawn_, true)) window_->Render();
+    if (!interactor_->GetDone() && !std::exchange(is_drawn_, true)) {
+      place_legend();
+      window_->Render();
+    }
     interactor_->ProcessEvents();
     window_->ReleaseCurrent();  // who draws off screen meanwhile has another OpenGL context
     return !interactor_->GetDone();
   }
 
  private:
+  /// In the corner of the window as large as it is now.
+  void place_legend() {
+    constexpr int margin_px = 10;
+    const int* size_px = window_->GetSize();
+    legend_->SetPosition(size_px[0] - legend_size_px_.x() - margin_px,
+                         size_px[1] - legend_size_px_.y() - margin_px);
+  }
+
   void take_key(const std::string& key) {
     if (key == "q" || key == "Escape") {
       interactor_->TerminateApp();
@@ -142,6 +171,9 @@ class Window::Impl {
   vtkNew<WindowStyle> style_;
   vtkNew<vtkTextActor> upper_;
   vtkNew<vtkTextActor> lower_;
+  vtkNew<vtkImageMapper> legend_image_;
+  vtkNew<vtkActor2D> legend_;
+  Eigen::Vector2i legend_size_px_ = Eigen::Vector2i::Zero();
   std::function<void(const std::string&)> handler_;
   bool is_drawn_ = false;  ///< whether all that was set is on the screen
 };
@@ -160,6 +192,8 @@ bool Window::was_turned() const { return impl_->was_turned(); }
 void Window::set_text(const std::string& upper, const std::string& lower) {
   impl_->set_text(upper, lower);
 }
+
+void Window::set_legend(const Picture& legend) { impl_->set_legend(legend); }
 
 void Window::on_key(std::function<void(const std::string&)> handler) {
   impl_->on_key(std::move(handler));

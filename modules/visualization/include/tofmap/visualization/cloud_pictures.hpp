@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
+
 #include <tofmap/core/camera.hpp>
 #include <tofmap/core/range_image.hpp>
 #include <tofmap/visualization/drawing.hpp>
@@ -13,6 +15,10 @@ namespace tofmap {
 /// wrap count is not 0 are red: where they were wrapped to, and where they belong.
 /// Throws DrawingError if nothing can be drawn on this machine.
 Picture cloud_picture(const RangeImage& unwrapped, const ImageF& wrapped_m, const PixelRays& rays);
+
+/// The points of ranges, each in the colour of its pixel, with the camera.
+Drawing frame_drawing(const ImageF& range_m, const PixelRays& rays,
+                      const std::function<Rgb(Eigen::Index row, Eigen::Index col)>& color);
 
 /// The points of ranges that belong to an unwrapped image, as in `cloud_picture`, with the camera.
 Drawing frame_drawing(const RangeImage& unwrapped, const ImageF& range_m, const PixelRays& rays);

@@ -32,6 +32,9 @@ class Window {
   /// Replaces the lines of text in the upper and the lower left corner.
   void set_text(const std::string& upper, const std::string& lower);
 
+  /// Replaces the picture in the upper right corner; an empty one takes it away.
+  void set_legend(const Picture& legend);
+
   /// Has a function called for keys other than those that close; names are those of X ("c",
   /// "Right", "space").
   void on_key(std::function<void(const std::string& key)> handler);

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "consistency_report.hpp"
+
+#include "frame_report.hpp"
+
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include <tofmap/evaluation/consistency.hpp>
+#include <tofmap/pipeline/side_by_side.hpp>
+
+namespace tofmap::app {
+namespace {
+
+double curl_violations_per_frame(const RoomMap& map) {
+  double sum = 0;
+  int frames = 0;
+  for (const FrameRecord& frame : map.frames) {
+    if (!frame.damage.empty()) continue;
+    sum += frame.curl_violations;
+    ++frames;
+  }
+  return frames > 0 ? sum / frames : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+Consistency consistency_of(const RoomMap& map, const std::vector<DualFrequencyFrame>& frames,
+                           const SensorModel& sensor, const PipelineOptions& pipeline) {
+  const PixelRays rays = pixel_rays(sensor.camera);
+  auto unwrappers = one_a_thread(Unwrapper(sensor, pipeline.unwrap));
+  const auto prepare = [&](Unwrapper& unwrapper, int i) {
+    return prepare_frame(frames[static_cast<std::size_t>(i)], unwrapper, sensor, rays, pipeline);
+  };
+  std::vector<RangedFrame> unwrapped;
+  std::vector<RangedFrame> filtered;
+  const auto prepared = side_by_side(static_cast<int>(frames.size()), unwrappers, prepare);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const auto pose = pose_at(map.trajectory, frames[i].timestamp_s);
+    unwrapped.push_back({&frames[i], prepared[i].unwrapped.image, pose});
+    filtered.push_back({&frames[i], prepared[i].filtered.image, pose});
+  }
+  const BeatAgreement beat = beat_agreement(unwrapped, sensor.modulation);
+  return {.beat_misfit_percent = beat.misfit_percent,
+          .beat_residual_cycles = beat.residual_cycles,
+          .ambiguous_percent = ambiguous_percent(unwrapped),
+          .contradicted_percent = contradicted_percent(filtered, sensor.camera),
+          .plane_thickness_m = plane_thickness_m(map.surface),
+          .curl_violations_per_frame = curl_violations_per_frame(map)};
+}
+
+nlohmann::ordered_json consistency_json(const Consistency& consistency) {
+  return {{"beat_misfit_percent", json_number(consistency.beat_misfit_percent)},
+          {"beat_residual_cycles", json_number(consistency.beat_residual_cycles)},
+          {"ambiguous_percent", json_number(consistency.ambiguous_percent)},
+          {"contradicted_percent", json_number(consistency.contradicted_percent)},
+          {"plane_thickness_m", json_number(consistency.plane_thickness_m)},
+          {"curl_violations_per_frame", json_number(consistency.curl_violations_per_frame)}};
+}
+
+}  // namespace tofmap::app

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <tofmap/core/frame.hpp>
+#include <tofmap/pipeline/pipeline.hpp>
+
+namespace tofmap::app {
+
+/// What tells without truth whether unwrapping was right (docs/evaluation.md); NaN: not known.
+struct Consistency {
+  double beat_misfit_percent = 0;
+  double beat_residual_cycles = 0;
+  double ambiguous_percent = 0;
+  double contradicted_percent = 0;
+  double plane_thickness_m = 0;
+  double curl_violations_per_frame = 0;
+};
+
+/// Of a map, from some of its frames, which are unwrapped and filtered once more.
+Consistency consistency_of(const RoomMap& map, const std::vector<DualFrequencyFrame>& frames,
+                           const SensorModel& sensor, const PipelineOptions& pipeline);
+
+nlohmann::ordered_json consistency_json(const Consistency& consistency);
+
+}  // namespace tofmap::app
