@@ -16,7 +16,7 @@ packages=(
 if [[ ${1:-} == --tests ]]; then
   packages+=(
     libgtest-dev libgmock-dev libbenchmark-dev gcovr xvfb
-    chromium chromium-driver python3-selenium python3-pil
+    chromium chromium-driver python3-selenium python3-pil python3-yaml
   )
 fi
 missing=()

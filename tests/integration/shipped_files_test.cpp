@@ -35,8 +35,9 @@ TEST_F(ShippedFiles, EveryConfigurationIsTakenByItsCommand) {
   int files = 0;
   for (const auto& entry : fs::recursive_directory_iterator(source_dir / "configs")) {
     if (entry.path().extension() != ".yaml") continue;
-    ++files;
     const std::string kind = entry.path().parent_path().filename();
+    if (kind == "experiments") continue;  // of benchmarks/experiment.py, see CMakeLists.txt
+    ++files;
     ASSERT_TRUE(kind == "cameras" || kind == "pipelines") << entry.path();
     const Finished finished =
         kind == "cameras" ? run_program({"simulate", "wall", "--out", out_.string(), "--frames",

@@ -1,0 +1,253 @@
+#!/usr/bin/python3
+# SPDX-FileCopyrightText: 2026 the tofmap authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs the experiment that a file describes, and prints its table.
+
+    benchmarks/experiment.py FILE BUILD_DIR OUT_DIR [--jobs N] [--plot PICTURE]
+    benchmarks/experiment.py --check FILE ...
+
+Every combination of scenes, variants and seeds is a run of `tofmap simulate` and `tofmap evaluate`, of
+which OUT_DIR keeps report.json alone. Runs that are there are not run again, so that an interrupted
+experiment goes on where it ended. configs/experiments/README.md describes the files. Needs Debian's
+python3-yaml, and python3-matplotlib for plots.
+"""
+import argparse
+import concurrent.futures
+import dataclasses
+import hashlib
+import itertools
+import json
+import math
+import os
+import pathlib
+import re
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+
+import yaml
+
+KEYS = {"title", "scenes", "seeds", "frames", "vary", "fixed", "methods", "baseline", "measures",
+        "down_to"}
+
+
+class Wrong(Exception):
+    """The file is no experiment."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Run:
+    """One recording, and how it is evaluated."""
+    scene: str
+    variant: tuple[str, ...]  # a label an axis
+    seed: int
+    options: tuple[tuple[str, object], ...]
+
+    def settings(self, of_simulator):
+        return [word for name, value in self.options
+                if name.startswith("simulator.") == of_simulator
+                for word in ("--set", f"{name}={value}")]
+
+
+class Experiment:
+    def __init__(self, file):
+        with open(file, encoding="utf-8") as text:
+            self.content = yaml.safe_load(text)
+        content = self.content
+        if not isinstance(content, dict) or set(content) - KEYS:
+            raise Wrong(f"{file}: known are {', '.join(sorted(KEYS))}")
+        for key in ("title", "scenes", "seeds", "methods", "measures"):
+            if not content.get(key):
+                raise Wrong(f"{file}: names no {key}")
+        self.title = content["title"]
+        self.methods = content["methods"]
+        self.measures = content["measures"]
+        self.baseline = content.get("baseline")
+        self.axes = content.get("vary", {})
+        if self.baseline and self.baseline not in self.methods:
+            raise Wrong(f"{file}: baseline {self.baseline} is none of the methods")
+        for measure in self.measures:
+            if not re.fullmatch(r"\w+\.\w+", measure):
+                raise Wrong(f"{file}: measure {measure} is no group.metric of report.json")
+        for axis, variants in self.axes.items():
+            if not isinstance(variants, dict) or not all(
+                    isinstance(options, dict) for options in variants.values()):
+                raise Wrong(f"{file}: {axis} has no options by label")
+
+    def variants(self):
+        """Labels, and the options of all of them."""
+        fixed = self.content.get("fixed", {})
+        for labels in itertools.product(*(list(variants) for variants in self.axes.values())):
+            options = dict(fixed)
+            for axis, label in zip(self.axes, labels):
+                options.update(self.axes[axis][label])
+            yield labels, options
+
+    def runs(self):
+        for scene, (labels, options), seed in itertools.product(
+                self.content["scenes"], self.variants(), self.content["seeds"]):
+            yield Run(scene, tuple(str(label) for label in labels), seed,
+                      tuple(sorted(options.items())))
+
+    def commands(self, run, tofmap, folder):
+        frames = ["--frames", str(self.content["frames"])] if "frames" in self.content else []
+        return ([tofmap, "simulate", run.scene, "--seed", str(run.seed), *frames, "--out",
+                 f"{folder}/seq", "--quiet", *run.settings(of_simulator=True)],
+                [tofmap, "evaluate", f"{folder}/seq", "--out", f"{folder}/out", "--quiet", "--set",
+                 "evaluation.methods=" + " ".join(self.methods), "--set", "pictures.frames=0",
+                 "--set", f"evaluation.down_to={self.content.get('down_to', 'map')}", "--set",
+                 "report.frames=0", *run.settings(of_simulator=False)])
+
+    def report_file(self, run, out):
+        """Named after what was run: what changes is run anew."""
+        words = itertools.chain.from_iterable(self.commands(run, "tofmap", ""))
+        return out / (hashlib.sha256("\0".join(words).encode()).hexdigest()[:16] + ".json")
+
+
+def carry_out(experiment, run, tofmap, out):
+    """The report of one run; what went wrong if there is none."""
+    kept = experiment.report_file(run, out)
+    if not kept.exists():
+        with tempfile.TemporaryDirectory(dir=out) as folder:
+            for command in experiment.commands(run, tofmap, folder):
+                done = subprocess.run(command, capture_output=True, text=True, check=False,
+                                      env={**os.environ, "OMP_NUM_THREADS": "1"})
+                if done.returncode != 0:
+                    return None, done.stderr.strip()
+            shutil.move(f"{folder}/out/report.json", f"{kept}.partial")
+        os.replace(f"{kept}.partial", kept)
+    return json.loads(kept.read_text(encoding="utf-8")), ""
+
+
+def carry_out_all(experiment, tofmap, out, jobs):
+    runs = list(experiment.runs())
+    reports = {}
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        futures = {pool.submit(carry_out, experiment, run, tofmap, out): run for run in runs}
+        try:
+            for count, future in enumerate(concurrent.futures.as_completed(futures), 1):
+                run = futures[future]
+                report, trouble = future.result()
+                if report is None:
+                    print(f"{run.scene} {' '.join(run.variant)}, seed {run.seed}: {trouble}",
+                          file=sys.stderr)
+                else:
+                    reports[run] = report
+                print(f"run {count} of {len(runs)}", file=sys.stderr)
+        except KeyboardInterrupt:
+            pool.shutdown(cancel_futures=True)
+            raise
+    return reports
+
+
+def value_of(report, measure, method):
+    group, metric = measure.split(".")
+    value = report.get(group, {}).get(method, {}).get(metric)
+    return math.nan if value is None else value
+
+
+def mean_and_spread(values):
+    values = [value for value in values if not math.isnan(value)]
+    if not values:
+        return math.nan, math.nan
+    return statistics.mean(values), statistics.stdev(values) if len(values) > 1 else 0.0
+
+
+def cell(values):
+    mean, spread = mean_and_spread(values)
+    return "-" if math.isnan(mean) else f"{mean:.3g} ± {spread:.2g}"
+
+
+def rows_of(experiment, reports):
+    """Scene and variant, and the reports of its seeds in their order."""
+    rows = {}
+    for run in experiment.runs():
+        if run in reports:
+            rows.setdefault((run.scene, *run.variant), []).append(reports[run])
+    return rows
+
+
+def print_table(experiment, reports):
+    print(f"{experiment.title}. Mean and standard deviation over {len(experiment.content['seeds'])} "
+          "seeds" + (f"; in brackets the difference from `{experiment.baseline}`, seed by seed"
+                     if experiment.baseline else "") + ".")
+    for measure in experiment.measures:
+        print(f"\n`{measure}`\n")
+        print("| scene | " + " | ".join((*experiment.axes, *experiment.methods)) + " |")
+        print("|---" * (1 + len(experiment.axes) + len(experiment.methods)) + "|")
+        for names, seeds in rows_of(experiment, reports).items():
+            cells = []
+            for method in experiment.methods:
+                values = [value_of(report, measure, method) for report in seeds]
+                text = cell(values)
+                if experiment.baseline not in (None, method):
+                    text += " (" + cell([value - value_of(report, measure, experiment.baseline)
+                                         for value, report in zip(values, seeds)]) + ")"
+                cells.append(text)
+            print("| " + " | ".join((*names, *cells)) + " |")
+
+
+def plot(experiment, reports, picture):
+    """A panel a measure; bars a method, from scene and variant to the next."""
+    import matplotlib
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+    colors = ("#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9")  # Okabe and Ito
+    hatches = ("", "//", "..", "xx", "\\\\", "oo")
+    rows = rows_of(experiment, reports)
+    figure, panels = pyplot.subplots(len(experiment.measures), 1, squeeze=False, figsize=(
+        max(6, 0.25 * len(rows) * len(experiment.methods)), 3.4 * len(experiment.measures)))
+    width = 0.8 / len(experiment.methods)
+    for panel, measure in zip(panels[:, 0], experiment.measures):
+        for i, method in enumerate(experiment.methods):
+            found = [mean_and_spread([value_of(report, measure, method) for report in seeds])
+                     for seeds in rows.values()]
+            panel.bar([row + (i + 0.5) * width - 0.4 for row in range(len(rows))],
+                      [mean for mean, _ in found], width, yerr=[spread for _, spread in found],
+                      label=method, color=colors[i % len(colors)], hatch=hatches[i % len(hatches)],
+                      edgecolor="white", capsize=2)
+        panel.set_ylabel(measure)
+        panel.set_xticks(range(len(rows)), ["\n".join(names) for names in rows])
+        panel.set_yscale("log")
+    panels[0, 0].legend(ncols=len(experiment.methods), fontsize="small")
+    figure.suptitle(experiment.title)
+    figure.tight_layout()
+    figure.savefig(picture, dpi=130)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("--check", nargs="+", metavar="FILE", help="read files, and run nothing")
+    parser.add_argument("file", nargs="?")
+    parser.add_argument("build_dir", nargs="?", type=pathlib.Path)
+    parser.add_argument("out_dir", nargs="?", type=pathlib.Path)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--plot", metavar="PICTURE")
+    arguments = parser.parse_args()
+    try:
+        if arguments.check:
+            for file in arguments.check:
+                print(f"{file}: {len(list(Experiment(file).runs()))} runs")
+            return 0
+        if not arguments.out_dir:
+            parser.error("FILE, BUILD_DIR and OUT_DIR are needed")
+        experiment = Experiment(arguments.file)
+        arguments.out_dir.mkdir(parents=True, exist_ok=True)
+        reports = carry_out_all(experiment, str(arguments.build_dir / "apps" / "tofmap"),
+                                arguments.out_dir, arguments.jobs)
+    except (Wrong, OSError, yaml.YAMLError) as error:
+        print(f"experiment: {error}", file=sys.stderr)
+        return 3
+    except KeyboardInterrupt:
+        print("experiment: interrupted; the same command goes on", file=sys.stderr)
+        return 130
+    print_table(experiment, reports)
+    if arguments.plot:
+        plot(experiment, reports, arguments.plot)
+    return 0 if len(reports) == len(list(experiment.runs())) else 3
+
+
+if __name__ == "__main__":
+    sys.exit(main())
