@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -24,6 +25,9 @@ struct Consistency {
 /// Of a map, from some of its frames, which are unwrapped and filtered once more.
 Consistency consistency_of(const RoomMap& map, const std::vector<DualFrequencyFrame>& frames,
                            const SensorModel& sensor, const PipelineOptions& pipeline);
+
+/// What is more than right maps mostly have, in sentences.
+std::vector<std::string> doubts_about(const Consistency& consistency);
 
 nlohmann::ordered_json consistency_json(const Consistency& consistency);
 

@@ -68,7 +68,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
   const bool quiet = arguments.common.quiet;
 
   const SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
-  const Truth truth = down_to_map ? read_truth(source) : Truth{};
+  const Truth truth = down_to_map ? read_truth(source, quiet) : Truth{};
   if (!quiet) say_what_is_missing(source, truth, down_to_map);
   OutputFolder out(arguments.out);
   Json report;
@@ -92,7 +92,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
   if (!results.empty() && (down_to_map || options.pictures.frames > 0)) {
     add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
       write_method_pictures(folder, source, methods, options.pipeline.unwrap,
-                            options.pipeline.filters, options.pictures);
+                            options.pipeline.filters, options.pictures, quiet);
       if (down_to_map) write_comparison(folder, results, options.pictures);
     });
   }

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <nlohmann/json.hpp>
 
@@ -76,6 +77,16 @@ std::string sentence_of(const EvaluationPageSubject& subject) {
   return text;
 }
 
+/// About the recording, and about the map with unwrapping.
+std::vector<std::string> warnings_of(const EvaluationPageSubject& subject) {
+  std::vector<std::string> warnings = subject.warnings;
+  const MethodResult& with = with_unwrapping(subject);
+  if (with.consistency) {
+    std::ranges::move(doubts_about(*with.consistency), std::back_inserter(warnings));
+  }
+  return warnings;
+}
+
 Verdict verdict_of(const EvaluationPageSubject& subject) {
   const MethodResult& with = with_unwrapping(subject);
   if (with.name == "none") return Verdict::bad;
@@ -86,7 +97,7 @@ Verdict verdict_of(const EvaluationPageSubject& subject) {
   }
   const bool is_lost = with.map && 100 * with.map->trajectory.size() < 95 * with.map->frames.size();
   const bool is_known = with.surface || !with.map;
-  return is_lost || !is_known || !subject.warnings.empty() ? Verdict::doubtful : Verdict::good;
+  return is_lost || !is_known || !warnings_of(subject).empty() ? Verdict::doubtful : Verdict::good;
 }
 
 ShownMap shown_map(const MethodResult& result, const std::string& name, const Truth& truth) {
@@ -211,7 +222,7 @@ void write_evaluation_page(const std::filesystem::path& result,
   ReportPage page("With and without unwrapping: " + subject.recording.folder().string(),
                   "tofmap " TOFMAP_VERSION);
   page.add_verdict(verdict_of(subject), sentence_of(subject));
-  page.add_warnings(subject.warnings);
+  page.add_warnings(warnings_of(subject));
   page.add_heading("Methods");
   page.add_table(methods_table(subject.report));
   if (with.map) add_maps(page, shown_maps(subject), subject.truth.poses, subject.options.report);

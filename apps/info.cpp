@@ -4,6 +4,7 @@
 #include "command.hpp"
 #include "interruption.hpp"
 #include "options.hpp"
+#include "progress.hpp"
 #include "recording.hpp"
 
 #include <cmath>
@@ -60,12 +61,20 @@ void print_frames(const SequenceReader& source, const RecordingSurvey& survey) {
   for (const std::string& damage : survey.damages) std::printf("  %s\n", damage.c_str());
 }
 
+RecordingSurvey read_all(const SequenceReader& source, bool quiet) {
+  Progress progress("reading frame", source.frame_count(), quiet);
+  return survey_recording(source, [&](int done) {
+    progress.show(done);
+    return !is_interrupted();
+  });
+}
+
 int run_info(const InfoArguments& arguments) {
   ProgramOptions options;
   OptionTable table = arguments.common.resolve("info", options);
   arguments.recording.apply(table);
   const SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
-  const RecordingSurvey survey = survey_recording(source, [] { return !is_interrupted(); });
+  const RecordingSurvey survey = read_all(source, arguments.common.quiet);
   print_sensor(source.sensor());
   print_frames(source, survey);
   print_doubts(doubts_about(survey, source.sensor()));

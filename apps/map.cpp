@@ -15,8 +15,10 @@
 #include "sampled_frames.hpp"
 #include "watched_source.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <string>
 
@@ -97,12 +99,13 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
   std::printf("map: %s, mesh, pictures and report.html beside it\n", (folder / "map.ply").c_str());
 }
 
-/// Puts the map in place.
-FinishedMap finish_map(MapRun& run, OutputFolder& out, const MapOutput& output) {
+/// Puts the map in place; what it is doubted for comes to the doubts.
+FinishedMap finish_map(MapRun& run, OutputFolder& out, MapOutput& output) {
   FinishedMap finished{run.finish(), {}};
   check_result(finished.map);
   finished.consistency =
       consistency_of(finished.map, output.frames, output.sensor, output.options.pipeline);
+  std::ranges::move(doubts_about(finished.consistency), std::back_inserter(output.doubts));
   write_result(out, finished, output);
   out.commit();
   if (!output.arguments.common.quiet) {
@@ -115,9 +118,11 @@ FinishedMap finish_map(MapRun& run, OutputFolder& out, const MapOutput& output) 
 /// Adds report.html to a map that is in place; its truth is that of the recording, if there is one.
 void add_page(const OutputFolder& out, const FinishedMap& finished, const MapOutput& output,
               const SequenceReader* recording, const std::vector<std::string>& warnings) {
-  write_map_page(out.final_path(), {output.arguments.recording.sequence.string(), finished.map,
-                                    output.sensor, output.frames, recording, warnings,
-                                    finished.consistency, output.options, output.options_yaml});
+  write_map_page(
+      out.final_path(),
+      {output.arguments.recording.sequence.string(), finished.map, output.sensor, output.frames,
+       recording, warnings, finished.consistency, output.options, output.options_yaml},
+      output.arguments.common.quiet);
 }
 
 int status_of(const RoomMap& map) {
@@ -175,7 +180,8 @@ int map_recording(const MapArguments& arguments, const ProgramOptions& options,
   add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
     write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
     if (map.interrupted) return;
-    write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures);
+    write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures,
+                         arguments.common.quiet);
   });
   add_page(out, finished, output, map.interrupted ? nullptr : &source, output.doubts);
   if (view) view->show_result(map);

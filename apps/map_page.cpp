@@ -182,9 +182,10 @@ std::vector<ShownMap> shown_maps(const MapPageSubject& subject, const Truth& tru
 
 int frames_for_page(const ReportOptions& options) { return std::max(60, options.frames); }
 
-void write_map_page(const std::filesystem::path& result, const MapPageSubject& subject) {
+void write_map_page(const std::filesystem::path& result, const MapPageSubject& subject,
+                    bool quiet) {
   const RoomMap& map = subject.map;
-  const Truth truth = subject.recording ? read_truth(*subject.recording) : Truth{};
+  const Truth truth = subject.recording ? read_truth(*subject.recording, quiet) : Truth{};
   const Scores scores = score(map, truth);
   const bool is_unwrapped = subject.options.pipeline.unwrap.method != "none";
   const MapCloud wrapped = is_unwrapped ? wrapped_map(subject) : MapCloud();

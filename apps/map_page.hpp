@@ -31,6 +31,6 @@ int frames_for_page(const ReportOptions& options);
 
 /// Writes report.html into a result that is in place already: what became of the map, and what it
 /// would be on the same path with ranges as measured. Throws InputError if it cannot be written.
-void write_map_page(const std::filesystem::path& result, const MapPageSubject& subject);
+void write_map_page(const std::filesystem::path& result, const MapPageSubject& subject, bool quiet);
 
 }  // namespace tofmap::app

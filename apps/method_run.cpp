@@ -53,12 +53,14 @@ UnwrappedFrame unwrap_frame(const SequenceReader& recording, int index, Unwrappe
 
 }  // namespace
 
-Truth read_truth(const SequenceReader& source) {
+Truth read_truth(const SequenceReader& source, bool quiet) {
   Truth truth;
   truth.poses = source.ground_truth();
   const PixelRays rays = pixel_rays(source.sensor().camera);
   constexpr int every = 3;  // neighbouring frames see the same surface
+  Progress progress("reading truth, frame", source.frame_count(), quiet);
   for (int i = 0; i < *source.frame_count(); i += every) {
+    progress.show(i);
     const auto pose = pose_at(truth.poses, source.files()[static_cast<std::size_t>(i)].timestamp_s);
     const auto ranges = source.range_truth(i);
     if (pose && ranges) truth.surface.add(*ranges, rays, *pose);

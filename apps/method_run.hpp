@@ -22,7 +22,8 @@ struct Truth {
   ReferenceSurface surface;
 };
 
-Truth read_truth(const SequenceReader& source);
+/// Of a recording; tells its progress unless quiet.
+Truth read_truth(const SequenceReader& source, bool quiet);
 
 /// How one frame was unwrapped.
 struct UnwrappingRecord {

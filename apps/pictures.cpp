@@ -4,6 +4,7 @@
 #include "pictures.hpp"
 
 #include "output_folder.hpp"
+#include "progress.hpp"
 #include "sampled_frames.hpp"
 
 #include <algorithm>
@@ -104,9 +105,13 @@ std::vector<OptionField<PictureOptions>> PictureOptions::fields() {
 }
 
 void write_frame_pictures(const std::filesystem::path& folder, const SequenceReader& source,
-                          const UnwrapOptions& unwrap, const PictureOptions& options) {
+                          const UnwrapOptions& unwrap, const PictureOptions& options, bool quiet) {
   const PixelRays rays = pixel_rays(source.sensor().camera);
-  for (const int index : spread_indices(*source.frame_count(), options.frames)) {
+  const std::vector<int> indices = spread_indices(*source.frame_count(), options.frames);
+  Progress progress("drawing frame", static_cast<int>(indices.size()), quiet);
+  int done = 0;
+  for (const int index : indices) {
+    progress.show(done++);
     const SourcedFrame frame = source.read(index);
     if (!frame.frame) continue;
     const auto& file = source.files()[static_cast<std::size_t>(index)];
@@ -116,10 +121,15 @@ void write_frame_pictures(const std::filesystem::path& folder, const SequenceRea
 
 void write_method_pictures(const std::filesystem::path& folder, const SequenceReader& source,
                            const std::vector<std::string>& methods, UnwrapOptions unwrap,
-                           const FilterOptions& filters, const PictureOptions& options) {
+                           const FilterOptions& filters, const PictureOptions& options,
+                           bool quiet) {
   const PixelRays rays = pixel_rays(source.sensor().camera);
   const double wavelength_m = source.sensor().modulation.wavelength_a_m();
-  for (const int index : spread_indices(*source.frame_count(), options.frames)) {
+  const std::vector<int> indices = spread_indices(*source.frame_count(), options.frames);
+  Progress progress("drawing methods, frame", static_cast<int>(indices.size()), quiet);
+  int done = 0;
+  for (const int index : indices) {
+    progress.show(done++);
     const SourcedFrame frame = source.read(index);
     if (!frame.frame) continue;
     const std::optional<ImageF> truth_m = source.range_truth(index);

@@ -27,13 +27,13 @@ struct PictureOptions {
 /// Writes ranges, wrap counts, jump probabilities and clouds of a few frames, spread evenly over
 /// the recording, as `<frame>_<what>.png`. Damaged frames have none.
 void write_frame_pictures(const std::filesystem::path& folder, const SequenceReader& source,
-                          const UnwrapOptions& unwrap, const PictureOptions& options);
+                          const UnwrapOptions& unwrap, const PictureOptions& options, bool quiet);
 
 /// Writes what every method makes of a few frames, as `<frame>_methods.png`, and what filters
 /// remove of it without unwrapping and after it, by the last method, as `<frame>_filters.png`.
 void write_method_pictures(const std::filesystem::path& folder, const SequenceReader& source,
                            const std::vector<std::string>& methods, UnwrapOptions unwrap,
-                           const FilterOptions& filters, const PictureOptions& options);
+                           const FilterOptions& filters, const PictureOptions& options, bool quiet);
 
 /// Writes the map from above and from inside, as map_above.png and map_inside.png.
 void write_map_pictures(const std::filesystem::path& folder, const MapCloud& map,

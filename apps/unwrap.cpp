@@ -119,7 +119,8 @@ int run_unwrap(const UnwrapArguments& arguments) {
   }
   if (!interrupted && options.pictures.frames > 0) {
     add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
-      write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures);
+      write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures,
+                           arguments.common.quiet);
     });
   }
   return interrupted ? exit_status::interrupted : exit_status::done;

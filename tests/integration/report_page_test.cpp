@@ -44,6 +44,21 @@ TEST_F(ReportPage, OfWrappedRangesIsNotToBeTrusted) {
   EXPECT_THAT(page(), AllOf(HasSubstr("Not to be trusted."), HasSubstr("Nothing was unwrapped"),
                             Not(HasSubstr("the same path, ranges as measured"))));
   EXPECT_EQ(frames_in(page()), 2);
+  const auto report = read_json(out_ / "report.json");
+  EXPECT_GT(report["consistency"]["beat_misfit_percent"], 10);
+  EXPECT_THAT(report["doubts"].dump(), HasSubstr("better with another wrap count"));
+}
+
+TEST_F(ReportPage, OfARightMapDoubtsNothing) {
+  const Finished finished = run("map");
+  ASSERT_EQ(finished.status, 0);
+  EXPECT_THAT(finished.out, Not(HasSubstr("doubtful")));
+  const auto report = read_json(out_ / "report.json");
+  EXPECT_TRUE(report["doubts"].empty()) << report["doubts"];
+  for (const char* measure : {"contradicted_percent", "beat_misfit_percent", "plane_thickness_m"}) {
+    EXPECT_TRUE(report["consistency"].contains(measure)) << measure;
+  }
+  EXPECT_THAT(page(), HasSubstr("Does it agree with itself?"));
 }
 
 TEST_F(ReportPage, DoesWithoutTruth) {

@@ -130,7 +130,7 @@ void doubt_times(const RecordingSurvey& survey, std::vector<std::string>& doubts
 }  // namespace
 
 RecordingSurvey survey_recording(const SequenceReader& recording,
-                                 const std::function<bool()>& keep_going) {
+                                 const std::function<bool(int)>& keep_going) {
   const SensorModel& sensor = recording.sensor();
   const int count = *recording.frame_count();
   const int every = 1 + (count - 1) / beat_frames;
@@ -139,7 +139,7 @@ RecordingSurvey survey_recording(const SequenceReader& recording,
   std::vector<DualFrequencyFrame> some;
   DualFrequencyFrame last;
   for (int i = 0; i < count; ++i) {
-    if (keep_going && !keep_going()) break;
+    if (keep_going && !keep_going(i)) break;
     ++survey.frames;
     SourcedFrame sourced = recording.read(i);
     if (!sourced.frame) {

@@ -30,9 +30,9 @@ struct RecordingSurvey {
   std::optional<BeatSurvey> beat;  ///< if some hundred pixels have returns at both frequencies
 };
 
-/// Reads all frames. `keep_going` is asked before each; false ends it.
+/// Reads all frames. `keep_going` is asked before each, with the number done; false ends it.
 RecordingSurvey survey_recording(const SequenceReader& recording,
-                                 const std::function<bool()>& keep_going = {});
+                                 const std::function<bool(int frames_done)>& keep_going = {});
 
 /// What of it is likely to be a mistake, in sentences with the remedy.
 std::vector<std::string> doubts_about(const RecordingSurvey& survey, const SensorModel& sensor);
