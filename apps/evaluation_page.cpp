@@ -90,10 +90,9 @@ std::vector<std::string> warnings_of(const EvaluationPageSubject& subject) {
 Verdict verdict_of(const EvaluationPageSubject& subject) {
   const MethodResult& with = with_unwrapping(subject);
   if (with.name == "none") return Verdict::bad;
-  const double voxel_m = subject.options.pipeline.map.voxel_m;
   if (with.surface) {
-    if (with.surface->accuracy_m > 5 * voxel_m) return Verdict::bad;
-    if (with.surface->accuracy_m > voxel_m) return Verdict::doubtful;
+    const Verdict verdict = verdict_on(*with.surface, subject.options.pipeline.map.voxel_m);
+    if (verdict != Verdict::good) return verdict;
   }
   const bool is_lost = with.map && 100 * with.map->trajectory.size() < 95 * with.map->frames.size();
   const bool is_known = with.surface || !with.map;

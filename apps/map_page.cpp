@@ -75,9 +75,8 @@ Verdict verdict_of(const MapPageSubject& subject, const Scores& scores) {
   const double open_percent =
       percent(degenerate_frames(map), static_cast<double>(map.frames.size()));
   if (scores.surface) {
-    const double voxel_m = subject.options.pipeline.map.voxel_m;
-    if (scores.surface->accuracy_m > 5 * voxel_m) return Verdict::bad;
-    if (scores.surface->accuracy_m > voxel_m) return Verdict::doubtful;
+    const Verdict verdict = verdict_on(*scores.surface, subject.options.pipeline.map.voxel_m);
+    if (verdict != Verdict::good) return verdict;
   }
   if (map.surface.empty() || placed_percent < 50 ||
       subject.options.pipeline.unwrap.method == "none") {

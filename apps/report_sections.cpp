@@ -176,6 +176,12 @@ std::vector<OptionField<ReportOptions>> ReportOptions::fields() {
   };
 }
 
+Verdict verdict_on(const MapScore& score, double voxel_m) {
+  constexpr double much = 5;
+  if (!(score.accuracy_m <= much * voxel_m)) return Verdict::bad;  // also of an empty map
+  return score.accuracy_m <= voxel_m ? Verdict::good : Verdict::doubtful;
+}
+
 void add_drawn(ReportPage& page, const std::function<std::vector<PageFigure>()>& draw) {
   try {
     page.add_figures(draw());

@@ -12,6 +12,7 @@
 
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/core/option_table.hpp>
+#include <tofmap/evaluation/map_score.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
 #include <tofmap/visualization/report_page.hpp>
 
@@ -24,6 +25,9 @@ struct ReportOptions {
 
   static std::vector<OptionField<ReportOptions>> fields();
 };
+
+/// Of a map whose truth is known: good within the size of its voxels, bad beyond five times that.
+Verdict verdict_on(const MapScore& score, double voxel_m);
 
 /// A map as a page compares it with others, all in the frame of the first camera.
 struct ShownMap {
