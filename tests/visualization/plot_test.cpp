@@ -67,6 +67,18 @@ TEST(PlotPicture, SpreadsDecadesEvenlyOnALogarithmicAxis) {
   EXPECT_EQ(plot_picture(plot, 600, 400).width_px, 600) << "what is not positive is a gap";
 }
 
+TEST(PlotPicture, MarksSinglePointsWithoutComplaint) {
+  Plot plot = rising();
+  plot.lines[0].x = {2, 5, 8};
+  plot.lines[0].y = {20, std::nan(""), 80};
+  plot.lines.push_back({"one", {5}, {50}});
+  testing::internal::CaptureStderr();
+  const Picture picture = plot_picture(plot, 600, 400);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_GT(count_line(picture, 0, 300, 200, 400), 5) << "lower left";
+  EXPECT_GT(count_line(picture, 300, 600, 0, 200), 5) << "upper right";
+}
+
 TEST(PlotPicture, CanBeEmpty) {
   Plot plot = rising();
   plot.lines[0].x.clear();

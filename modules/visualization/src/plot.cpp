@@ -47,6 +47,20 @@ vtkSmartPointer<vtkDoubleArray> column(const std::string& name, const std::vecto
   return array;
 }
 
+/// Points that have no neighbour, twice: VTK draws no line of one point.
+PlotLine with_single_points_doubled(const PlotLine& line) {
+  const auto is_there = [&](std::size_t i) {
+    return i < line.y.size() && std::isfinite(line.x[i]) && std::isfinite(line.y[i]);
+  };
+  PlotLine out{line.name, {}, {}};
+  for (std::size_t i = 0; i < line.y.size(); ++i) {
+    const bool is_single = is_there(i) && !is_there(i + 1) && (i == 0 || !is_there(i - 1));
+    out.x.insert(out.x.end(), is_single ? 2 : 1, line.x[i]);
+    out.y.insert(out.y.end(), is_single ? 2 : 1, line.y[i]);
+  }
+  return out;
+}
+
 void add_line(const PlotLine& line, std::size_t number, vtkChartXY& chart) {
   vtkNew<vtkTable> table;
   table->AddColumn(column("x", line.x));
@@ -122,7 +136,10 @@ Picture plot_picture(const Plot& plot, int width_px, int height_px) {
     if (line.x.size() != line.y.size()) {
       throw UsageError("plot: line '" + line.name + "' has not as many x as y");
     }
-    add_line(plot.has_log_y ? positive(line) : line, i, *chart);
+    const PlotLine shown = plot.has_log_y ? positive(line) : line;
+    const auto is_there = [](double y) { return std::isfinite(y); };
+    if (std::ranges::none_of(shown.y, is_there)) continue;
+    add_line(with_single_points_doubled(shown), i, *chart);
   }
   set_axis(*chart->GetAxis(vtkAxis::BOTTOM), plot.x_label,
            limit_or(plot.x_limit, plot, &PlotLine::x));
