@@ -63,7 +63,9 @@ class Experiment:
                 raise Wrong(f"{file}: names no {key}")
         self.title = content["title"]
         self.methods = content["methods"]
-        self.measures = content["measures"]
+        measures = content["measures"]  # by name, or what tables call them by name
+        self.measures = ({name: str(label) for name, label in measures.items()}
+                         if isinstance(measures, dict) else {name: name for name in measures})
         self.baseline = content.get("baseline")
         self.axes = content.get("vary", {})
         if self.baseline and self.baseline not in self.methods:
@@ -156,8 +158,13 @@ def mean_and_spread(values):
 
 
 def cell(values):
+    """Three digits of the mean, and the spread to the same decimals."""
     mean, spread = mean_and_spread(values)
-    return "-" if math.isnan(mean) else f"{mean:.3g} ± {spread:.2g}"
+    if math.isnan(mean):
+        return "-"
+    leading = max(abs(mean), spread)
+    decimals = max(0, 2 - math.floor(math.log10(leading))) if leading > 0 else 0
+    return f"{mean:.{decimals}f} ± {spread:.{decimals}f}"
 
 
 def rows_of(experiment, reports):
@@ -169,24 +176,41 @@ def rows_of(experiment, reports):
     return rows
 
 
-def print_table(experiment, reports):
+def cell_of_method(experiment, seeds, measure, method):
+    values = [value_of(report, measure, method) for report in seeds]
+    text = cell(values)
+    if experiment.baseline not in (None, method):
+        text += " (" + cell([value - value_of(report, measure, experiment.baseline)
+                             for value, report in zip(values, seeds)]) + ")"
+    return text
+
+
+def print_rows(head, rows):
+    print("| " + " | ".join(head) + " |")
+    print("|---" * len(head) + "|")
+    for row in rows:
+        print("| " + " | ".join(row) + " |")
+
+
+def print_tables(experiment, reports):
+    """A table a measure; where there is one scene and no variant of it, one of all measures."""
     print(f"{experiment.title}. Mean and standard deviation over {len(experiment.content['seeds'])} "
           "seeds" + (f"; in brackets the difference from `{experiment.baseline}`, seed by seed"
-                     if experiment.baseline else "") + ".")
-    for measure in experiment.measures:
-        print(f"\n`{measure}`\n")
-        print("| scene | " + " | ".join((*experiment.axes, *experiment.methods)) + " |")
-        print("|---" * (1 + len(experiment.axes) + len(experiment.methods)) + "|")
-        for names, seeds in rows_of(experiment, reports).items():
-            cells = []
-            for method in experiment.methods:
-                values = [value_of(report, measure, method) for report in seeds]
-                text = cell(values)
-                if experiment.baseline not in (None, method):
-                    text += " (" + cell([value - value_of(report, measure, experiment.baseline)
-                                         for value, report in zip(values, seeds)]) + ")"
-                cells.append(text)
-            print("| " + " | ".join((*names, *cells)) + " |")
+                     if experiment.baseline else "") + ".\n")
+    rows = rows_of(experiment, reports)
+    if len(rows) == 1:
+        seeds, = rows.values()
+        print_rows(("method", *experiment.measures.values()), (
+            (f"`{method}`", *(cell_of_method(experiment, seeds, measure, method)
+                              for measure in experiment.measures))
+            for method in experiment.methods))
+        return
+    for measure, label in experiment.measures.items():
+        print_rows((label, *experiment.axes, *(f"`{method}`" for method in experiment.methods)), (
+            (*names, *(cell_of_method(experiment, seeds, measure, method)
+                       for method in experiment.methods))
+            for names, seeds in rows.items()))
+        print()
 
 
 def plot(experiment, reports, picture):
@@ -200,7 +224,7 @@ def plot(experiment, reports, picture):
     figure, panels = pyplot.subplots(len(experiment.measures), 1, squeeze=False, figsize=(
         max(6, 0.25 * len(rows) * len(experiment.methods)), 3.4 * len(experiment.measures)))
     width = 0.8 / len(experiment.methods)
-    for panel, measure in zip(panels[:, 0], experiment.measures):
+    for panel, (measure, label) in zip(panels[:, 0], experiment.measures.items()):
         for i, method in enumerate(experiment.methods):
             found = [mean_and_spread([value_of(report, measure, method) for report in seeds])
                      for seeds in rows.values()]
@@ -208,7 +232,7 @@ def plot(experiment, reports, picture):
                       [mean for mean, _ in found], width, yerr=[spread for _, spread in found],
                       label=method, color=colors[i % len(colors)], hatch=hatches[i % len(hatches)],
                       edgecolor="white", capsize=2)
-        panel.set_ylabel(measure)
+        panel.set_ylabel(label)
         panel.set_xticks(range(len(rows)), ["\n".join(names) for names in rows])
         panel.set_yscale("log")
     panels[0, 0].legend(ncols=len(experiment.methods), fontsize="small")
@@ -243,7 +267,7 @@ def main():
     except KeyboardInterrupt:
         print("experiment: interrupted; the same command goes on", file=sys.stderr)
         return 130
-    print_table(experiment, reports)
+    print_tables(experiment, reports)
     if arguments.plot:
         plot(experiment, reports, arguments.plot)
     return 0 if len(reports) == len(list(experiment.runs())) else 3

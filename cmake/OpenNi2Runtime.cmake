@@ -5,13 +5,15 @@
 # has a folder with links to the system's library and drivers, and its own driver among them;
 # programs that look for the library there first find them all, without root.
 set(TOFMAP_OPENNI2_DIR ${PROJECT_BINARY_DIR}/openni2)
-set(TOFMAP_OPENNI2_INSTALL_DIR ${CMAKE_INSTALL_LIBDIR}/tofmap)
+set(TOFMAP_OPENNI2_INSTALL_NAME tofmap)
+set(TOFMAP_OPENNI2_INSTALL_DIR ${CMAKE_INSTALL_LIBDIR}/${TOFMAP_OPENNI2_INSTALL_NAME})
 
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(OpenNI2 REQUIRED IMPORTED_TARGET libopenni2)
 list(GET OpenNI2_LINK_LIBRARIES 0 openni2_library)
 get_filename_component(openni2_libdir ${openni2_library} DIRECTORY)
 file(GLOB openni2_drivers ${openni2_libdir}/OpenNI2/Drivers/lib*.so.0)
+list(FILTER openni2_drivers EXCLUDE REGEX "/libTofmap[.]so[.]0$")  # of an installed package
 file(MAKE_DIRECTORY ${TOFMAP_OPENNI2_DIR}/OpenNI2/Drivers)
 file(CREATE_LINK ${openni2_libdir}/libOpenNI2.so.0 ${TOFMAP_OPENNI2_DIR}/libOpenNI2.so.0 SYMBOLIC)
 foreach(driver IN LISTS openni2_drivers)
@@ -20,10 +22,10 @@ foreach(driver IN LISTS openni2_drivers)
 endforeach()
 
 # tofmap_use_openni2_runtime(TARGET): the target finds OpenNI2, and with it the project's driver, in
-# that folder, built and installed.
+# that folder, built and installed, and the project's libraries, where they are shared.
 function(tofmap_use_openni2_runtime target)
   add_dependencies(${target} tofmap_openni2_driver)
   set_property(TARGET ${target} APPEND PROPERTY BUILD_RPATH ${TOFMAP_OPENNI2_DIR})
   set_property(TARGET ${target} APPEND PROPERTY
-    INSTALL_RPATH $ORIGIN/../${TOFMAP_OPENNI2_INSTALL_DIR})
+    INSTALL_RPATH $ORIGIN/../${TOFMAP_OPENNI2_INSTALL_DIR} $ORIGIN/../${CMAKE_INSTALL_LIBDIR})
 endfunction()

@@ -46,7 +46,8 @@ function(tofmap_add_module name)
   add_library(tofmap::${name} ALIAS tofmap_${name})
   set_property(GLOBAL APPEND PROPERTY TOFMAP_MODULES ${name})
   set_target_properties(tofmap_${name} PROPERTIES EXPORT_NAME ${name}
-    POSITION_INDEPENDENT_CODE ON VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+    POSITION_INDEPENDENT_CODE ON DEFINE_SYMBOL "" INSTALL_RPATH $ORIGIN
+    VERSION ${PROJECT_VERSION} SOVERSION ${TOFMAP_ABI_VERSION})
   target_include_directories(tofmap_${name}
     PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
            $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
@@ -54,8 +55,9 @@ function(tofmap_add_module name)
   target_link_libraries(tofmap_${name} PUBLIC ${MODULE_PUBLIC} PRIVATE ${MODULE_PRIVATE})
   tofmap_private_flags(tofmap_${name})
   install(TARGETS tofmap_${name} EXPORT tofmapTargets
-    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(DIRECTORY include/tofmap DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
+  install(DIRECTORY include/tofmap DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 endfunction()
 
 # Has the loops of files of this folder become vector instructions: no error flags of the C library,

@@ -2,7 +2,8 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Installs what is missing, builds tofmap with warnings as errors, and runs all tests.
+# Installs what is missing, builds tofmap as its Debian packages want it, with warnings as errors,
+# and runs all tests.
 # BUILD_DIR chooses the build folder (default: build).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -10,6 +11,7 @@ bash scripts/packages.sh --tests
 build=${BUILD_DIR:-build}
 
 cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-  -DTOFMAP_BUILD_TESTS=ON -DTOFMAP_WARNINGS_AS_ERRORS=ON -DTOFMAP_BUILD_BENCHMARKS=ON -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
+  -DTOFMAP_BUILD_TESTS=ON -DTOFMAP_WARNINGS_AS_ERRORS=ON -DTOFMAP_BUILD_BENCHMARKS=ON \
+  -DTOFMAP_DEBIAN_PACKAGES=ON -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
 cmake --build "$build"
 ctest --test-dir "$build" --output-on-failure -j "$(nproc)"

@@ -66,6 +66,16 @@ class Experiments(unittest.TestCase):
         renewed = [file for file, time in kept.items() if file.stat().st_mtime_ns != time]
         self.assertEqual(len(renewed), 1, "only what was missing is run again")
 
+    def test_one_recording_makes_one_table_of_all_measures(self):
+        measures = {"unwrapping.wrong_wrap_percent": "wrong, %", "unwrapping.coverage_percent": "kept, %"}
+        file = self.write(vary={}, baseline=None, measures=measures)
+        done = experiment(file, BUILD, self.folder / "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = [line for line in done.stdout.splitlines() if line.startswith("|")]
+        self.assertEqual(rows[0], "| method | wrong, % | kept, % |")
+        self.assertEqual([row.split("|")[1].strip() for row in rows[2:]], ["`none`", "`pixel`"])
+        self.assertIn("100 ± 0", rows[2], "nothing is filtered, so everything is kept")
+
     def test_what_is_no_experiment_is_refused(self):
         for changes in ({"seeds": []}, {"baseline": "joint"}, {"colour": "red"},
                         {"measures": ["wrong"]}, {"vary": {"noise": [1, 2]}}):
