@@ -24,7 +24,6 @@ struct ViewArguments {
   ViewRequest request;
   std::filesystem::path screenshot;
   std::string from = "outside";
-  std::string method;
   int width_px = 1280;
   int height_px = 800;
   CommonArguments common;
@@ -114,9 +113,13 @@ void write_screenshot(const Viewed& viewed, const ViewArguments& arguments) {
 int run_view(const ViewArguments& arguments) {
   ProgramOptions options;
   OptionTable table = arguments.common.resolve("view", options);
-  if (!arguments.method.empty()) table.set("unwrap.method", arguments.method);
-  const std::unique_ptr<Viewed> viewed = open_viewed(arguments.request, options);
-  if (!arguments.request.color.empty()) viewed->color_by(arguments.request.color);
+  const ViewRequest& request = arguments.request;
+  if (!request.method.empty()) table.set("unwrap.method", request.method);
+  if (!arguments.screenshot.empty() && arguments.screenshot.extension() != ".png") {
+    throw UsageError(arguments.screenshot.string() + ": pictures are PNG; name it .png");
+  }
+  const std::unique_ptr<Viewed> viewed = open_viewed(request, options);
+  if (!request.color.empty()) viewed->color_by(request.color);
   if (arguments.screenshot.empty()) {
     open_window(*viewed, arguments);
     return exit_status::done;
@@ -145,7 +148,7 @@ void add_view_command(CLI::App& program, Outcome& outcome) {
       "range, wrap, confidence, height, amplitude)");
   app->add_flag("--cameras", request.cameras, "show what the camera saw from keyframes");
   app->add_flag("--wrapped", request.wrapped, "show a frame's ranges as measured");
-  app->add_option("--method", arguments->method,
+  app->add_option("--method", request.method,
                   "how to unwrap a recording: " + unwrap_method_names(", "));
   app->add_option("--frame", request.frame, "frame of a recording, from 0")
       ->check(CLI::Range(0, 1000000));

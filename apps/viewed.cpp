@@ -56,6 +56,22 @@ bool is_mesh(const fs::path& file) {
   return false;
 }
 
+/// What is asked of a recording, though PATH is none; empty if nothing is.
+std::string asked_of_recording(const ViewRequest& request) {
+  if (request.frame) return "--frame";
+  if (request.wrapped) return "--wrapped";
+  return request.method.empty() ? "" : "--method";
+}
+
+std::unique_ptr<Viewed> view_map_or_mesh(const ViewRequest& request, const fs::path& file) {
+  const std::string asked = asked_of_recording(request);
+  if (!asked.empty()) {
+    throw UsageError(asked + " is for recordings, and " + file.string() + " is none");
+  }
+  if (!fs::is_directory(request.path) && is_mesh(file)) return std::make_unique<ViewedMesh>(file);
+  return view_map(file, file.parent_path(), request.cameras);
+}
+
 }  // namespace
 
 Viewpoint viewpoint_above(const Eigen::AlignedBox3d& box_m, double aspect) {
@@ -86,13 +102,16 @@ std::unique_ptr<Viewed> open_viewed(const ViewRequest& request, const ProgramOpt
                      ": not found; give a result folder of 'tofmap map', a map, "
                      "cloud or mesh (PLY, PCD, OBJ), or a recording");
   }
-  if (!fs::is_directory(path)) {
-    if (is_mesh(path)) return std::make_unique<ViewedMesh>(path);
-    return view_map(path, path.parent_path(), request.cameras);
+  if (!fs::is_directory(path)) return view_map_or_mesh(request, path);
+  for (const char* name : {"map.ply", "merged.ply"}) {
+    if (fs::exists(path / name)) return view_map_or_mesh(request, path / name);
   }
-  if (fs::exists(path / "map.ply")) return view_map(path / "map.ply", path, request.cameras);
-  if (fs::exists(path / "merged.ply")) return view_map(path / "merged.ply", path, request.cameras);
-  if (fs::exists(path / "sequence.yaml")) return view_recording(request, options);
+  if (fs::exists(path / "sequence.yaml")) {
+    if (request.cameras) {
+      throw UsageError("--cameras is for maps, and " + path.string() + " is a recording");
+    }
+    return view_recording(request, options);
+  }
   throw InputError(path.string() +
                    ": holds no map.ply, merged.ply or sequence.yaml; nothing to view");
 }

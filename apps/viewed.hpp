@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,10 +17,11 @@ namespace tofmap::app {
 /// What `view` is asked to show, and how.
 struct ViewRequest {
   std::filesystem::path path;
-  std::string color;     ///< empty: the first there is
-  bool cameras = false;  ///< pyramids of what the camera saw
-  bool wrapped = false;  ///< ranges as measured
-  int frame = 0;         ///< of a recording
+  std::string color;         ///< empty: the first there is
+  bool cameras = false;      ///< of a map: pyramids of what the camera saw
+  bool wrapped = false;      ///< of a recording: ranges as measured
+  std::string method;        ///< of a recording: how it is unwrapped; empty: as the options say
+  std::optional<int> frame;  ///< of a recording; none: the first
 };
 
 /// Something that can be looked at in several ways.
@@ -64,7 +66,8 @@ class Viewed {
   std::size_t color_ = 0;
 };
 
-/// A map, result folder, cloud, mesh or recording. Throws InputError if there is nothing to see.
+/// A map, result folder, cloud, mesh or recording. Throws InputError if there is nothing to see,
+/// UsageError if what is there cannot be shown as requested.
 std::unique_ptr<Viewed> open_viewed(const ViewRequest& request, const ProgramOptions& options);
 
 /// A map or cloud; path and keyframes may not be there.

@@ -26,11 +26,12 @@ class ViewedRecording final : public Viewed {
         unwrapper_(source_.sensor(), options.pipeline.unwrap),
         filters_(options.pipeline.filters),
         is_wrapped_(request.wrapped) {
-    if (request.frame >= *source_.frame_count()) {
-      throw UsageError("--frame " + std::to_string(request.frame) + ": the recording has " +
+    const int frame = request.frame.value_or(0);
+    if (frame >= *source_.frame_count()) {
+      throw UsageError("--frame " + std::to_string(frame) + ": the recording has " +
                        counted(static_cast<std::size_t>(*source_.frame_count()), "frame"));
     }
-    read(request.frame);
+    read(frame);
     if (!damage_.empty()) throw InputError(damage_);
   }
 

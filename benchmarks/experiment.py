@@ -150,21 +150,21 @@ def value_of(report, measure, method):
     return math.nan if value is None else value
 
 
-def mean_and_spread(values):
-    values = [value for value in values if not math.isnan(value)]
-    if not values:
-        return math.nan, math.nan
-    return statistics.mean(values), statistics.stdev(values) if len(values) > 1 else 0.0
+def known(values):
+    return [value for value in values if not math.isnan(value)]
 
 
 def cell(values):
-    """Three digits of the mean, and the spread to the same decimals."""
-    mean, spread = mean_and_spread(values)
-    if math.isnan(mean):
+    """Three digits of the mean, the spread to the same decimals, and how many seeds have no value."""
+    there = known(values)
+    if not there:
         return "-"
+    mean = statistics.mean(there)
+    spread = statistics.stdev(there) if len(there) > 1 else 0.0
     leading = max(abs(mean), spread)
     decimals = max(0, 2 - math.floor(math.log10(leading))) if leading > 0 else 0
-    return f"{mean:.{decimals}f} ± {spread:.{decimals}f}"
+    without = len(values) - len(there)
+    return f"{mean:.{decimals}f} ± {spread:.{decimals}f}" + (f", {without} without" if without else "")
 
 
 def rows_of(experiment, reports):
@@ -214,30 +214,39 @@ def print_tables(experiment, reports):
 
 
 def plot(experiment, reports, picture):
-    """A panel a measure; bars a method, from scene and variant to the next."""
+    """A panel a measure: the mean of each method, and a line from its least seed to its greatest."""
     import matplotlib
     matplotlib.use("Agg")
     from matplotlib import pyplot
     colors = ("#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9")  # Okabe and Ito
-    hatches = ("", "//", "..", "xx", "\\\\", "oo")
+    markers = "xsd^ov"
     rows = rows_of(experiment, reports)
     figure, panels = pyplot.subplots(len(experiment.measures), 1, squeeze=False, figsize=(
-        max(6, 0.25 * len(rows) * len(experiment.methods)), 3.4 * len(experiment.measures)))
-    width = 0.8 / len(experiment.methods)
+        max(6, 0.25 * len(rows) * len(experiment.methods)), 3.2 * len(experiment.measures)))
+    apart = 0.8 / len(experiment.methods)
     for panel, (measure, label) in zip(panels[:, 0], experiment.measures.items()):
         for i, method in enumerate(experiment.methods):
-            found = [mean_and_spread([value_of(report, measure, method) for report in seeds])
-                     for seeds in rows.values()]
-            panel.bar([row + (i + 0.5) * width - 0.4 for row in range(len(rows))],
-                      [mean for mean, _ in found], width, yerr=[spread for _, spread in found],
-                      label=method, color=colors[i % len(colors)], hatch=hatches[i % len(hatches)],
-                      edgecolor="white", capsize=2)
+            places, found = [], []
+            for row, seeds in enumerate(rows.values()):
+                values = known(value_of(report, measure, method) for report in seeds)
+                if values:
+                    places.append(row + (i + 0.5) * apart - 0.4)
+                    found.append((min(values), statistics.mean(values), max(values)))
+            panel.errorbar(places, [mean for _, mean, _ in found],
+                           yerr=[[mean - least for least, mean, _ in found],
+                                 [most - mean for _, mean, most in found]],
+                           linestyle="none", marker=markers[i % len(markers)], label=method,
+                           color=colors[i % len(colors)], capsize=2)
         panel.set_ylabel(label)
         panel.set_xticks(range(len(rows)), ["\n".join(names) for names in rows])
         panel.set_yscale("log")
-    panels[0, 0].legend(ncols=len(experiment.methods), fontsize="small")
+        panel.grid(axis="y", alpha=0.4)
+        for between in range(1, len(rows)):
+            panel.axvline(between - 0.5, color="0.85", linewidth=0.8)
     figure.suptitle(experiment.title)
     figure.tight_layout()
+    panels[0, 0].legend(ncols=len(experiment.methods), fontsize="small", loc="lower right",
+                        bbox_to_anchor=(1, 1), borderaxespad=0.2)
     figure.savefig(picture, dpi=130)
 
 

@@ -226,11 +226,29 @@ TEST_F(Commands, ViewNamesWhatItCannotShow) {
     EXPECT_EQ(finished.status, 3) << name;
     EXPECT_THAT(finished.err, HasSubstr(name));
   }
-  EXPECT_EQ(
-      run_program({"view", sequence_.string(), "--frame", "99", "--screenshot", picture.string()})
-          .status,
-      2);
   EXPECT_FALSE(fs::exists(picture));
+}
+
+TEST_F(Commands, ViewRefusesWhatDoesNotFitWhatIsThere) {
+  const std::string mesh = (sequence_ / "scene.ply").string();
+  const fs::path picture = folder_.path() / "view.png";
+  const std::vector<std::pair<std::vector<std::string>, std::string>> misfits{
+      {{sequence_.string(), "--frame", "99"}, "the recording has 4 frames"},
+      {{sequence_.string(), "--cameras"}, "--cameras is for maps"},
+      {{mesh, "--frame", "1"}, "--frame is for recordings"},
+      {{mesh, "--wrapped"}, "--wrapped is for recordings"},
+      {{mesh, "--method", "pixel"}, "--method is for recordings"}};
+  for (const auto& [words, trouble] : misfits) {
+    std::vector<std::string> command{"view", "--screenshot", picture.string()};
+    command.insert(command.end(), words.begin(), words.end());
+    const Finished finished = run_program(command);
+    EXPECT_EQ(finished.status, 2) << trouble;
+    EXPECT_THAT(finished.err, HasSubstr(trouble));
+  }
+  EXPECT_FALSE(fs::exists(picture));
+  const std::string photo = (folder_.path() / "view.jpg").string();
+  EXPECT_EQ(run_program({"view", mesh, "--screenshot", photo}).status, 2) << "pictures are PNG";
+  EXPECT_FALSE(fs::exists(photo));
 }
 
 TEST_F(Commands, ViewColoursByWhatIsAskedFor) {
