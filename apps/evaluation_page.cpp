@@ -3,6 +3,7 @@
 
 #include "evaluation_page.hpp"
 
+#include "error_curves.hpp"
 #include "evaluation_report.hpp"
 #include "report_sections.hpp"
 #include "sampled_frames.hpp"
@@ -14,13 +15,9 @@
 #include <nlohmann/json.hpp>
 
 #include <tofmap/core/text.hpp>
-#include <tofmap/visualization/plot.hpp>
 
 namespace tofmap::app {
 namespace {
-
-constexpr int plot_width_px = 640;
-constexpr int plot_height_px = 400;
 
 const MethodResult* find(const std::vector<MethodResult>& results, const std::string& name) {
   const auto found = std::ranges::find(results, name, &MethodResult::name);
@@ -118,76 +115,15 @@ std::vector<ShownMap> shown_maps(const EvaluationPageSubject& subject) {
   return maps;
 }
 
-double start_s(const EvaluationPageSubject& subject) {
-  const auto& frames = subject.results.front().frames;
-  return frames.empty() ? 0 : frames.front().timestamp_s;
-}
-
-Plot path_error_plot(const EvaluationPageSubject& subject) {
-  Plot plot{"path error over time", "time, s", "distance to the true path, m", {}, 0, 0, true};
-  for (const MethodResult& result : subject.results) {
-    if (!result.trajectory) continue;
-    PlotLine line{result.name, {}, {}};
-    for (const PoseError& pose : pose_errors(result.map->trajectory, subject.truth.poses,
-                                             result.trajectory->truth_from_estimate)) {
-      line.x.push_back(pose.timestamp_s - start_s(subject));
-      line.y.push_back(pose.error_m);
-    }
-    plot.lines.push_back(std::move(line));
-  }
-  return plot;
-}
-
-Plot wrong_wraps_over_time(const EvaluationPageSubject& subject) {
-  Plot plot{"wrong wraps over time", "time, s", "ranges off by a wrap or more, %", {}};
-  for (const MethodResult& result : subject.results) {
-    PlotLine line{result.name, {}, {}};
-    for (const UnwrappingRecord& frame : result.frames) {
-      if (!frame.score) continue;
-      line.x.push_back(frame.timestamp_s - start_s(subject));
-      line.y.push_back(frame.score->wrong_wrap_percent);
-    }
-    if (!line.x.empty()) plot.lines.push_back(std::move(line));
-  }
-  return plot;
-}
-
-Plot over_range_plot(const EvaluationPageSubject& subject, Plot plot,
-                     double ErrorsOverRange::Bin::*value) {
-  for (const MethodResult& result : subject.results) {
-    PlotLine line{result.name, {}, {}};
-    for (const ErrorsOverRange::Bin& bin : over_range(result).bins()) {
-      line.x.push_back(bin.range_m);
-      line.y.push_back(bin.*value);
-    }
-    if (!line.x.empty()) plot.lines.push_back(std::move(line));
-  }
-  return plot;
-}
-
 void add_curves(ReportPage& page, const EvaluationPageSubject& subject) {
-  const std::vector<Plot> plots{
-      path_error_plot(subject), wrong_wraps_over_time(subject),
-      over_range_plot(
-          subject,
-          {"wrong wraps over range", "true range, m", "ranges off by a wrap or more, %", {}},
-          &ErrorsOverRange::Bin::wrong_wrap_percent),
-      over_range_plot(
-          subject,
-          {"range error over range, right wraps alone", "true range, m", "RMSE, m", {}, 0, 0, true},
-          &ErrorsOverRange::Bin::range_rmse_m)};
-  const bool has_any =
-      std::ranges::any_of(plots, [](const Plot& plot) { return !plot.lines.empty(); });
-  if (!has_any) return;
-  page.add_heading("Errors over time and over range");
-  add_drawn(page, [&] {
-    std::vector<PageFigure> figures;
-    for (const Plot& plot : plots) {
-      if (plot.lines.empty()) continue;
-      figures.push_back({plot_picture(plot, plot_width_px, plot_height_px), plot.title});
-    }
-    return figures;
-  });
+  std::vector<MethodErrors> methods;
+  for (const MethodResult& result : subject.results) {
+    methods.push_back({result.name, {}, result.frames});
+    if (!result.trajectory) continue;
+    methods.back().path = pose_errors(result.map->trajectory, subject.truth.poses,
+                                      result.trajectory->truth_from_estimate);
+  }
+  add_error_curves(page, methods);
 }
 
 /// The table of methods, its two lines of headings in one.

@@ -45,7 +45,7 @@ Json unwrapping_json(const MethodResult& result) {
 
 Json over_range_json(const MethodResult& result) {
   Json bins = Json::array();
-  for (const ErrorsOverRange::Bin& bin : over_range(result).bins()) {
+  for (const ErrorsOverRange::Bin& bin : over_range(result.frames).bins()) {
     bins.push_back({{"range_m", bin.range_m},
                     {"pixels", bin.pixels},
                     {"wrong_wrap_percent", json_number(bin.wrong_wrap_percent)},

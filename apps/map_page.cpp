@@ -3,6 +3,7 @@
 
 #include "map_page.hpp"
 
+#include "error_curves.hpp"
 #include "frame_report.hpp"
 #include "method_run.hpp"
 #include "report_sections.hpp"
@@ -15,6 +16,10 @@
 
 namespace tofmap::app {
 namespace {
+
+std::optional<ImageF> range_truth(const MapPageSubject& subject, int frame) {
+  return subject.recording ? subject.recording->range_truth(frame) : std::nullopt;
+}
 
 double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
 
@@ -34,17 +39,30 @@ MapCloud wrapped_map(const MapPageSubject& subject) {
   return map.extract();
 }
 
-/// Share of the ranges, over some frames, that unwrapping moved.
-double moved_percent(const MapPageSubject& subject) {
-  Unwrapper unwrapper(subject.sensor, subject.options.pipeline.unwrap);
+/// What a method makes of the page's frames.
+struct UnwrappedSample {
+  std::vector<UnwrappingRecord> frames;
+  double moved_percent = 0;  ///< of the ranges
+};
+
+UnwrappedSample unwrap_sample(const MapPageSubject& subject, const std::string& method) {
+  UnwrapOptions options = subject.options.pipeline.unwrap;
+  options.method = method;
+  Unwrapper unwrapper(subject.sensor, options);
+  UnwrappedSample sample;
   double moved = 0;
   double valid = 0;
   for (const DualFrequencyFrame& frame : subject.frames) {
-    const RangeImage image = unwrapper.unwrap(frame).image;
+    const UnwrapResult unwrapped = unwrapper.unwrap(frame);
+    const RangeImage& image = unwrapped.image;
     valid += image.count_valid();
     moved += static_cast<double>((image.reason == 0 && image.wrap_count > 0).count());
+    sample.frames.push_back(record_of(unwrapped, frame.timestamp_s, 0,
+                                      range_truth(subject, frame.index),
+                                      subject.sensor.modulation.wavelength_a_m()));
   }
-  return percent(moved, valid);
+  sample.moved_percent = percent(moved, valid);
+  return sample;
 }
 
 /// What is known of how right the map is.
@@ -87,7 +105,7 @@ Verdict verdict_of(const MapPageSubject& subject, const Scores& scores) {
   return is_doubted ? Verdict::doubtful : Verdict::good;
 }
 
-std::string sentence_of(const MapPageSubject& subject, const Scores& scores) {
+std::string sentence_of(const MapPageSubject& subject, const Scores& scores, double moved_percent) {
   const RoomMap& map = subject.map;
   std::string text = std::to_string(map.trajectory.size()) + " of " +
                      counted(map.frames.size(), "frame") + " could be placed. ";
@@ -97,7 +115,7 @@ std::string sentence_of(const MapPageSubject& subject, const Scores& scores) {
     text += formatted(
         "%.0f %% of the ranges were beyond the %.2f m that one frequency can tell and have been "
         "unwrapped. ",
-        moved_percent(subject), subject.sensor.modulation.wavelength_a_m());
+        moved_percent, subject.sensor.modulation.wavelength_a_m());
   }
   if (scores.surface) {
     text +=
@@ -155,6 +173,23 @@ Plot tracking_plot(const RoomMap& map) {
   return {"", "time, s", "share", {overlap, inliers, kept}, 0, 1};
 }
 
+/// Of the path and of the frames' ranges, and of these as measured.
+void add_errors(ReportPage& page, const MapPageSubject& subject, const Truth& truth,
+                const Scores& scores, const UnwrappedSample& sample) {
+  const std::string& method = subject.options.pipeline.unwrap.method;
+  std::vector<MethodErrors> methods{{method, {}, sample.frames}};
+  if (scores.trajectory) {
+    methods.back().path =
+        pose_errors(subject.map.trajectory, truth.poses, scores.trajectory->truth_from_estimate);
+  }
+  UnwrappedSample as_measured;
+  if (method != "none") {
+    as_measured = unwrap_sample(subject, "none");
+    methods.push_back({"none", {}, as_measured.frames});
+  }
+  add_error_curves(page, methods);
+}
+
 std::vector<ShownMap> shown_maps(const MapPageSubject& subject, const Truth& truth,
                                  const Scores& scores, const MapCloud& wrapped) {
   const std::string& method = subject.options.pipeline.unwrap.method;
@@ -188,18 +223,17 @@ void write_map_page(const std::filesystem::path& result, const MapPageSubject& s
   const Scores scores = score(map, truth);
   const bool is_unwrapped = subject.options.pipeline.unwrap.method != "none";
   const MapCloud wrapped = is_unwrapped ? wrapped_map(subject) : MapCloud();
+  const UnwrappedSample sample = unwrap_sample(subject, subject.options.pipeline.unwrap.method);
 
   ReportPage page("Map of " + subject.source,
                   "tofmap " TOFMAP_VERSION ", method " + subject.options.pipeline.unwrap.method);
-  page.add_verdict(verdict_of(subject, scores), sentence_of(subject, scores));
+  page.add_verdict(verdict_of(subject, scores), sentence_of(subject, scores, sample.moved_percent));
   page.add_warnings(subject.warnings);
   add_maps(page, shown_maps(subject, truth, scores, wrapped), truth.poses, subject.options.report);
+  add_errors(page, subject, truth, scores, sample);
   add_frames(
       page, subject.frames, subject.sensor, subject.options.pipeline,
-      [&](int index) {
-        return subject.recording ? subject.recording->range_truth(index) : std::nullopt;
-      },
-      subject.options.report);
+      [&](int frame) { return range_truth(subject, frame); }, subject.options.report);
   page.add_heading("Figures");
   page.add_table(summary_table(map, scores));
   page.add_heading("Tracking over time");

@@ -21,19 +21,11 @@ namespace {
 
 constexpr int consistency_frames = 60;
 
-UnwrappingRecord record_of(const UnwrapResult& unwrapped, double milliseconds,
-                           const SequenceReader& recording, int index) {
-  UnwrappingRecord record;
-  record.timestamp_s = recording.files()[static_cast<std::size_t>(index)].timestamp_s;
-  record.milliseconds = milliseconds;
-  record.iterations = unwrapped.iterations;
-  record.converged = unwrapped.converged;
-  if (const auto truth = recording.range_truth(index)) {
-    const double wavelength_m = recording.sensor().modulation.wavelength_a_m();
-    record.score = score_ranges(unwrapped.image, *truth, wavelength_m);
-    record.over_range.add(unwrapped.image, *truth, wavelength_m);
-  }
-  return record;
+UnwrappingRecord record_of_index(const UnwrapResult& unwrapped, double milliseconds,
+                                 const SequenceReader& recording, int index) {
+  return record_of(unwrapped, recording.files()[static_cast<std::size_t>(index)].timestamp_s,
+                   milliseconds, recording.range_truth(index),
+                   recording.sensor().modulation.wavelength_a_m());
 }
 
 /// What became of a frame that was only unwrapped.
@@ -48,7 +40,7 @@ UnwrappedFrame unwrap_frame(const SequenceReader& recording, int index, Unwrappe
   const auto start = std::chrono::steady_clock::now();
   const UnwrapResult unwrapped = unwrapper.unwrap(*sourced.frame);
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
-  return {record_of(unwrapped, spent.count(), recording, index), ""};
+  return {record_of_index(unwrapped, spent.count(), recording, index), ""};
 }
 
 }  // namespace
@@ -68,9 +60,23 @@ Truth read_truth(const SequenceReader& source, bool quiet) {
   return truth;
 }
 
-ErrorsOverRange over_range(const MethodResult& result) {
+UnwrappingRecord record_of(const UnwrapResult& unwrapped, double timestamp_s, double milliseconds,
+                           const std::optional<ImageF>& truth_m, double wavelength_a_m) {
+  UnwrappingRecord record;
+  record.timestamp_s = timestamp_s;
+  record.milliseconds = milliseconds;
+  record.iterations = unwrapped.iterations;
+  record.converged = unwrapped.converged;
+  if (truth_m) {
+    record.score = score_ranges(unwrapped.image, *truth_m, wavelength_a_m);
+    record.over_range.add(unwrapped.image, *truth_m, wavelength_a_m);
+  }
+  return record;
+}
+
+ErrorsOverRange over_range(std::span<const UnwrappingRecord> frames) {
   ErrorsOverRange sum;
-  for (const UnwrappingRecord& frame : result.frames) sum.add(frame.over_range);
+  for (const UnwrappingRecord& frame : frames) sum.add(frame.over_range);
   return sum;
 }
 
@@ -88,7 +94,7 @@ MethodResult run_down_to_map(const std::string& method, const SequenceReader& re
   };
   hooks.on_frame = [&](const PreparedFrame& frame) {
     result.frames.push_back(
-        record_of(frame.unwrapped, frame.times.unwrap_ms, recording, frame.index));
+        record_of_index(frame.unwrapped, frame.times.unwrap_ms, recording, frame.index));
   };
   result.map = map_room(source, options, hooks);
   refuse_mostly_damaged(*result.map);

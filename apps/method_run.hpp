@@ -5,6 +5,7 @@
 #include "consistency_report.hpp"
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,8 +47,12 @@ struct MethodResult {
   bool interrupted = false;
 };
 
-/// The range errors of all frames of a result.
-ErrorsOverRange over_range(const MethodResult& result);
+/// Throws UsageError if the truth has another size than the image.
+UnwrappingRecord record_of(const UnwrapResult& unwrapped, double timestamp_s, double milliseconds,
+                           const std::optional<ImageF>& truth_m, double wavelength_a_m);
+
+/// The range errors of all frames.
+ErrorsOverRange over_range(std::span<const UnwrappingRecord> frames);
 
 /// From phases to the map. Throws InputError if more than half of the frames are damaged.
 MethodResult run_down_to_map(const std::string& method, const SequenceReader& recording,

@@ -221,8 +221,10 @@ def plot(experiment, reports, picture):
     colors = ("#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9")  # Okabe and Ito
     markers = "xsd^ov"
     rows = rows_of(experiment, reports)
+    longest_name = max(len(name) for names in rows for name in names)
+    inches_a_row = max(0.25 * len(experiment.methods), 0.09 * longest_name)
     figure, panels = pyplot.subplots(len(experiment.measures), 1, squeeze=False, figsize=(
-        max(6, 0.25 * len(rows) * len(experiment.methods)), 3.2 * len(experiment.measures)))
+        max(6, 0.8 + inches_a_row * len(rows)), 0.3 + 3.2 * len(experiment.measures)))
     apart = 0.8 / len(experiment.methods)
     for panel, (measure, label) in zip(panels[:, 0], experiment.measures.items()):
         for i, method in enumerate(experiment.methods):
@@ -243,10 +245,11 @@ def plot(experiment, reports, picture):
         panel.grid(axis="y", alpha=0.4)
         for between in range(1, len(rows)):
             panel.axvline(between - 0.5, color="0.85", linewidth=0.8)
-    figure.suptitle(experiment.title)
-    figure.tight_layout()
+        panel.set_xlim(-0.5, len(rows) - 0.5)
+    panels[0, 0].set_title(experiment.title, loc="left")
     panels[0, 0].legend(ncols=len(experiment.methods), fontsize="small", loc="lower right",
                         bbox_to_anchor=(1, 1), borderaxespad=0.2)
+    figure.tight_layout()
     figure.savefig(picture, dpi=130)
 
 

@@ -35,6 +35,7 @@ TEST_F(ReportPage, OfAMapTellsVerdictFiguresAndOptions) {
                             HasSubstr("with unwrapping (joint), coloured by height"),
                             HasSubstr("the same path, ranges as measured, coloured by height"),
                             HasSubstr("ATE, m (RMSE)"), HasSubstr("map error, m"),
+                            HasSubstr("path error over time"), HasSubstr("wrong wraps over range"),
                             HasSubstr("unwrap:\n  method: joint")));
   EXPECT_EQ(frames_in(page()), frames);
 }
@@ -65,8 +66,9 @@ TEST_F(ReportPage, DoesWithoutTruth) {
   std::filesystem::remove(sequence_ / "groundtruth.txt");
   std::filesystem::remove_all(sequence_ / "range_truth");
   ASSERT_EQ(run("map").status, 0);
-  EXPECT_THAT(page(), AllOf(HasSubstr("The truth is not known."), Not(HasSubstr("ATE, m")),
-                            Not(HasSubstr("wraps against the truth"))));
+  EXPECT_THAT(page(),
+              AllOf(HasSubstr("The truth is not known."), Not(HasSubstr("ATE, m")),
+                    Not(HasSubstr("Errors over time")), Not(HasSubstr("wraps against the truth"))));
   ASSERT_EQ(run("evaluate", {"--set", "evaluation.methods=none joint"}).status, 0);
   EXPECT_THAT(page(), AllOf(HasSubstr("The true path is not known."),
                             Not(HasSubstr("Errors over time")), Not(HasSubstr("Looks right."))));

@@ -32,6 +32,17 @@
       box.min[i % 3] + (box.max[i % 3] - box.min[i % 3]) * step / 65535);
   };
 
+  /// The box that holds all places but the outermost hundredth on each side.
+  const boxOfMost = (places) => {
+    const box = { min: new THREE.Vector3(), max: new THREE.Vector3() };
+    for (const axis of [0, 1, 2]) {
+      const sorted = places.filter((_, i) => i % 3 === axis).sort();
+      box.min.setComponent(axis, sorted[Math.floor(0.01 * (sorted.length - 1))] ?? 0);
+      box.max.setComponent(axis, sorted[Math.ceil(0.99 * (sorted.length - 1))] ?? 0);
+    }
+    return box;
+  };
+
   const cloudOf = (cloud, data, size) => {
     const geometry = new THREE.BufferGeometry();
     const set = (name, array, normalized) =>
@@ -84,7 +95,7 @@
         { cloud.points.material.uniforms.viewHeight.value = height * window.devicePixelRatio; });
       render();
     };
-    const min = new THREE.Vector3(...data.box.min), max = new THREE.Vector3(...data.box.max);
+    const { min, max } = boxOfMost(clouds[0].points.geometry.attributes.position.array);
     const middle = min.clone().add(max).multiplyScalar(0.5);
     const lookFrom = (direction) => {
       const fill = 0.5 * max.distanceTo(min) / Math.sin(camera.fov / 2 * Math.PI / 180);
