@@ -4,6 +4,7 @@
 #include "consistency_report.hpp"
 
 #include "frame_report.hpp"
+#include "sampled_frames.hpp"
 
 #include <limits>
 
@@ -16,7 +17,10 @@
 namespace tofmap::app {
 namespace {
 
-double curl_violations_per_frame(const RoomMap& map) {
+/// NaN of methods that go by no jumps.
+double curl_violations_per_frame(const RoomMap& map, const std::string& method) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  if (method != "jump" && method != "single") return nan;
   double sum = 0;
   int frames = 0;
   for (const FrameRecord& frame : map.frames) {
@@ -24,7 +28,7 @@ double curl_violations_per_frame(const RoomMap& map) {
     sum += frame.curl_violations;
     ++frames;
   }
-  return frames > 0 ? sum / frames : std::numeric_limits<double>::quiet_NaN();
+  return frames > 0 ? sum / frames : nan;
 }
 
 }  // namespace
@@ -33,16 +37,20 @@ Consistency consistency_of(const RoomMap& map, const std::vector<DualFrequencyFr
                            const SensorModel& sensor, const PipelineOptions& pipeline) {
   const PixelRays rays = pixel_rays(sensor.camera);
   auto unwrappers = one_a_thread(Unwrapper(sensor, pipeline.unwrap));
+  const std::vector<int> chosen =
+      spread_indices(static_cast<int>(frames.size()), consistency_frames);
   const auto prepare = [&](Unwrapper& unwrapper, int i) {
-    return prepare_frame(frames[static_cast<std::size_t>(i)], unwrapper, sensor, rays, pipeline);
+    const auto frame = static_cast<std::size_t>(chosen[static_cast<std::size_t>(i)]);
+    return prepare_frame(frames[frame], unwrapper, sensor, rays, pipeline);
   };
   std::vector<RangedFrame> unwrapped;
   std::vector<RangedFrame> filtered;
-  const auto prepared = side_by_side(static_cast<int>(frames.size()), unwrappers, prepare);
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const auto pose = pose_at(map.trajectory, frames[i].timestamp_s);
-    unwrapped.push_back({&frames[i], prepared[i].unwrapped.image, pose});
-    filtered.push_back({&frames[i], prepared[i].filtered.image, pose});
+  const auto prepared = side_by_side(static_cast<int>(chosen.size()), unwrappers, prepare);
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const DualFrequencyFrame& frame = frames[static_cast<std::size_t>(chosen[i])];
+    const auto pose = pose_at(map.trajectory, frame.timestamp_s);
+    unwrapped.push_back({&frame, prepared[i].unwrapped.image, pose});
+    filtered.push_back({&frame, prepared[i].filtered.image, pose});
   }
   const BeatAgreement beat = beat_agreement(unwrapped, sensor.modulation);
   return {.beat_misfit_percent = beat.misfit_percent,
@@ -50,7 +58,7 @@ Consistency consistency_of(const RoomMap& map, const std::vector<DualFrequencyFr
           .ambiguous_percent = ambiguous_percent(unwrapped),
           .contradicted_percent = contradicted_percent(filtered, sensor.camera),
           .plane_thickness_m = plane_thickness_m(map.surface),
-          .curl_violations_per_frame = curl_violations_per_frame(map)};
+          .curl_violations_per_frame = curl_violations_per_frame(map, pipeline.unwrap.method)};
 }
 
 std::vector<std::string> doubts_about(const Consistency& consistency) {

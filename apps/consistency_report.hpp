@@ -22,7 +22,11 @@ struct Consistency {
   double curl_violations_per_frame = 0;
 };
 
-/// Of a map, from some of its frames, which are unwrapped and filtered once more.
+/// How many frames tell enough; what they cost grows with the square.
+constexpr int consistency_frames = 60;
+
+/// Of a map, from at most `consistency_frames` of these frames of it, which are unwrapped and
+/// filtered once more.
 Consistency consistency_of(const RoomMap& map, const std::vector<DualFrequencyFrame>& frames,
                            const SensorModel& sensor, const PipelineOptions& pipeline);
 

@@ -42,7 +42,7 @@ Plot path_error_plot(const Methods& methods) {
 }
 
 Plot wrong_wraps_over_time(const Methods& methods) {
-  Plot plot{"wrong wraps over time", "time, s", "ranges off by a wrap or more, %", {}};
+  Plot plot{"wrong wraps over time", "time, s", "off by more than half a wavelength, %", {}};
   for (const MethodErrors& method : methods) {
     PlotLine line{method.name, {}, {}};
     for (const UnwrappingRecord& frame : method.frames) {
@@ -74,7 +74,7 @@ void add_error_curves(ReportPage& page, const std::vector<MethodErrors>& methods
       path_error_plot(methods), wrong_wraps_over_time(methods),
       over_range_plot(
           methods,
-          {"wrong wraps over range", "true range, m", "ranges off by a wrap or more, %", {}},
+          {"wrong wraps over range", "true range, m", "off by more than half a wavelength, %", {}},
           &ErrorsOverRange::Bin::wrong_wrap_percent),
       over_range_plot(
           methods,

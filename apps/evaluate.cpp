@@ -12,11 +12,13 @@
 
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/core/text.hpp>
 #include <tofmap/visualization/map_pictures.hpp>
 
 namespace tofmap::app {
@@ -51,6 +53,13 @@ void say_what_is_missing(const SequenceReader& source, const Truth& truth, bool 
     std::fprintf(stderr, "tofmap: %s has no range_truth: no wrap or map error\n",
                  source.folder().c_str());
   }
+}
+
+std::string what_is_missing(const std::vector<std::string>& methods,
+                            const std::vector<MethodResult>& results) {
+  const std::vector<std::string> missing(
+      methods.begin() + static_cast<std::ptrdiff_t>(results.size()), methods.end());
+  return "the run was interrupted; these methods are missing: " + joined(missing, ", ");
 }
 
 void write_method(const OutputFolder& out, const MethodResult& result) {
@@ -89,7 +98,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit();
   if (!results.empty()) print_table(report);
-  if (!results.empty() && (down_to_map || options.pictures.frames > 0)) {
+  if (!results.empty() && !interrupted && (down_to_map || options.pictures.frames > 0)) {
     add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
       write_method_pictures(folder, source, methods, options.pipeline.unwrap,
                             options.pipeline.filters, options.pictures, quiet);
@@ -97,7 +106,9 @@ int run_evaluate(const EvaluateArguments& arguments) {
     });
   }
   if (!results.empty()) {
-    write_evaluation_page(out.final_path(), {source, truth, results, report, doubts_about(source),
+    std::vector<std::string> warnings = doubts_about(source);
+    if (interrupted) warnings.push_back(what_is_missing(methods, results));
+    write_evaluation_page(out.final_path(), {source, truth, results, report, std::move(warnings),
                                              options, table.to_yaml(false)});
   }
   if (!quiet) {

@@ -5,11 +5,12 @@
 
 #include "error_curves.hpp"
 #include "evaluation_report.hpp"
+#include "map_section.hpp"
 #include "report_sections.hpp"
 #include "sampled_frames.hpp"
+#include "verdict.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
 #include <nlohmann/json.hpp>
@@ -40,24 +41,31 @@ const MethodResult* without_unwrapping(const EvaluationPageSubject& subject) {
   return found == &with_unwrapping(subject) ? nullptr : found;
 }
 
+/// Of the frames whose truth is known.
+std::vector<RangeScore> scores_of(const MethodResult& result) {
+  std::vector<RangeScore> scores;
+  for (const UnwrappingRecord& frame : result.frames) {
+    if (frame.score) scores.push_back(*frame.score);
+  }
+  return scores;
+}
+
 /// "is 9 mm off and shows 98.6 % of the room", as far as it is known.
 std::string told(const MethodResult& result) {
   std::string text;
-  if (result.surface) {
+  if (result.scores.surface) {
     text = formatted("the map is %.0f mm off the true surface and shows %.1f %% of it",
-                     1000 * result.surface->accuracy_m, result.surface->completeness_percent);
-  } else if (result.trajectory) {
-    text = formatted("the path is %.0f mm off", 1000 * result.trajectory->ate_rmse_m);
+                     1000 * result.scores.surface->accuracy_m,
+                     result.scores.surface->completeness_percent);
+  } else if (result.scores.trajectory) {
+    text = formatted("the path is %.0f mm off", 1000 * result.scores.trajectory->ate_rmse_m);
   } else if (result.map) {
     text = std::to_string(result.map->trajectory.size()) + " of " +
            counted(result.map->frames.size(), "frame") + " could be placed";
   } else {
-    std::vector<RangeScore> scores;
-    for (const UnwrappingRecord& frame : result.frames) {
-      if (frame.score) scores.push_back(*frame.score);
-    }
+    const std::vector<RangeScore> scores = scores_of(result);
     if (scores.empty()) return counted(result.frames.size(), "frame") + " went through";
-    text = formatted("%.2f %% of the ranges are off by a wrap or more",
+    text = formatted("%.2f %% of the ranges are off by more than half a wavelength",
                      mean_score(scores).wrong_wrap_percent);
   }
   return text;
@@ -70,7 +78,7 @@ std::string sentence_of(const EvaluationPageSubject& subject) {
     text += "; without it, " + told(*without);
   }
   text += ".";
-  if (subject.truth.poses.empty()) text += " The true path is not known.";
+  if (with.map && subject.truth.poses.empty()) text += " The true path is not known.";
   return text;
 }
 
@@ -86,32 +94,21 @@ std::vector<std::string> warnings_of(const EvaluationPageSubject& subject) {
 
 Verdict verdict_of(const EvaluationPageSubject& subject) {
   const MethodResult& with = with_unwrapping(subject);
-  if (with.name == "none") return Verdict::bad;
-  if (with.surface) {
-    const Verdict verdict = verdict_on(*with.surface, subject.options.pipeline.map.voxel_m);
-    if (verdict != Verdict::good) return verdict;
+  if (with.map) {
+    return verdict_on(*with.map, with.name, with.scores.surface,
+                      subject.options.pipeline.map.voxel_m, !warnings_of(subject).empty());
   }
-  const bool is_lost = with.map && 100 * with.map->trajectory.size() < 95 * with.map->frames.size();
-  const bool is_known = with.surface || !with.map;
-  return is_lost || !is_known || !warnings_of(subject).empty() ? Verdict::doubtful : Verdict::good;
-}
-
-ShownMap shown_map(const MethodResult& result, const std::string& name, const Truth& truth) {
-  ShownMap map{name, &result.map->surface, &result.map->trajectory, std::nullopt, {}};
-  if (!result.trajectory) return map;
-  map.truth_from_map = result.trajectory->truth_from_estimate;
-  if (!truth.surface.points().empty()) {
-    map.errors_m = map_errors_m(*map.surface, *map.truth_from_map, truth.surface);
-  }
-  return map;
+  const Verdict of_ranges = verdict_on_wraps(mean_score(scores_of(with)).wrong_wrap_percent);
+  return std::max(of_ranges, subject.warnings.empty() ? Verdict::good : Verdict::doubtful);
 }
 
 std::vector<ShownMap> shown_maps(const EvaluationPageSubject& subject) {
-  const MethodResult& with = with_unwrapping(subject);
-  const MethodResult* without = without_unwrapping(subject);
   std::vector<ShownMap> maps;
-  maps.push_back(shown_map(with, "with unwrapping (" + with.name + ")", subject.truth));
-  if (without) maps.push_back(shown_map(*without, "without unwrapping", subject.truth));
+  for (const MethodResult* result : {&with_unwrapping(subject), without_unwrapping(subject)}) {
+    if (!result) continue;
+    maps.push_back(shown_map(name_of_map(result->name), result->map->surface,
+                             result->map->trajectory, result->scores.trajectory, subject.truth));
+  }
   return maps;
 }
 
@@ -119,9 +116,9 @@ void add_curves(ReportPage& page, const EvaluationPageSubject& subject) {
   std::vector<MethodErrors> methods;
   for (const MethodResult& result : subject.results) {
     methods.push_back({result.name, {}, result.frames});
-    if (!result.trajectory) continue;
+    if (!result.scores.trajectory) continue;
     methods.back().path = pose_errors(result.map->trajectory, subject.truth.poses,
-                                      result.trajectory->truth_from_estimate);
+                                      result.scores.trajectory->truth_from_estimate);
   }
   add_error_curves(page, methods);
 }
@@ -165,7 +162,9 @@ void write_evaluation_page(const std::filesystem::path& result,
   PipelineOptions pipeline = subject.options.pipeline;
   pipeline.unwrap.method = with.name;
   add_frames(
-      page, sampled_frames(subject.recording, subject.options.report.frames),
+      page,
+      sampled_frames(subject.recording, *subject.recording.frame_count(),
+                     subject.options.report.frames),
       subject.recording.sensor(), pipeline,
       [&](int index) { return subject.recording.range_truth(index); }, subject.options.report);
   add_runs(page, subject);

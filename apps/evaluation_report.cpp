@@ -56,11 +56,11 @@ Json over_range_json(const MethodResult& result) {
 
 Json trajectory_json(const MethodResult& result) {
   Json json = {{"registered_frames", result.map->trajectory.size()}};
-  if (!result.trajectory) return json;
-  json["ate_rmse_m"] = json_number(result.trajectory->ate_rmse_m);
-  json["ate_max_m"] = json_number(result.trajectory->ate_max_m);
-  json["rpe_rmse_m_per_m"] = json_number(result.trajectory->rpe_rmse_m_per_m);
-  json["rpe_rmse_deg_per_m"] = json_number(result.trajectory->rpe_rmse_deg_per_m);
+  if (!result.scores.trajectory) return json;
+  json["ate_rmse_m"] = json_number(result.scores.trajectory->ate_rmse_m);
+  json["ate_max_m"] = json_number(result.scores.trajectory->ate_max_m);
+  json["rpe_rmse_m_per_m"] = json_number(result.scores.trajectory->rpe_rmse_m_per_m);
+  json["rpe_rmse_deg_per_m"] = json_number(result.scores.trajectory->rpe_rmse_deg_per_m);
   return json;
 }
 
@@ -82,10 +82,10 @@ Json filters_json(const MethodResult& result) {
 
 Json map_json(const MethodResult& result) {
   Json json = {{"points", result.map->surface.size()}};
-  if (result.surface) {
-    json["accuracy_m"] = json_number(result.surface->accuracy_m);
-    json["far_percent"] = json_number(result.surface->far_percent);
-    json["completeness_percent"] = json_number(result.surface->completeness_percent);
+  if (result.scores.surface) {
+    json["accuracy_m"] = json_number(result.scores.surface->accuracy_m);
+    json["far_percent"] = json_number(result.scores.surface->far_percent);
+    json["completeness_percent"] = json_number(result.scores.surface->completeness_percent);
   }
   json["milliseconds_per_frame"] = summary_json(*result.map)["milliseconds_per_frame"];
   return json;

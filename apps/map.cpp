@@ -62,7 +62,7 @@ struct MapOutput {
   const MapArguments& arguments;
   const ProgramOptions& options;
   std::string options_yaml;
-  std::vector<std::string> doubts;     ///< about what was recorded
+  std::vector<std::string> doubts;     ///< about what was recorded, and then about the map
   nlohmann::ordered_json acquisition;  ///< of a device; else null
   const SensorModel& sensor;
   std::vector<DualFrequencyFrame> frames;  ///< some, spread over all
@@ -170,7 +170,8 @@ int map_recording(const MapArguments& arguments, const ProgramOptions& options,
     follow_camera(run, source, arguments.common.quiet, view.get(),
                   [&] { return status_line(run); });
     if (run.is_interrupted()) write_map_state(out.path(), run, source, options.pipeline);
-    output.frames = sampled_frames(source, frames_for_page(options.report));
+    output.frames = sampled_frames(source, static_cast<int>(run.frames().size()),
+                                   frames_for_page(options.report));
     finished = finish_map(run, out, output);
   });
   const RoomMap& map = finished.map;

@@ -5,11 +5,12 @@
 
 #include "error_curves.hpp"
 #include "frame_report.hpp"
+#include "map_section.hpp"
 #include "method_run.hpp"
 #include "report_sections.hpp"
+#include "verdict.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <tofmap/core/text.hpp>
 #include <tofmap/visualization/plot.hpp>
@@ -65,50 +66,12 @@ UnwrappedSample unwrap_sample(const MapPageSubject& subject, const std::string& 
   return sample;
 }
 
-/// What is known of how right the map is.
-struct Scores {
-  std::optional<TrajectoryScore> trajectory;
-  std::optional<MapScore> surface;
-};
-
-Scores score(const RoomMap& map, const Truth& truth) {
-  Scores scores;
-  scores.trajectory = score_trajectory(map.trajectory, truth.poses);
-  if (scores.trajectory && !truth.surface.points().empty()) {
-    scores.surface = score_map(map.surface, scores.trajectory->truth_from_estimate, truth.surface);
-  }
-  return scores;
-}
-
-int degenerate_frames(const RoomMap& map) {
-  return static_cast<int>(std::ranges::count_if(map.frames, [](const FrameRecord& frame) {
-    return frame.tracking.registration.degenerate_directions > 0;
-  }));
-}
-
-Verdict verdict_of(const MapPageSubject& subject, const Scores& scores) {
-  const RoomMap& map = subject.map;
-  const double placed_percent =
-      percent(static_cast<double>(map.trajectory.size()), static_cast<double>(map.frames.size()));
-  const double open_percent =
-      percent(degenerate_frames(map), static_cast<double>(map.frames.size()));
-  if (scores.surface) {
-    const Verdict verdict = verdict_on(*scores.surface, subject.options.pipeline.map.voxel_m);
-    if (verdict != Verdict::good) return verdict;
-  }
-  if (map.surface.empty() || placed_percent < 50 ||
-      subject.options.pipeline.unwrap.method == "none") {
-    return Verdict::bad;
-  }
-  const bool is_doubted =
-      !subject.warnings.empty() || placed_percent < 95 || open_percent > 10 || map.interrupted;
-  return is_doubted ? Verdict::doubtful : Verdict::good;
-}
-
-std::string sentence_of(const MapPageSubject& subject, const Scores& scores, double moved_percent) {
+std::string sentence_of(const MapPageSubject& subject, const MapScores& scores,
+                        double moved_percent) {
   const RoomMap& map = subject.map;
   std::string text = std::to_string(map.trajectory.size()) + " of " +
                      counted(map.frames.size(), "frame") + " could be placed. ";
+  if (map.interrupted) text += "Then the run was interrupted. ";
   if (subject.options.pipeline.unwrap.method == "none") {
     text += "Nothing was unwrapped. ";
   } else {
@@ -124,13 +87,13 @@ std::string sentence_of(const MapPageSubject& subject, const Scores& scores, dou
   }
   if (scores.trajectory) {
     text += formatted("The path is %.0f mm off.", 1000 * scores.trajectory->ate_rmse_m);
-  } else {
+  } else if (!map.interrupted) {
     text += "The truth is not known.";
   }
   return text;
 }
 
-PageTable summary_table(const RoomMap& map, const Scores& scores) {
+PageTable summary_table(const RoomMap& map, const MapScores& scores) {
   PageTable table{{"", ""}, {}};
   const auto add = [&](const char* what, const std::string& value) {
     table.rows.push_back({what, value});
@@ -139,7 +102,8 @@ PageTable summary_table(const RoomMap& map, const Scores& scores) {
   add("frames", std::to_string(map.frames.size()));
   add("damaged", std::to_string(map.damaged()));
   add("placed", std::to_string(map.trajectory.size()));
-  add("placed with a direction that no surface held", std::to_string(degenerate_frames(map)));
+  add("degenerate (a direction that no surface held), %",
+      formatted("%.1f", degenerate_percent(map)));
   add("keyframes", std::to_string(map.keyframes.size()));
   add("loops found, and believed", std::to_string(map.loops.size()) + ", " + std::to_string(used));
   add("points of the map", std::to_string(map.surface.size()));
@@ -175,7 +139,7 @@ Plot tracking_plot(const RoomMap& map) {
 
 /// Of the path and of the frames' ranges, and of these as measured.
 void add_errors(ReportPage& page, const MapPageSubject& subject, const Truth& truth,
-                const Scores& scores, const UnwrappedSample& sample) {
+                const MapScores& scores, const UnwrappedSample& sample) {
   const std::string& method = subject.options.pipeline.unwrap.method;
   std::vector<MethodErrors> methods{{method, {}, sample.frames}};
   if (scores.trajectory) {
@@ -190,44 +154,44 @@ void add_errors(ReportPage& page, const MapPageSubject& subject, const Truth& tr
   add_error_curves(page, methods);
 }
 
+/// The map, and what the same path would have made of ranges as measured.
 std::vector<ShownMap> shown_maps(const MapPageSubject& subject, const Truth& truth,
-                                 const Scores& scores, const MapCloud& wrapped) {
-  const std::string& method = subject.options.pipeline.unwrap.method;
-  std::vector<ShownMap> maps;
-  maps.push_back({method == "none" ? "without unwrapping" : "with unwrapping (" + method + ")",
-                  &subject.map.surface,
-                  &subject.map.trajectory,
-                  std::nullopt,
-                  {}});
+                                 const MapScores& scores, const MapCloud& wrapped) {
+  const RoomMap& map = subject.map;
+  const auto shown = [&](const std::string& name, const MapCloud& surface) {
+    return shown_map(name, surface, map.trajectory, scores.trajectory, truth);
+  };
+  std::vector<ShownMap> maps{
+      shown(name_of_map(subject.options.pipeline.unwrap.method), map.surface)};
   if (!wrapped.empty()) {
-    maps.push_back(
-        {"the same path, ranges as measured", &wrapped, &subject.map.trajectory, std::nullopt, {}});
-  }
-  for (ShownMap& map : maps) {
-    if (!scores.trajectory) continue;
-    map.truth_from_map = scores.trajectory->truth_from_estimate;
-    if (truth.surface.points().empty()) continue;
-    map.errors_m = map_errors_m(*map.surface, *map.truth_from_map, truth.surface);
+    maps.push_back(shown(
+        "the same path, ranges as measured (of " + counted(subject.frames.size(), "frame") + ")",
+        wrapped));
   }
   return maps;
 }
 
 }  // namespace
 
-int frames_for_page(const ReportOptions& options) { return std::max(60, options.frames); }
+int frames_for_page(const ReportOptions& options) {
+  return std::max(consistency_frames, options.frames);
+}
 
 void write_map_page(const std::filesystem::path& result, const MapPageSubject& subject,
                     bool quiet) {
   const RoomMap& map = subject.map;
   const Truth truth = subject.recording ? read_truth(*subject.recording, quiet) : Truth{};
-  const Scores scores = score(map, truth);
+  const MapScores scores = score_of(map, truth);
   const bool is_unwrapped = subject.options.pipeline.unwrap.method != "none";
   const MapCloud wrapped = is_unwrapped ? wrapped_map(subject) : MapCloud();
   const UnwrappedSample sample = unwrap_sample(subject, subject.options.pipeline.unwrap.method);
 
   ReportPage page("Map of " + subject.source,
                   "tofmap " TOFMAP_VERSION ", method " + subject.options.pipeline.unwrap.method);
-  page.add_verdict(verdict_of(subject, scores), sentence_of(subject, scores, sample.moved_percent));
+  const Verdict verdict =
+      verdict_on(map, subject.options.pipeline.unwrap.method, scores.surface,
+                 subject.options.pipeline.map.voxel_m, !subject.warnings.empty());
+  page.add_verdict(verdict, sentence_of(subject, scores, sample.moved_percent));
   page.add_warnings(subject.warnings);
   add_maps(page, shown_maps(subject, truth, scores, wrapped), truth.poses, subject.options.report);
   add_errors(page, subject, truth, scores, sample);

@@ -19,8 +19,6 @@
 namespace tofmap::app {
 namespace {
 
-constexpr int consistency_frames = 60;
-
 UnwrappingRecord record_of_index(const UnwrapResult& unwrapped, double milliseconds,
                                  const SequenceReader& recording, int index) {
   return record_of(unwrapped, recording.files()[static_cast<std::size_t>(index)].timestamp_s,
@@ -58,6 +56,15 @@ Truth read_truth(const SequenceReader& source, bool quiet) {
     if (pose && ranges) truth.surface.add(*ranges, rays, *pose);
   }
   return truth;
+}
+
+MapScores score_of(const RoomMap& map, const Truth& truth) {
+  MapScores scores;
+  scores.trajectory = score_trajectory(map.trajectory, truth.poses);
+  if (scores.trajectory && !truth.surface.points().empty()) {
+    scores.surface = score_map(map.surface, scores.trajectory->truth_from_estimate, truth.surface);
+  }
+  return scores;
 }
 
 UnwrappingRecord record_of(const UnwrapResult& unwrapped, double timestamp_s, double milliseconds,
@@ -99,13 +106,11 @@ MethodResult run_down_to_map(const std::string& method, const SequenceReader& re
   result.map = map_room(source, options, hooks);
   refuse_mostly_damaged(*result.map);
   result.interrupted = result.map->interrupted;
-  result.consistency = consistency_of(*result.map, sampled_frames(recording, consistency_frames),
-                                      recording.sensor(), options);
-  result.trajectory = score_trajectory(result.map->trajectory, truth.poses);
-  if (result.trajectory && !truth.surface.points().empty()) {
-    result.surface =
-        score_map(result.map->surface, result.trajectory->truth_from_estimate, truth.surface);
-  }
+  if (result.interrupted) return result;
+  result.consistency = consistency_of(
+      *result.map, sampled_frames(recording, *recording.frame_count(), consistency_frames),
+      recording.sensor(), options);
+  result.scores = score_of(*result.map, truth);
   return result;
 }
 

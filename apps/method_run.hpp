@@ -26,6 +26,13 @@ struct Truth {
 /// Of a recording; tells its progress unless quiet.
 Truth read_truth(const SequenceReader& source, bool quiet);
 
+/// How right a map is, as far as the truth is known.
+struct MapScores {
+  std::optional<TrajectoryScore> trajectory;
+  std::optional<MapScore> surface;
+};
+MapScores score_of(const RoomMap& map, const Truth& truth);
+
 /// How one frame was unwrapped.
 struct UnwrappingRecord {
   double timestamp_s = 0;
@@ -41,9 +48,8 @@ struct MethodResult {
   std::string name;
   std::vector<UnwrappingRecord> frames;  ///< those that could be read
   std::optional<RoomMap> map;            ///< if asked for
-  std::optional<TrajectoryScore> trajectory;
-  std::optional<MapScore> surface;
-  std::optional<Consistency> consistency;  ///< of a map
+  MapScores scores;
+  std::optional<Consistency> consistency;  ///< of a map that was not interrupted
   bool interrupted = false;
 };
 

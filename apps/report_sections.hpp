@@ -12,7 +12,6 @@
 
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/core/option_table.hpp>
-#include <tofmap/evaluation/map_score.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
 #include <tofmap/visualization/report_page.hpp>
 
@@ -25,23 +24,6 @@ struct ReportOptions {
 
   static std::vector<OptionField<ReportOptions>> fields();
 };
-
-/// Of a map whose truth is known: good within the size of its voxels, bad beyond five times that.
-Verdict verdict_on(const MapScore& score, double voxel_m);
-
-/// A map as a page compares it with others, all in the frame of the first camera.
-struct ShownMap {
-  std::string name;  ///< "with unwrapping (joint)"
-  const MapCloud* surface = nullptr;
-  const Trajectory* trajectory = nullptr;
-  std::optional<Pose> truth_from_map;  ///< if the true path is known
-  std::vector<float> errors_m;         ///< of its points; empty if the true surface is not known
-};
-
-/// Maps side by side from above and the paths of the cameras, on one scale and in the level frame
-/// of the first; then the maps to be turned. `truth` may be empty.
-void add_maps(ReportPage& page, const std::vector<ShownMap>& maps, const Trajectory& truth,
-              const ReportOptions& options);
 
 /// What becomes of some frames, to be stepped through; of these `options.frames` are shown. Where
 /// `truth_m` finds the true ranges of a frame, wrong wraps are, too.

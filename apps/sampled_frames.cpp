@@ -4,6 +4,7 @@
 #include "sampled_frames.hpp"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace tofmap::app {
 namespace {
@@ -23,13 +24,17 @@ std::size_t most_frames(const CameraModel& camera, int wanted) {
 std::vector<int> spread_indices(int total, int wanted) {
   std::vector<int> indices;
   const int count = std::min(total, wanted);
-  for (int i = 0; i < count; ++i) indices.push_back((2 * i + 1) * total / (2 * count));
+  for (int i = 0; i < count; ++i) {
+    const std::int64_t middle = (2 * std::int64_t{i} + 1) * total / (2 * std::int64_t{count});
+    indices.push_back(static_cast<int>(middle));
+  }
   return indices;
 }
 
-std::vector<DualFrequencyFrame> sampled_frames(const SequenceReader& recording, int wanted) {
+std::vector<DualFrequencyFrame> sampled_frames(const SequenceReader& recording, int total,
+                                               int wanted) {
   std::vector<DualFrequencyFrame> frames;
-  for (const int index : spread_indices(*recording.frame_count(), wanted)) {
+  for (const int index : spread_indices(std::min(total, *recording.frame_count()), wanted)) {
     SourcedFrame sourced = recording.read(index);
     if (sourced.frame) frames.push_back(*std::move(sourced.frame));
   }

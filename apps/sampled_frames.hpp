@@ -12,14 +12,17 @@ namespace tofmap::app {
 /// Indices in the middles of `wanted` equal parts of a recording.
 std::vector<int> spread_indices(int total, int wanted);
 
-/// As many frames of a recording, spread evenly over it. Damaged frames are left out.
-std::vector<DualFrequencyFrame> sampled_frames(const SequenceReader& recording, int wanted);
+/// At most `wanted` of the first `total` frames of a recording, spread evenly over these. Damaged
+/// ones are left out, and none comes in their place.
+std::vector<DualFrequencyFrame> sampled_frames(const SequenceReader& recording, int total,
+                                               int wanted);
 
 /// Passes the frames of another source on, and keeps some, spread evenly over all that came: of a
 /// device, which does not come again.
 class SamplingSource final : public FrameSource {
  public:
-  /// Keeps at least `wanted` frames, and up to twice as many, unless they need more than 128 MB.
+  /// Keeps at least `wanted` frames if as many come, and less than twice as many; fewer where they
+  /// would need more than 128 MB, but at least one.
   SamplingSource(FrameSource& source, int wanted);
 
   const SensorModel& sensor() const override { return source_.sensor(); }

@@ -122,7 +122,7 @@ int run_view(const ViewArguments& arguments) {
   if (!request.color.empty()) viewed->color_by(request.color);
   if (arguments.screenshot.empty()) {
     open_window(*viewed, arguments);
-    return exit_status::done;
+    return is_interrupted() ? exit_status::interrupted : exit_status::done;
   }
   write_screenshot(*viewed, arguments);
   if (!arguments.common.quiet) std::printf("picture: %s\n", arguments.screenshot.c_str());

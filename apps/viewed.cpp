@@ -4,6 +4,7 @@
 #include "viewed.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include <tofmap/acquisition/triangle_mesh.hpp>
@@ -26,7 +27,8 @@ class ViewedMesh final : public Viewed {
     layer.points_m = mesh_.vertices;
     layer.triangles = mesh_.triangles;
     for (const float reflectance : mesh_.reflectance) {
-      const auto gray = static_cast<std::uint8_t>(255 * std::clamp(reflectance, 0.0F, 1.0F));
+      const auto gray = static_cast<std::uint8_t>(
+          255 * std::clamp(std::isnan(reflectance) ? 0 : reflectance, 0.0F, 1.0F));
       layer.colors.push_back({gray, gray, gray});
     }
     return {{}, {}, {std::move(layer)}};

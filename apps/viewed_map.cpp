@@ -4,7 +4,6 @@
 #include "viewed.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <tofmap/cloud/cloud_file.hpp>
 #include <tofmap/core/error.hpp>

@@ -3,13 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How far measures that need no truth tell what only the truth knows.
 
-    benchmarks/consistency.py BUILD_DIR [FRAMES] 2> RUNS
+    benchmarks/consistency.py BUILD_DIR RUNS [FRAMES]
     benchmarks/consistency.py --table RUNS
 
 Every method maps simulated recordings of several rooms, with more and more noise and with a phase
-offset that nobody knows of. Of each run the measures of consistency are set against wrong wraps and
-the map's error: as rank correlation (Spearman), and by how surely a limit tells maps that are wrong by
-more than 5 cm. Needs Debian's python3-numpy and python3-scipy.
+offset that nobody knows of; RUNS gets a line a map, as they are made. The measures of consistency are
+set against wrong wraps and the map's error: as rank correlation (Spearman), and by how surely a limit
+tells maps that are wrong by more than 5 cm. Needs Debian's python3-numpy and python3-scipy.
 """
 import itertools
 import json
@@ -62,17 +62,19 @@ def rows_of(report):
 
 
 def best_limit(values, is_wrong):
-    """The limit that tells wrong maps most surely, and the share that it tells rightly."""
-    shares = [(numpy.mean((values > limit) == is_wrong), limit) for limit in numpy.unique(values)]
-    share, limit = max(shares)
-    return limit, share
+    """The limit that tells wrong maps from right ones most surely, and how surely: the mean of the shares
+    of both that are told rightly, so that saying the same of all maps is worth 50 %."""
+    def told(limit):
+        return (numpy.mean(values[is_wrong] > limit) + numpy.mean(values[~is_wrong] <= limit)) / 2
+    limit = max((-numpy.inf, *numpy.unique(values)), key=told)
+    return limit, told(limit)
 
 
 def print_tables(rows):
     measures, wraps, errors = rows[:, :-2], rows[:, -2], rows[:, -1]
     is_wrong = errors > WRONG_MAP_M
     print(f"{len(errors)} maps, {is_wrong.sum()} of them wrong by more than {100 * WRONG_MAP_M:g} cm\n")
-    print("| measure | with wrong wraps | with map error | limit | wrong and right maps told apart |")
+    print("| measure | with wrong wraps | with map error | limit | told apart |")
     print("|---|---|---|---|---|")
     for i, name in enumerate(MEASURES):
         known = numpy.isfinite(measures[:, i])
@@ -91,15 +93,17 @@ def main():
         print_tables(numpy.loadtxt(sys.argv[2]))
         return
     tofmap = sys.argv[1] + "/apps/tofmap"
-    frames = int(sys.argv[2]) if len(sys.argv) > 2 else 100
-    rows = []
-    for (scene, seed), noise_m, offset_m in itertools.product(SCENES, NOISES_M, OFFSETS_M):
-        report = evaluated(tofmap, scene, seed, frames, noise_m, offset_m)
-        rows += [(*values, wrong_percent, error_m)
-                 for values, wrong_percent, error_m in rows_of(report) if error_m is not None]
-    numpy.savetxt(sys.stderr, rows, fmt="%.4g",
-                  header=" ".join((*MEASURES, "wrong_wrap_percent", "map_error_m")))
-    print_tables(numpy.array(rows))
+    runs = sys.argv[2]
+    frames = int(sys.argv[3]) if len(sys.argv) > 3 else 100
+    with open(runs, "w", encoding="utf-8") as file:
+        print("#", *MEASURES, "wrong_wrap_percent", "map_error_m", file=file)
+        for (scene, seed), noise_m, offset_m in itertools.product(SCENES, NOISES_M, OFFSETS_M):
+            report = evaluated(tofmap, scene, seed, frames, noise_m, offset_m)
+            rows = [(*values, wrong_percent, error_m)
+                    for values, wrong_percent, error_m in rows_of(report) if error_m is not None]
+            numpy.savetxt(file, rows, fmt="%.4g")
+            file.flush()
+    print_tables(numpy.loadtxt(runs))
 
 
 if __name__ == "__main__":

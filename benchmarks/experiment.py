@@ -67,7 +67,7 @@ class Experiment:
         self.measures = ({name: str(label) for name, label in measures.items()}
                          if isinstance(measures, dict) else {name: name for name in measures})
         self.baseline = content.get("baseline")
-        self.axes = content.get("vary", {})
+        self.axes = content.get("vary") or {}
         if self.baseline and self.baseline not in self.methods:
             raise Wrong(f"{file}: baseline {self.baseline} is none of the methods")
         for measure in self.measures:
@@ -80,7 +80,7 @@ class Experiment:
 
     def variants(self):
         """Labels, and the options of all of them."""
-        fixed = self.content.get("fixed", {})
+        fixed = self.content.get("fixed") or {}
         for labels in itertools.product(*(list(variants) for variants in self.axes.values())):
             options = dict(fixed)
             for axis, label in zip(self.axes, labels):

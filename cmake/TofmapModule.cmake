@@ -4,7 +4,8 @@
 # What nearly every file reads, itself or by way of others.
 set(tofmap_common_headers <algorithm> <filesystem> <functional> <string> <vector> <Eigen/Geometry>)
 
-# Flags that every target of the project gets, privately: consumers inherit none.
+# Flags that every target of the project gets, privately: consumers inherit none but those that
+# sanitizers and coverage need all to agree on.
 function(tofmap_private_flags target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <tofmap/core/error.hpp>
 #include <tofmap/evaluation/consistency.hpp>
 
 namespace tofmap {
@@ -20,15 +21,15 @@ const CameraModel camera{.width_px = 40,
                          .distortion = {}};
 
 /// What a camera measures at this range everywhere, without noise.
-DualFrequencyFrame frame_at(double range_m) {
+DualFrequencyFrame frame_at(double range_m, const Modulation& frequencies = modulation) {
   const auto phase = [&](double wavelength_m) {
     const double cycles = range_m / wavelength_m;
     return ImageF::Constant(camera.height_px, camera.width_px,
                             static_cast<float>(cycles - std::floor(cycles)));
   };
   DualFrequencyFrame frame;
-  frame.phase_a = phase(modulation.wavelength_a_m());
-  frame.phase_b = phase(modulation.wavelength_b_m());
+  frame.phase_a = phase(frequencies.wavelength_a_m());
+  frame.phase_b = phase(frequencies.wavelength_b_m());
   return frame;
 }
 
@@ -59,6 +60,36 @@ TEST(BeatAgreement, TellsWrongCountsByTheirNeighbourhood) {
   EXPECT_NEAR(beat.misfit_percent, 25, 1e-9);
   // A wrap is off by the difference of the frequencies over that of A: 2 / 29 cycles.
   EXPECT_NEAR(beat.residual_cycles, 2.0 / 29 * std::sqrt(0.25), 1e-4);
+}
+
+TEST(BeatAgreement, TellsWrongCountsOfAnyPairOfFrequencies) {
+  struct Pair {
+    Modulation frequencies;
+    int wrong_by;  ///< the count away that is the nearest miss
+  };
+  for (const Pair& pair : {Pair{{80e6, 100e6}, 1}, Pair{{30e6, 72e6}, 2}, Pair{{29e6, 31e6}, 1}}) {
+    const DualFrequencyFrame frame = frame_at(1.2, pair.frequencies);
+    const int right = static_cast<int>(1.2 / pair.frequencies.wavelength_a_m());
+    EXPECT_EQ(
+        beat_agreement({{&frame, image_of(frame, right), {}}}, pair.frequencies).misfit_percent, 0);
+    const RangeImage wrong = image_of(frame, right + pair.wrong_by);
+    EXPECT_EQ(beat_agreement({{&frame, wrong, {}}}, pair.frequencies).misfit_percent, 100)
+        << pair.frequencies.frequency_b_hz;
+  }
+}
+
+TEST(BeatAgreement, IsNotKnownOfFrequenciesThatTellNoCounts) {
+  const Modulation doubled{20e6, 40e6};
+  const DualFrequencyFrame frame = frame_at(7, doubled);
+  const BeatAgreement beat = beat_agreement({{&frame, image_of(frame, 0), {}}}, doubled);
+  EXPECT_TRUE(std::isnan(beat.misfit_percent)) << "every count fits as well";
+  EXPECT_NEAR(beat.residual_cycles, 0, 1e-5);
+}
+
+TEST(BeatAgreement, RefusesImagesOfAnotherSize) {
+  const DualFrequencyFrame frame = frame_at(7);
+  RangeImage image(3, 4);
+  EXPECT_THROW(beat_agreement({{&frame, image, {}}}, modulation), UsageError);
 }
 
 TEST(BeatAgreement, AveragesNoiseOfSinglePixels) {

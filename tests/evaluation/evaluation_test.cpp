@@ -27,6 +27,37 @@ TEST(RangeScore, IsTheWorkedExample) {
   EXPECT_NEAR(score.range_rmse_m, std::sqrt(0.01 / 2), 1e-6);
 }
 
+TEST(RangeScore, OfAFrameWithoutRangesDoesNotCountAmongOthers) {
+  RangeImage none(1, 2);
+  none.range_m << NAN, NAN;
+  none.reason.setConstant(static_cast<int>(InvalidReason::jump_edge));
+  RangeImage wrong = none;
+  wrong.range_m << 1.0F, 4.0F;
+  wrong.reason.setZero();
+  ImageF truth(1, 2);
+  truth << 6.0F, 4.0F;
+  const RangeScore empty = score_ranges(none, truth, 5.0);
+  EXPECT_TRUE(std::isnan(empty.wrong_wrap_percent));
+  EXPECT_EQ(empty.coverage_percent, 0);
+  const RangeScore mean = mean_score({empty, score_ranges(wrong, truth, 5.0)});
+  EXPECT_EQ(mean.wrong_wrap_percent, 50);
+  EXPECT_EQ(mean.coverage_percent, 50);
+  EXPECT_TRUE(std::isnan(mean_score({}).wrong_wrap_percent));
+}
+
+TEST(RangeScore, DoesNotKnowTruthThatIsNoRange) {
+  RangeImage image(1, 3);
+  image.range_m << 2.0F, 2.0F, 2.0F;
+  image.reason.setZero();
+  ImageF truth(1, 3);
+  truth << 2.0F, -1.0F, INFINITY;
+  EXPECT_EQ(score_ranges(image, truth, 5.0).wrong_wrap_percent, 0);
+  ErrorsOverRange errors;
+  errors.add(image, truth, 5.0);
+  ASSERT_EQ(errors.bins().size(), 1U);
+  EXPECT_EQ(errors.bins().front().pixels, 1);
+}
+
 /// Five metres straight on, a pose every half metre.
 Trajectory straight_path() {
   Trajectory path;

@@ -16,6 +16,13 @@ for package in "$packages"/*.deb; do
   names+=("$(dpkg-deb --field "$package" Package)")
 done
 
+for name in "${names[@]}"; do
+  if dpkg-query --show --showformat='${Status}' "$name" 2>/dev/null | grep -q 'ok installed'; then
+    echo "packages: $name is installed already; remove it first, this would do so" >&2
+    exit 1
+  fi
+done
+
 clean_up() {
   cd /
   rm -rf "$scratch"

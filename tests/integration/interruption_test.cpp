@@ -17,6 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
 
 /// The recording's frames over and over, enough for a run to last until it is interrupted.
 class Interruption : public WithRecording {
@@ -46,6 +49,13 @@ class Interruption : public WithRecording {
              return program.has_ended() || fs::exists(partial_folder() / "range" / "000000.png");
            }) &&
            !program.has_ended();
+  }
+
+  void shorten_recording(std::size_t count) const {
+    std::istringstream list(read_text(sequence_ / "frames.txt"));
+    std::ofstream shorter(sequence_ / "frames.txt");
+    std::string line;
+    for (std::size_t i = 0; i < count && std::getline(list, line); ++i) shorter << line << '\n';
   }
 
   std::vector<std::string> unwrap_arguments() const {
@@ -100,21 +110,36 @@ class InterruptedMap : public Interruption {
     return run_program(arguments);
   }
 
-  void shorten_recording(std::size_t count) const {
-    std::istringstream list(read_text(sequence_ / "frames.txt"));
-    std::ofstream shorter(sequence_ / "frames.txt");
-    std::string line;
-    for (std::size_t i = 0; i < count && std::getline(list, line); ++i) shorter << line << '\n';
-  }
-
   Finished finished_;
 };
 
 TEST_F(InterruptedMap, KeepsTheMapSoFar) {
   EXPECT_EQ(finished_.status, 130) << finished_.err;
-  EXPECT_THAT(finished_.out, testing::HasSubstr("--resume"));
+  EXPECT_THAT(finished_.out, HasSubstr("--resume"));
   EXPECT_EQ(read_json(out_ / "report.json")["summary"]["interrupted"], true);
   EXPECT_TRUE(fs::exists(out_ / "map.ply"));
+}
+
+TEST_F(InterruptedMap, SaysSoOnItsPage) {
+  EXPECT_THAT(read_text(out_ / "report.html"),
+              AllOf(HasSubstr("Then the run was interrupted."), Not(HasSubstr("Looks right.")),
+                    Not(HasSubstr("The truth is not known"))));
+}
+
+TEST_F(Interruption, OfAnEvaluationNamesTheMethodsThatAreMissing) {
+  shorten_recording(300);  // a second or so a method
+  RunningProgram program({"evaluate", sequence_.string(), "--out", out_.string(), "--set",
+                          "evaluation.methods=none jump joint", "--set", "pictures.frames=0"});
+  ASSERT_TRUE(comes_true([&] {
+    return program.has_ended() || fs::exists(partial_folder() / "none" / "trajectory.txt");
+  }));
+  program.send(SIGINT);
+  const Finished finished = program.wait();
+  EXPECT_EQ(finished.status, 130) << finished.err;
+  EXPECT_EQ(read_json(out_ / "report.json")["interrupted"], true);
+  EXPECT_THAT(
+      read_text(out_ / "report.html"),
+      AllOf(HasSubstr("these methods are missing: jump, joint"), Not(HasSubstr("Looks right."))));
 }
 
 TEST_F(InterruptedMap, GoesOnToTheSameResult) {
@@ -133,7 +158,7 @@ TEST_F(InterruptedMap, GoesOnToTheSameResult) {
 TEST_F(InterruptedMap, DoesNotGoOnWithOtherOptions) {
   const Finished resumed = resume({"--set", "map.voxel_m=0.05"});
   EXPECT_EQ(resumed.status, 2);
-  EXPECT_THAT(resumed.err, testing::HasSubstr("voxel_m: 0.05"));
+  EXPECT_THAT(resumed.err, HasSubstr("voxel_m: 0.05"));
   EXPECT_TRUE(fs::exists(out_ / "state.bin")) << "what there was is lost";
 }
 
@@ -141,7 +166,7 @@ TEST_F(InterruptedMap, DoesNotGoOnWithAnotherRecording) {
   shorten_recording(1);
   const Finished resumed = resume();
   EXPECT_EQ(resumed.status, 3);
-  EXPECT_THAT(resumed.err, testing::HasSubstr("another recording"));
+  EXPECT_THAT(resumed.err, HasSubstr("another recording"));
 }
 
 TEST_F(InterruptedMap, DoesNotGoOnWithARecordingOfTheSameTimes) {
@@ -150,7 +175,7 @@ TEST_F(InterruptedMap, DoesNotGoOnWithARecordingOfTheSameTimes) {
                 fs::copy_options::overwrite_existing);
   const Finished resumed = resume();
   EXPECT_EQ(resumed.status, 3);
-  EXPECT_THAT(resumed.err, testing::HasSubstr("another recording"));
+  EXPECT_THAT(resumed.err, HasSubstr("another recording"));
 }
 
 TEST_F(InterruptedMap, DoesNotGoOnFromADamagedState) {
@@ -159,7 +184,7 @@ TEST_F(InterruptedMap, DoesNotGoOnFromADamagedState) {
     std::ofstream(out_ / "state.bin", std::ios::binary) << state.substr(0, size);
     const Finished resumed = resume();
     EXPECT_EQ(resumed.status, 3) << size;
-    EXPECT_THAT(resumed.err, testing::HasSubstr("start anew without --resume"));
+    EXPECT_THAT(resumed.err, HasSubstr("start anew without --resume"));
   }
   for (const std::size_t at : {std::size_t{3}, std::size_t{400}, state.size() / 2}) {
     std::string flipped = state;
@@ -167,7 +192,7 @@ TEST_F(InterruptedMap, DoesNotGoOnFromADamagedState) {
     std::ofstream(out_ / "state.bin", std::ios::binary) << flipped;
     const Finished resumed = resume();
     EXPECT_EQ(resumed.status, 3) << at;
-    EXPECT_THAT(resumed.err, testing::HasSubstr("is damaged")) << at;
+    EXPECT_THAT(resumed.err, HasSubstr("is damaged")) << at;
   }
 }
 

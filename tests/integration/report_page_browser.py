@@ -14,6 +14,7 @@ import base64
 import io
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -124,6 +125,16 @@ class ReportPage(unittest.TestCase):
         slider.send_keys(Keys.ARROW_LEFT)
         self.assertEqual(self.shown_frames(), [0], "one step, not two")
 
+    def test_shows_all_frames_and_no_controls_without_scripts(self):
+        text = (self.out / "map" / "report.html").read_text(encoding="utf-8")
+        bare = self.out / "bare.html"
+        bare.write_text(re.sub(r"<script>.*?</script>", "", text, flags=re.DOTALL), encoding="utf-8")
+        self.browser.get(bare.as_uri())
+        self.assertEqual(self.shown_frames(), [0, 1, 2])
+        for control in self.browser.find_elements(By.CSS_SELECTOR, ".controls"):
+            self.assertFalse(control.is_displayed())
+        self.assertIn("needs scripts", self.browser.find_element(By.CSS_SELECTOR, ".canvas").text)
+
     def test_turns_the_map(self):
         self.open("map")
         at_first = self.picture()
@@ -139,9 +150,9 @@ class ReportPage(unittest.TestCase):
     def test_shows_the_map_with_and_without_unwrapping(self):
         self.open("map")
         at_first = self.picture()
-        self.click(".scene input[name=cloud][value='1']")
+        self.click(".scene input[name^=cloud][value='1']")
         self.assertGreater(difference(at_first, self.picture()), 2)
-        self.click(".scene input[name=coloring][value='1']")
+        self.click(".scene input[name^=coloring][value='1']")
         legends = self.browser.find_elements(By.CSS_SELECTOR, ".scene .legend")
         self.assertEqual([legend.is_displayed() for legend in legends], [False, True])
 
@@ -161,6 +172,10 @@ class ReportPage(unittest.TestCase):
         self.assertFalse(self.browser.find_element(By.CSS_SELECTOR, ".strip .next").is_displayed())
         printed = base64.b64decode(self.browser.print_page())
         self.assertTrue(printed.startswith(b"%PDF"))
+        fits = self.browser.execute_script(
+            "return document.querySelector('.scene canvas').getBoundingClientRect().width"
+            " <= document.querySelector('main').getBoundingClientRect().width")
+        self.assertTrue(fits, "the map is not cut off")
         if "TOFMAP_KEEP_PRINT" in os.environ:  # to look at it
             pathlib.Path(os.environ["TOFMAP_KEEP_PRINT"]).write_bytes(printed)
 

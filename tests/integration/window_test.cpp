@@ -107,7 +107,7 @@ TEST_F(ProgramWindow, OfAViewGoesWhenTheProgramIsInterrupted) {
   RunningProgram program({"view", sequence_.string()});
   ASSERT_TRUE(display_.has_window(sequence_.string()));
   program.send(SIGINT);
-  EXPECT_EQ(program.wait().status, 0);
+  EXPECT_EQ(program.wait().status, 130);
 }
 
 using ProgramWithoutDisplay = WithRecording;

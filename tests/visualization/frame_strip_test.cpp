@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include "frame_colors.hpp"
+
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tofmap/core/error.hpp>
 #include <tofmap/visualization/color.hpp>
 #include <tofmap/visualization/frame_strip.hpp>
 
@@ -56,8 +59,7 @@ TEST(FrameStrip, ShowsEveryStageOfAFrame) {
   EXPECT_EQ(panel(frame, "confidence of the wrap count").at(1, 0), ColorScale(0, 1, "")(0.5));
   const Picture& removed = panel(frame, "after filters, removed pixels by reason");
   EXPECT_EQ(removed.at(0, 0), range(2));
-  EXPECT_NE(removed.at(1, 0), range(7));
-  EXPECT_NE(removed.at(1, 0), colors::invalid);
+  EXPECT_EQ(removed.at(1, 0), reason_color(InvalidReason::jump_edge));
   EXPECT_THAT(frame.remark, HasSubstr("moved 66.7 % of them, filters removed 33.3 %"));
   EXPECT_THAT(captions(strip.legends), testing::Contains("reasons for removal"));
 }
@@ -68,8 +70,15 @@ TEST(FrameStrip, ComparesWithTheTruthWhereItIsKnown) {
   frame.truth_m << 2, 2, 7;  // the second is a wrap too far
   const FrameStrip strip = frame_strip({frame, three_pixels()}, 5);
   const Picture& wrong = panel(strip.frames[0], "wraps against the truth");
-  EXPECT_NE(wrong.at(0, 0), wrong.at(1, 0));
+  EXPECT_EQ(wrong.at(0, 0), wrap_errors::none);
+  EXPECT_EQ(wrong.at(1, 0), wrap_errors::too_far);
   EXPECT_EQ(strip.frames[1].panels.size(), 6U) << "the truth of this one is not known";
+}
+
+TEST(FrameStrip, RefusesImagesThatDifferInSize) {
+  StagedFrame frame = three_pixels();
+  frame.truth_m = ImageF::Zero(2, 3);
+  EXPECT_THROW(frame_strip({frame}, 5), UsageError);
 }
 
 TEST(FrameStrip, DoesWithoutAmplitudeAndReturns) {

@@ -11,6 +11,7 @@
 #include <pcl/kdtree/impl/kdtree_flann.hpp>
 #include <pcl/kdtree/kdtree_flann.h>
 
+#include <tofmap/core/error.hpp>
 #include <tofmap/core/median.hpp>
 
 namespace tofmap {
@@ -28,6 +29,10 @@ double nearest_cycle(double cycles) { return cycles - std::round(cycles); }
 ImageF beat_residuals(const RangedFrame& ranged, const Modulation& modulation) {
   const double ratio = modulation.wavelength_a_m() / modulation.wavelength_b_m();
   const RangeImage& image = ranged.image;
+  if (!same_size(image.range_m, ranged.frame->phase_a) ||
+      !same_size(image.range_m, ranged.frame->phase_b)) {
+    throw UsageError("consistency: ranges and phases differ in size");
+  }
   ImageF residuals = ImageF::Constant(image.rows(), image.cols(), static_cast<float>(nan));
   for (Eigen::Index i = 0; i < residuals.size(); ++i) {
     const double phase_a = ranged.frame->phase_a.data()[i];
@@ -58,6 +63,20 @@ double mean_around(const ImageF& residuals, const ImageU8& counts, Eigen::Index 
   return nearest_cycle(residuals(row, col) + sum / pixels);
 }
 
+/// By how little another wrap count of A moves phase B, in cycles: of counts up to three away that
+/// the frequencies can tell. NaN if they can tell none, as if one were a multiple of the other.
+double smallest_step_cycles(const Modulation& modulation) {
+  constexpr int counts_away = 3;       // farther ones are as many wavelengths off: no near miss
+  constexpr double least_step = 1e-3;  // cycles; less is no difference
+  const double ratio = modulation.wavelength_a_m() / modulation.wavelength_b_m();
+  double smallest = nan;
+  for (int count = 1; count <= counts_away; ++count) {
+    const double step = std::abs(nearest_cycle(count * ratio));
+    if (step > least_step && !(step >= smallest)) smallest = step;
+  }
+  return smallest;
+}
+
 /// Points of one frame in another: how many fall on a range, and how many of these it sees through.
 struct Overlap {
   int points = 0;
@@ -67,8 +86,8 @@ struct Overlap {
 Overlap overlap(const RangedFrame& from, const RangedFrame& to, const CameraModel& camera,
                 const PixelRays& rays) {
   constexpr Eigen::Index stride = 4;
-  constexpr double least_m = 0.1;
-  constexpr double deviations = 4;
+  constexpr double least_tolerance_m = 0.1;  // what a coarse map blurs anyway
+  constexpr double sigmas = 4;
   const Pose to_from_from = to.world_from_camera->inverse() * *from.world_from_camera;
   Overlap result;
   for (Eigen::Index v = 0; v < from.image.rows(); v += stride) {
@@ -85,7 +104,7 @@ Overlap overlap(const RangedFrame& from, const RangedFrame& to, const CameraMode
       if (!to.image.valid(row, col)) continue;
       const double behind_m = to.image.range_m(row, col) - point_m.norm();
       const double sigma_m = std::hypot(from.image.sigma_m(v, u), to.image.sigma_m(row, col));
-      const double tolerance_m = std::max(least_m, deviations * sigma_m);
+      const double tolerance_m = std::max(least_tolerance_m, sigmas * sigma_m);
       if (behind_m < -tolerance_m) continue;  // hidden: neither for nor against
       ++result.points;
       result.seen_through += behind_m > tolerance_m ? 1 : 0;
@@ -97,7 +116,7 @@ Overlap overlap(const RangedFrame& from, const RangedFrame& to, const CameraMode
 using Tree = pcl::KdTreeFLANN<MapPoint>;
 
 /// Root mean square distance of the points around one from their plane; nothing where the surface
-/// is not plane.
+/// is not planar.
 std::optional<double> thickness_at(const MapCloud& map, const Tree& tree, int index) {
   constexpr double radius_m = 0.15;
   constexpr double same_direction = 0.94;  // cosine of 20 degrees
@@ -128,8 +147,7 @@ std::optional<double> thickness_at(const MapCloud& map, const Tree& tree, int in
 }  // namespace
 
 BeatAgreement beat_agreement(const std::vector<RangedFrame>& frames, const Modulation& modulation) {
-  const double step_cycles =
-      std::abs(nearest_cycle(modulation.wavelength_a_m() / modulation.wavelength_b_m()));
+  const double step_cycles = smallest_step_cycles(modulation);
   double square_sum = 0;
   double misfits = 0;
   double pixels = 0;
@@ -146,7 +164,8 @@ BeatAgreement beat_agreement(const std::vector<RangedFrame>& frames, const Modul
       }
     }
   }
-  return {percent(misfits, pixels), pixels > 0 ? std::sqrt(square_sum / pixels) : nan};
+  return {std::isnan(step_cycles) ? nan : percent(misfits, pixels),
+          pixels > 0 ? std::sqrt(square_sum / pixels) : nan};
 }
 
 double ambiguous_percent(const std::vector<RangedFrame>& frames) {

@@ -14,7 +14,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double share_percent(std::int64_t part, std::int64_t whole) {
-  return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0;
+  return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : nan;
 }
 
 /// A pixel with a return and a known truth.
@@ -34,7 +34,7 @@ void for_each_expected(const RangeImage& image, const ImageF& truth_m, double wa
   const auto no_return = static_cast<std::uint8_t>(InvalidReason::no_return);
   for (Eigen::Index i = 0; i < truth_m.size(); ++i) {
     const float truth = truth_m.data()[i];
-    if (std::isnan(truth) || image.reason.data()[i] == no_return) continue;
+    if (!(truth >= 0) || std::isinf(truth) || image.reason.data()[i] == no_return) continue;
     PixelError pixel;
     pixel.truth_m = truth;
     pixel.has_range = image.reason.data()[i] == 0;
@@ -68,22 +68,23 @@ RangeScore score_ranges(const RangeImage& image, const ImageF& truth_m, double w
 }
 
 RangeScore mean_score(const std::vector<RangeScore>& frames) {
-  RangeScore mean;
-  int with_rmse = 0;
-  for (const RangeScore& frame : frames) {
-    mean.wrong_wrap_percent += frame.wrong_wrap_percent / static_cast<double>(frames.size());
-    mean.coverage_percent += frame.coverage_percent / static_cast<double>(frames.size());
-    if (std::isnan(frame.range_rmse_m)) continue;
-    mean.range_rmse_m += frame.range_rmse_m;
-    ++with_rmse;
-  }
-  mean.range_rmse_m = with_rmse > 0 ? mean.range_rmse_m / with_rmse : nan;
-  return mean;
+  const auto mean_of = [&](double RangeScore::*value) {
+    double sum = 0;
+    int count = 0;
+    for (const RangeScore& frame : frames) {
+      if (std::isnan(frame.*value)) continue;
+      sum += frame.*value;
+      ++count;
+    }
+    return count > 0 ? sum / count : nan;
+  };
+  return {mean_of(&RangeScore::wrong_wrap_percent), mean_of(&RangeScore::coverage_percent),
+          mean_of(&RangeScore::range_rmse_m)};
 }
 
 void ErrorsOverRange::add(const RangeImage& image, const ImageF& truth_m, double wavelength_a_m) {
   for_each_expected(image, truth_m, wavelength_a_m, [&](const PixelError& pixel) {
-    if (!pixel.has_range || pixel.truth_m < 0) return;
+    if (!pixel.has_range) return;
     const auto bin = static_cast<std::size_t>(pixel.truth_m / bin_m);
     if (sums_.size() <= bin) sums_.resize(bin + 1);
     Sums& sums = sums_[bin];

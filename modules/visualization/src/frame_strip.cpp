@@ -10,6 +10,7 @@
 #include <cmath>
 #include <set>
 
+#include <tofmap/core/error.hpp>
 #include <tofmap/core/text.hpp>
 
 namespace tofmap {
@@ -59,6 +60,17 @@ Scales scales_of(const std::vector<StagedFrame>& frames) {
   // Light falls off with the square of the range: the root shows far surfaces, too.
   if (amplitude > 0) scales.amplitude = ColorScale(0, std::sqrt(amplitude), "root of amplitude");
   return scales;
+}
+
+void check(const StagedFrame& frame) {
+  const ImageF& range_m = frame.unwrapped.range_m;
+  const auto fits = [&](const ImageF& image) {
+    return image.size() == 0 || same_size(image, range_m);
+  };
+  if (!fits(frame.amplitude) || !fits(frame.truth_m) || !same_size(frame.wrapped_m, range_m) ||
+      !same_size(frame.filtered.range_m, range_m)) {
+    throw UsageError("strip: images of '" + frame.title + "' differ in size");
+  }
 }
 
 Picture removed_panel(const StagedFrame& frame, const Scales& scales) {
@@ -143,6 +155,7 @@ std::vector<PageFigure> legends_of(const Scales& scales) {
 
 FrameStrip frame_strip(const std::vector<StagedFrame>& frames, double wavelength_m) {
   if (frames.empty()) return {};
+  std::ranges::for_each(frames, check);
   const Scales scales = scales_of(frames);
   FrameStrip strip;
   for (const StagedFrame& frame : frames) {

@@ -88,15 +88,21 @@ void set_axis(vtkAxis& axis, const std::string& label, double limit) {
   axis.SetBehavior(vtkAxis::FIXED);
 }
 
-/// The limit, or a tenth beyond the greatest value.
-double limit_or(double limit, const Plot& plot, std::vector<double> PlotLine::*values) {
-  if (limit > 0) return limit;
+/// Of all values that are finite; 0 if none is positive.
+double greatest_of(const Plot& plot, std::vector<double> PlotLine::*values) {
   double greatest = 0;
   for (const PlotLine& line : plot.lines) {
     for (const double value : line.*values) {
       if (std::isfinite(value)) greatest = std::max(greatest, value);
     }
   }
+  return greatest;
+}
+
+/// The limit, or a tenth beyond the greatest value.
+double limit_or(double limit, const Plot& plot, std::vector<double> PlotLine::*values) {
+  if (limit > 0) return limit;
+  const double greatest = greatest_of(plot, values);
   return greatest > 0 ? 1.1 * greatest : 1;
 }
 
@@ -108,9 +114,9 @@ void set_log_axis(vtkAxis& axis, const Plot& plot) {
       if (value > 0) least = std::min(least, value);
     }
   }
-  const double greatest = limit_or(plot.y_limit, plot, &PlotLine::y);
+  const double greatest = plot.y_limit > 0 ? plot.y_limit : greatest_of(plot, &PlotLine::y);
   const double low = std::isfinite(least) ? std::floor(std::log10(least)) : 0;
-  const double high = std::max(low + 1, std::ceil(std::log10(greatest)));
+  const double high = greatest > 0 ? std::max(low + 1, std::ceil(std::log10(greatest))) : low + 1;
   set_axis(axis, plot.y_label, 0);
   axis.SetRange(std::pow(10, low), std::pow(10, high));
   axis.LogScaleOn();

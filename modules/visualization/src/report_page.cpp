@@ -6,7 +6,6 @@
 #include "page_texts.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string_view>
@@ -89,16 +88,22 @@ std::string table_row(const std::vector<std::string>& cells, std::string_view na
   return out + "</tr>\n";
 }
 
-std::string_view word_of(Verdict verdict) {
+/// How a verdict is called: by the style sheet, and on the page.
+struct VerdictWords {
+  std::string_view css_class;
+  std::string_view text;
+};
+
+VerdictWords words_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::good:
-      return "good";
+      return {"good", "Looks right."};
     case Verdict::doubtful:
-      return "doubtful";
+      return {"doubtful", "To be looked at with care."};
     case Verdict::bad:
-      return "bad";
+      break;
   }
-  return "";
+  return {"bad", "Not to be trusted."};
 }
 
 using Box = Eigen::AlignedBox3f;
@@ -129,7 +134,10 @@ std::string packed_places(const std::vector<Eigen::Vector3f>& points_m, const Bo
 std::string packed_normals(const std::vector<Eigen::Vector3f>& normals) {
   std::vector<std::int8_t> packed;
   for (const Eigen::Vector3f& normal : normals) {
-    for (int i = 0; i < 3; ++i) packed.push_back(static_cast<std::int8_t>(127 * normal[i]));
+    for (int i = 0; i < 3; ++i) {
+      packed.push_back(
+          static_cast<std::int8_t>(std::lround(127 * std::clamp(normal[i], -1.0F, 1.0F))));
+    }
   }
   return base64(packed);
 }
@@ -166,6 +174,11 @@ void check(const PageScene& scene) {
     const auto as_many = [&](const std::vector<Rgb>& colors) {
       return colors.size() == cloud.points_m.size();
     };
+    const auto is_finite = [](const Eigen::Vector3f& v) { return v.allFinite(); };
+    if (!std::ranges::all_of(cloud.points_m, is_finite) ||
+        !std::ranges::all_of(cloud.normals, is_finite)) {
+      throw UsageError("page: cloud '" + cloud.name + "' has points that are nowhere");
+    }
     if (cloud.normals.size() != cloud.points_m.size() ||
         cloud.colorings.size() != scene.colorings.size() ||
         !std::ranges::all_of(cloud.colorings, as_many)) {
@@ -198,10 +211,9 @@ ReportPage::ReportPage(std::string title, const std::string& subtitle) : title_(
 }
 
 void ReportPage::add_verdict(Verdict verdict, const std::string& sentence) {
-  constexpr std::array names{"Looks right.", "To be looked at with care.", "Not to be trusted."};
-  body_ += "<div class=\"verdict " + std::string(word_of(verdict)) + "\">" +
-           element("b", names.at(static_cast<std::size_t>(verdict))) + escaped(sentence) +
-           "</div>\n";
+  const VerdictWords words = words_of(verdict);
+  body_ += "<div class=\"verdict " + std::string(words.css_class) + "\">" +
+           element("b", words.text) + escaped(sentence) + "</div>\n";
 }
 
 void ReportPage::add_warnings(const std::vector<std::string>& warnings) {
@@ -251,8 +263,7 @@ void ReportPage::add_strip(const std::vector<StripFrame>& frames,
 
 void ReportPage::add_scene(const PageScene& scene) {
   check(scene);
-  const std::string number = has_scene_ ? std::to_string(body_.size()) : "";  // names groups apart
-  has_scene_ = true;
+  const std::string number = std::to_string(scenes_++);  // tells the groups of scenes apart
   std::string json = json_of(scene).dump();
   body_ += "<div class=\"scene\">\n<div class=\"controls\" hidden>\n" +
            choice("cloud" + number, "Map:", scene.clouds) + "</div>\n" +
@@ -278,7 +289,7 @@ std::string ReportPage::html() const {
       element("title", title_) + "<link rel=\"icon\" href=\"data:,\">\n<style>" +
       std::string(page_texts::style) + "</style>\n</head>\n<body>\n<main>\n" + body_ + "</main>\n";
   if (has_strip_) out += script(page_texts::strip);
-  if (has_scene_) {
+  if (scenes_ > 0) {
     out += "<!--\n" + std::string(page_texts::three_notice) + "-->\n" + script(page_texts::three) +
            script(page_texts::orbit_controls) + script(page_texts::scene);
   }

@@ -98,7 +98,9 @@
     const { min, max } = boxOfMost(clouds[0].points.geometry.attributes.position.array);
     const middle = min.clone().add(max).multiplyScalar(0.5);
     const lookFrom = (direction) => {
-      const fill = 0.5 * max.distanceTo(min) / Math.sin(camera.fov / 2 * Math.PI / 180);
+      const halfAngle = camera.fov / 2 * Math.PI / 180;
+      const narrower = Math.atan(Math.tan(halfAngle) * Math.min(1, camera.aspect));
+      const fill = 0.5 * max.distanceTo(min) / Math.sin(narrower);
       controls.target.copy(middle);
       camera.position.copy(middle).addScaledVector(direction.normalize(), 0.85 * fill);
       controls.update();

@@ -20,7 +20,7 @@ document.querySelectorAll(".strip").forEach((strip) => {
   slider.addEventListener("input", () => show(Number(slider.value)));
   strip.addEventListener("keydown", (event) => {
     const steps = { ArrowLeft: -1, ArrowRight: 1 };
-    if (!(event.key in steps)) return;
+    if (!(event.key in steps) || event.altKey || event.ctrlKey || event.metaKey) return;
     event.preventDefault();  // the slider would step as well
     show(shown + steps[event.key]);
   });

@@ -9,18 +9,19 @@
 
 namespace tofmap {
 
-/// How right the ranges of one frame are.
+/// How right the ranges of one frame are. NaN where there is nothing to be right or wrong.
 struct RangeScore {
   double wrong_wrap_percent = 0;  ///< of the pixels with a range: off by more than λ_A / 2
   double coverage_percent = 0;    ///< of the pixels with a return and a known truth: have a range
-  double range_rmse_m = 0;        ///< of those that are not wrong; NaN if there is none
+  double range_rmse_m = 0;        ///< of those that are not wrong
 };
 
-/// Compares a range image with true radial ranges (metres, NaN unknown). Pixels that have no
-/// return (reason no_return) or no truth do not count. Throws UsageError if sizes differ.
+/// Compares a range image with true radial ranges (metres; unknown if not finite or negative).
+/// Pixels that have no return (reason no_return) or no truth do not count. Throws UsageError if
+/// sizes differ.
 RangeScore score_ranges(const RangeImage& image, const ImageF& truth_m, double wavelength_a_m);
 
-/// Mean over frames; frames without an RMSE do not count for it.
+/// Mean over frames, of each measure over those that have it; NaN if none has.
 RangeScore mean_score(const std::vector<RangeScore>& frames);
 
 /// Errors by how far away the surface truly is, over any number of frames.

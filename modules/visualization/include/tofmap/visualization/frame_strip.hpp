@@ -29,7 +29,7 @@ struct FrameStrip {
 
 /// Amplitude, wrapped range, wrap count, confidence, unwrapped range, removed pixels by reason and,
 /// where the truth is known, wraps that are wrong. A pixel of the camera is one of the picture, and
-/// all frames share their scales.
+/// all frames share their scales. Throws UsageError if the images of a frame differ in size.
 FrameStrip frame_strip(const std::vector<StagedFrame>& frames, double wavelength_m);
 
 }  // namespace tofmap

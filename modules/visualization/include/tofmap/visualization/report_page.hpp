@@ -12,7 +12,7 @@
 
 namespace tofmap {
 
-/// How far a result can be trusted.
+/// How far a result can be trusted, from best to worst.
 enum class Verdict { good, doubtful, bad };
 
 struct PageFigure {
@@ -37,7 +37,7 @@ struct StripFrame {
 struct SceneCloud {
   std::string name;
   std::vector<Eigen::Vector3f> points_m;
-  std::vector<Eigen::Vector3f> normals;
+  std::vector<Eigen::Vector3f> normals;  ///< of unit length, or zero: not known
   std::vector<std::vector<Rgb>> colorings;
 };
 
@@ -88,7 +88,7 @@ class ReportPage {
   std::string title_;
   std::string body_;
   bool has_strip_ = false;
-  bool has_scene_ = false;
+  int scenes_ = 0;
 };
 
 }  // namespace tofmap

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "consistency_report.hpp"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace tofmap::app {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(ConsistencyDoubts, BeginBeyondTheirLimits) {
+  Consistency consistency;
+  consistency.contradicted_percent = 3;
+  consistency.beat_misfit_percent = 10;
+  EXPECT_THAT(doubts_about(consistency), IsEmpty());
+  consistency.contradicted_percent = 3.1;
+  EXPECT_THAT(doubts_about(consistency), ElementsAre(HasSubstr("contradict each other in 3.1 %")));
+  consistency.beat_misfit_percent = 11;
+  EXPECT_THAT(doubts_about(consistency), ElementsAre(HasSubstr("contradict"), HasSubstr("11 %")));
+}
+
+TEST(ConsistencyDoubts, AreNoneAboutWhatIsNotKnown) {
+  EXPECT_THAT(doubts_about({NAN, NAN, NAN, NAN, NAN, NAN}), IsEmpty());
+}
+
+TEST(ConsistencyJson, TellsWhatIsNotKnown) {
+  Consistency consistency;
+  consistency.curl_violations_per_frame = NAN;
+  const auto json = consistency_json(consistency);
+  EXPECT_TRUE(json["curl_violations_per_frame"].is_null());
+  EXPECT_EQ(json["contradicted_percent"], 0);
+}
+
+}  // namespace
+}  // namespace tofmap::app
