@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "command.hpp"
+#include "frame_report.hpp"
 #include "interruption.hpp"
 #include "options.hpp"
 #include "output_file.hpp"
@@ -114,6 +115,9 @@ struct CollectedSamples {
   std::vector<RangeSample> samples;
   std::size_t frames = 0;
   std::vector<DualFrequencyFrame> first;  ///< of the frames
+  int read = 0;
+  int damaged = 0;
+  std::string first_damage;
   std::size_t repeated = 0;  ///< frames that say what the one before said, and were left out
 };
 
@@ -131,7 +135,12 @@ CollectedSamples collect_samples(const SequenceReader& source, ReferenceRanges& 
   for (int i = 0; i < frames && !is_interrupted(); i += every_frame) {
     progress.show(i);
     const SourcedFrame sourced = source.read(i);
-    if (!sourced.frame) continue;
+    ++collected.read;
+    if (!sourced.frame) {
+      if (collected.first_damage.empty()) collected.first_damage = sourced.damage;
+      ++collected.damaged;
+      continue;
+    }
     const bool is_repeated = same_values(sourced.frame->phase_a, last_phase);
     last_phase = sourced.frame->phase_a;
     collected.repeated += is_repeated ? 1 : 0;
@@ -164,6 +173,11 @@ void print_error(const char* name, const PhaseError& error, double offset_sigma_
 void print_samples(const CollectedSamples& collected, const SensorModel& sensor) {
   std::printf("from %zu pixels of %s\n", collected.samples.size(),
               counted(collected.frames, "frame").c_str());
+  if (collected.damaged > 0) {
+    std::printf("doubtful: %d of %s were damaged, the first: %s\n", collected.damaged,
+                counted(static_cast<std::size_t>(collected.read), "frame").c_str(),
+                collected.first_damage.c_str());
+  }
   if (collected.repeated > 0) {
     std::printf("doubtful: %s repeated the one before, and told nothing\n",
                 counted(collected.repeated, "frame").c_str());
@@ -208,6 +222,7 @@ int run_calibrate(const CalibrateArguments& arguments) {
   const CollectedSamples collected =
       collect_samples(source, ranges, options.calibration.every_frame, quiet);
   if (is_interrupted()) return exit_status::interrupted;
+  refuse_mostly_damaged(collected.damaged, collected.read, collected.first_damage);
   const PhaseErrorFit fit = fit_samples(collected.samples, reference, source, fit_options);
   CameraCalibration calibration;
   const SensorModel& sensor = source.sensor();

@@ -11,6 +11,7 @@
 #include "verdict.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include <nlohmann/json.hpp>
@@ -54,7 +55,7 @@ std::vector<RangeScore> scores_of(const MethodResult& result) {
 std::string told(const MethodResult& result) {
   std::string text;
   if (result.scores.surface) {
-    text = formatted("the map is %.0f mm off the true surface and shows %.1f %% of it",
+    text = formatted("the map is %.0f mm off the true surface and shows %.1f %% of what was seen",
                      1000 * result.scores.surface->accuracy_m,
                      result.scores.surface->completeness_percent);
   } else if (result.scores.trajectory) {
@@ -73,7 +74,9 @@ std::string told(const MethodResult& result) {
 
 std::string sentence_of(const EvaluationPageSubject& subject) {
   const MethodResult& with = with_unwrapping(subject);
-  std::string text = "With unwrapping (" + with.name + ") " + told(with);
+  std::string text =
+      (with.name == "none" ? "Without unwrapping " : "With unwrapping (" + with.name + ") ") +
+      told(with);
   if (const MethodResult* without = without_unwrapping(subject)) {
     text += "; without it, " + told(*without);
   }
@@ -92,14 +95,18 @@ std::vector<std::string> warnings_of(const EvaluationPageSubject& subject) {
   return warnings;
 }
 
-Verdict verdict_of(const EvaluationPageSubject& subject) {
+Judgement judgement_of(const EvaluationPageSubject& subject) {
   const MethodResult& with = with_unwrapping(subject);
   if (with.map) {
-    return verdict_on(*with.map, with.name, with.scores.surface,
-                      subject.options.pipeline.map.voxel_m, !warnings_of(subject).empty());
+    return judge({.map = *with.map,
+                  .method = with.name,
+                  .score = with.scores.surface,
+                  .voxel_m = subject.options.pipeline.map.voxel_m,
+                  .is_seen_twice = !std::isnan(with.consistency->contradicted_percent),
+                  .is_warned = !warnings_of(subject).empty()});
   }
   const Verdict of_ranges = verdict_on_wraps(mean_score(scores_of(with)).wrong_wrap_percent);
-  return std::max(of_ranges, subject.warnings.empty() ? Verdict::good : Verdict::doubtful);
+  return {std::max(of_ranges, subject.warnings.empty() ? Verdict::good : Verdict::doubtful), {}};
 }
 
 std::vector<ShownMap> shown_maps(const EvaluationPageSubject& subject) {
@@ -153,7 +160,8 @@ void write_evaluation_page(const std::filesystem::path& result,
   const MethodResult& with = with_unwrapping(subject);
   ReportPage page("With and without unwrapping: " + subject.recording.folder().string(),
                   "tofmap " TOFMAP_VERSION);
-  page.add_verdict(verdict_of(subject), sentence_of(subject));
+  const Judgement judgement = judgement_of(subject);
+  page.add_verdict(judgement.verdict, sentence_of(subject) + told_reasons(judgement));
   page.add_warnings(warnings_of(subject));
   page.add_heading("Methods");
   page.add_table(methods_table(subject.report));

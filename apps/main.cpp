@@ -22,6 +22,13 @@ int fail(int status, const std::string& message) {
   return status;
 }
 
+/// What was to be printed may be the result, as of `config`.
+void flush_output() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    throw tofmap::InputError("standard output cannot be written; is the disk full?");
+  }
+}
+
 int run(int argc, char** argv) {
   using namespace tofmap::app;
   CLI::App program("Maps of large rooms from dual-frequency time-of-flight cameras", "tofmap");
@@ -54,7 +61,9 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   tofmap::app::watch_for_interruption();
   try {
-    return run(argc, argv);
+    const int status = run(argc, argv);
+    flush_output();
+    return status;
   } catch (const tofmap::UsageError& error) {
     return fail(exit_status::bad_use, error.what());
   } catch (const tofmap::InputError& error) {

@@ -11,6 +11,7 @@
 #include "verdict.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <tofmap/core/text.hpp>
 #include <tofmap/visualization/plot.hpp>
@@ -76,13 +77,13 @@ std::string sentence_of(const MapPageSubject& subject, const MapScores& scores,
     text += "Nothing was unwrapped. ";
   } else {
     text += formatted(
-        "%.0f %% of the ranges were beyond the %.2f m that one frequency can tell and have been "
-        "unwrapped. ",
+        "Unwrapping moved %.0f %% of the ranges, to beyond the %.2f m that one frequency can "
+        "tell. ",
         moved_percent, subject.sensor.modulation.wavelength_a_m());
   }
   if (scores.surface) {
     text +=
-        formatted("Against the truth, the map is %.0f mm off and shows %.1f %% of the surface. ",
+        formatted("Against the truth, the map is %.0f mm off and shows %.1f %% of what was seen. ",
                   1000 * scores.surface->accuracy_m, scores.surface->completeness_percent);
   }
   if (scores.trajectory) {
@@ -116,7 +117,8 @@ PageTable summary_table(const RoomMap& map, const MapScores& scores) {
   if (scores.surface) {
     add("map error, m", formatted("%.4f", scores.surface->accuracy_m));
     add("map points more than 0.2 m off, %", formatted("%.2f", scores.surface->far_percent));
-    add("surface shown, %", formatted("%.1f", scores.surface->completeness_percent));
+    add("surface shown of what was seen, %",
+        formatted("%.1f", scores.surface->completeness_percent));
   }
   return table;
 }
@@ -188,10 +190,15 @@ void write_map_page(const std::filesystem::path& result, const MapPageSubject& s
 
   ReportPage page("Map of " + subject.source,
                   "tofmap " TOFMAP_VERSION ", method " + subject.options.pipeline.unwrap.method);
-  const Verdict verdict =
-      verdict_on(map, subject.options.pipeline.unwrap.method, scores.surface,
-                 subject.options.pipeline.map.voxel_m, !subject.warnings.empty());
-  page.add_verdict(verdict, sentence_of(subject, scores, sample.moved_percent));
+  const Judgement judgement =
+      judge({.map = map,
+             .method = subject.options.pipeline.unwrap.method,
+             .score = scores.surface,
+             .voxel_m = subject.options.pipeline.map.voxel_m,
+             .is_seen_twice = !std::isnan(subject.consistency.contradicted_percent),
+             .is_warned = !subject.warnings.empty()});
+  page.add_verdict(judgement.verdict,
+                   sentence_of(subject, scores, sample.moved_percent) + told_reasons(judgement));
   page.add_warnings(subject.warnings);
   add_maps(page, shown_maps(subject, truth, scores, wrapped), truth.poses, subject.options.report);
   add_errors(page, subject, truth, scores, sample);

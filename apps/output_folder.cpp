@@ -3,8 +3,11 @@
 
 #include "output_folder.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fstream>
+#include <vector>
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -42,6 +45,26 @@ bool holds_recording(const fs::path& folder) {
   return false;
 }
 
+/// Everything that a command puts into a result folder, or a simulated recording.
+constexpr std::array result_names{
+    "amplitude_a",   "amplitude_b", "confidence",    "frames.txt",     "groundtruth.txt",
+    "joint",         "jump",        "keyframes.txt", "label_truth",    "map.pcd",
+    "map.ply",       "merged.ply",  "mesh.ply",      "none",           "options.yaml",
+    "phase_a",       "phase_b",     "pictures",      "pixel",          "range",
+    "range_truth",   "reason",      "report.html",   "report.json",    "scene.ply",
+    "sequence.yaml", "single",      "state.bin",     "trajectory.txt", "transforms.json",
+    "wraps"};
+
+/// The first thing in a folder that no command puts there; empty if there is none.
+std::string foreign_name(const fs::path& folder) {
+  std::vector<std::string> foreign;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (std::ranges::find(result_names, name) == result_names.end()) foreign.push_back(name);
+  }
+  return foreign.empty() ? "" : *std::ranges::min_element(foreign);
+}
+
 void refuse_foreign(const fs::path& folder, Replaces replaces) {
   if (!fs::exists(folder)) return;
   if (!fs::is_directory(folder)) {
@@ -57,6 +80,12 @@ void refuse_foreign(const fs::path& folder, Replaces replaces) {
     throw InputError(folder.string() +
                      ": is or holds a recording, which the result would replace; choose another "
                      "output folder");
+  }
+  const std::string foreign = foreign_name(folder);
+  if (!foreign.empty()) {
+    throw InputError(folder.string() + ": holds " + foreign +
+                     ", which no result of tofmap has and which would be lost; move it away, or "
+                     "choose another output folder");
   }
 }
 

@@ -17,7 +17,8 @@ enum class Replaces {
 /// it, which `commit` moves into place. Without commit nothing is left.
 ///
 /// An existing folder is replaced if it is empty or holds an earlier result of this program
-/// (it has an options.yaml); anything else is refused, so that no data of others is lost. So is a
+/// (it has an options.yaml, and nothing that no result has); anything else is refused, so that no
+/// data of others is lost. So is a
 /// folder that is or holds a recording, unless the command makes recordings.
 class OutputFolder {
  public:

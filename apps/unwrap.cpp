@@ -12,6 +12,7 @@
 #include "unwrapped_frame.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -62,6 +63,7 @@ int run_unwrap(const UnwrapArguments& arguments) {
   OptionTable table = arguments.common.resolve("unwrap", options);
   arguments.recording.apply(table);
   if (!arguments.method.empty()) table.set("unwrap.method", arguments.method);
+  if (std::isnan(arguments.min_confidence)) throw UsageError("--min-confidence: is no number");
 
   const SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
   const Trajectory poses =
@@ -113,6 +115,11 @@ int run_unwrap(const UnwrapArguments& arguments) {
   out.write_text("report.json", report.dump(1) + "\n");
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit();
+  const bool is_empty = std::ranges::none_of(
+      frames, [](const Json& frame) { return frame.value("valid_pixels", 0) > 0; });
+  if (is_empty) {
+    std::fprintf(stderr, "tofmap: no pixel has a range; 'tofmap info' tells what is wrong\n");
+  }
   if (!arguments.common.quiet) {
     std::printf("%zu of %d frames unwrapped, %d damaged: %s\n", frames.size(), total, damaged,
                 out.final_path().c_str());

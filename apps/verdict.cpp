@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include <tofmap/core/text.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
 
 namespace tofmap::app {
@@ -33,17 +34,42 @@ Verdict verdict_on(const MapScore& score, double voxel_m) {
   return score.accuracy_m <= voxel_m ? Verdict::good : Verdict::doubtful;
 }
 
-Verdict verdict_on(const RoomMap& map, const std::string& method,
-                   const std::optional<MapScore>& score, double voxel_m, bool is_warned) {
+Judgement judge(const MapEvidence& evidence) {
   constexpr double half_percent = 50;        // of the frames: else it is a map of something else
   constexpr double nearly_all_percent = 95;  // some are lost in any recording
   constexpr double some_percent = 10;        // of the frames may lean on the motion before them
+  const RoomMap& map = evidence.map;
+  Judgement judgement;
+  const auto hold_against = [&](Verdict verdict, const std::string& reason) {
+    judgement.verdict = std::max(judgement.verdict, verdict);
+    judgement.reasons.push_back(reason);
+  };
+  if (map.surface.empty()) hold_against(Verdict::bad, "the map is empty");
+  if (evidence.method == "none") hold_against(Verdict::bad, "nothing was unwrapped");
   const double placed = placed_percent(map);
-  if (map.surface.empty() || placed < half_percent || method == "none") return Verdict::bad;
-  const Verdict of_surface = score ? verdict_on(*score, voxel_m) : Verdict::good;
-  const bool is_doubted = is_warned || map.interrupted || placed < nearly_all_percent ||
-                          degenerate_percent(map) > some_percent;
-  return std::max(of_surface, is_doubted ? Verdict::doubtful : Verdict::good);
+  if (placed < nearly_all_percent) {
+    hold_against(placed < half_percent ? Verdict::bad : Verdict::doubtful,
+                 formatted("%.0f %% of the frames could not be placed", 100 - placed));
+  }
+  const Verdict of_surface =
+      evidence.score ? verdict_on(*evidence.score, evidence.voxel_m) : Verdict::good;
+  if (of_surface != Verdict::good) {
+    hold_against(of_surface, "its error is larger than its voxels");
+  }
+  if (degenerate_percent(map) > some_percent) {
+    hold_against(
+        Verdict::doubtful,
+        formatted("in %.0f %% of the frames no surface held a direction", degenerate_percent(map)));
+  }
+  if (!evidence.is_seen_twice) hold_against(Verdict::doubtful, "no place was seen by two frames");
+  if (map.interrupted) hold_against(Verdict::doubtful, "the run was interrupted");
+  if (evidence.is_warned) hold_against(Verdict::doubtful, "the warnings below");
+  return judgement;
+}
+
+std::string told_reasons(const Judgement& judgement) {
+  if (judgement.reasons.empty()) return "";
+  return " Held against it: " + joined(judgement.reasons, "; ") + ".";
 }
 
 Verdict verdict_on_wraps(double wrong_wrap_percent) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <tofmap/evaluation/map_score.hpp>
 #include <tofmap/visualization/report_page.hpp>
@@ -20,12 +21,29 @@ namespace tofmap::app {
 /// or if it is empty.
 Verdict verdict_on(const MapScore& score, double voxel_m);
 
-/// Of a map made by `method`: the worst of what is known of it. `score` is of its surface, if that
-/// is known; `is_warned` tells whether recording or map are doubted for anything else.
-Verdict verdict_on(const RoomMap& map, const std::string& method,
-                   const std::optional<MapScore>& score, double voxel_m, bool is_warned);
+/// A verdict, and why it is no better.
+struct Judgement {
+  Verdict verdict = Verdict::good;
+  std::vector<std::string> reasons;
+};
 
-/// Of ranges alone; NaN: not known.
+/// What is known of a map when it is judged.
+struct MapEvidence {
+  const RoomMap& map;
+  std::string method;             ///< of unwrapping
+  std::optional<MapScore> score;  ///< of its surface, if the truth is known
+  double voxel_m = 0;
+  bool is_seen_twice = true;  ///< frames overlap, so that they could have contradicted each other
+  bool is_warned = false;     ///< recording or map are doubted for anything else
+};
+
+/// The worst of all that is known.
+Judgement judge(const MapEvidence& evidence);
+
+/// " Held against it: …", to go on a sentence with; empty if there is nothing.
+std::string told_reasons(const Judgement& judgement);
+
+/// Of ranges alone; NaN: not known, and so to be looked at.
 Verdict verdict_on_wraps(double wrong_wrap_percent);
 
 /// Frames that were placed, and those of them with a direction that no surface held, of all frames

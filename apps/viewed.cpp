@@ -17,6 +17,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Along the longer side of a room, from its middle.
+Viewpoint viewpoint_in_the_middle(const Eigen::AlignedBox3d& box_m) {
+  Viewpoint viewpoint;
+  if (box_m.isEmpty()) return viewpoint;
+  const bool is_wide = box_m.sizes().x() > box_m.sizes().y();
+  viewpoint.up = Eigen::Vector3d::UnitZ();
+  viewpoint.eye_m = box_m.center();
+  viewpoint.target_m =
+      viewpoint.eye_m + (is_wide ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY());
+  return viewpoint;
+}
+
 /// Triangles of others, in the grey of their reflectance.
 class ViewedMesh final : public Viewed {
  public:
@@ -36,7 +48,8 @@ class ViewedMesh final : public Viewed {
 
   Viewpoint viewpoint(const std::string& from, double aspect) const override {
     const Eigen::AlignedBox3d box_m = bounds(mesh_);
-    return from == "above" ? viewpoint_above(box_m, aspect) : viewpoint_outside(box_m);
+    if (from == "above") return viewpoint_above(box_m, aspect);
+    return from == "inside" ? viewpoint_in_the_middle(box_m) : viewpoint_outside(box_m);
   }
 
   Picture legend() const override { return {}; }

@@ -29,9 +29,17 @@ MapScore score_of_error(double accuracy_m) {
   return score;
 }
 
-/// As `map` gives it where the truth is not known and nothing is doubted.
-Verdict verdict_without_truth(const RoomMap& map) {
-  return verdict_on(map, "joint", std::nullopt, voxel_m, false);
+/// As `map` has it where the truth is not known and nothing is doubted.
+MapEvidence evidence_of(const RoomMap& map) {
+  return {.map = map, .method = "joint", .score = std::nullopt, .voxel_m = voxel_m};
+}
+
+Verdict verdict_without_truth(const RoomMap& map) { return judge(evidence_of(map)).verdict; }
+
+Verdict verdict_with_error(const RoomMap& map, double accuracy_m) {
+  MapEvidence evidence = evidence_of(map);
+  evidence.score = score_of_error(accuracy_m);
+  return judge(evidence).verdict;
 }
 
 TEST(Verdict, GoesByTheMapErrorInVoxels) {
@@ -67,13 +75,35 @@ TEST(Verdict, GoesByDirectionsThatNoSurfaceHeld) {
 
 TEST(Verdict, IsTheWorstOfAllThatIsKnown) {
   RoomMap map = good_map();
-  EXPECT_EQ(verdict_on(map, "joint", score_of_error(0.01), voxel_m, true), Verdict::doubtful);
-  EXPECT_EQ(verdict_on(map, "none", score_of_error(0.01), voxel_m, false), Verdict::bad);
-  EXPECT_EQ(verdict_on(map, "joint", score_of_error(1), voxel_m, false), Verdict::bad);
+  EXPECT_EQ(verdict_with_error(map, 0.01), Verdict::good);
+  EXPECT_EQ(verdict_with_error(map, 1), Verdict::bad);
+  MapEvidence evidence = evidence_of(map);
+  evidence.score = score_of_error(0.05);
+  evidence.method = "none";
+  EXPECT_EQ(judge(evidence).verdict, Verdict::bad);
   map.interrupted = true;
-  EXPECT_EQ(verdict_on(map, "joint", score_of_error(0.01), voxel_m, false), Verdict::doubtful);
+  EXPECT_EQ(verdict_with_error(map, 0.01), Verdict::doubtful);
   map.trajectory.clear();
-  EXPECT_EQ(verdict_on(map, "joint", score_of_error(0.05), voxel_m, false), Verdict::bad);
+  EXPECT_EQ(verdict_with_error(map, 0.05), Verdict::bad);
+}
+
+TEST(Verdict, IsNoBetterThanWhatCouldBeChecked) {
+  const RoomMap map = good_map();
+  MapEvidence evidence = evidence_of(map);
+  evidence.is_seen_twice = false;
+  EXPECT_EQ(judge(evidence).verdict, Verdict::doubtful);
+  evidence.is_seen_twice = true;
+  evidence.is_warned = true;
+  EXPECT_EQ(judge(evidence).verdict, Verdict::doubtful);
+}
+
+TEST(Verdict, TellsItsReasons) {
+  RoomMap map = good_map();
+  EXPECT_EQ(told_reasons(judge(evidence_of(map))), "");
+  map.trajectory.resize(90);
+  map.interrupted = true;
+  EXPECT_EQ(told_reasons(judge(evidence_of(map))),
+            " Held against it: 10 % of the frames could not be placed; the run was interrupted.");
 }
 
 TEST(Verdict, OnRangesGoesByWrongWraps) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tofmap/core/error.hpp>
@@ -70,6 +71,18 @@ TEST(ModulationValidation, RefusesEqualFrequenciesAndTellsWhy) {
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("two different frequencies"), std::string::npos);
+  }
+}
+
+TEST(ModulationValidation, AsksForHertzWhereFrequenciesAreNoCameras) {
+  for (const Modulation& wrong :
+       {Modulation{29, 31}, Modulation{29e6, 31}, Modulation{29e12, 31e12}}) {
+    try {
+      validate(wrong);
+      FAIL() << wrong.frequency_a_hz;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("in hertz"));
+    }
   }
 }
 

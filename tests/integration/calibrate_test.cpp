@@ -3,6 +3,7 @@
 
 #include "program.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <vector>
@@ -155,6 +156,21 @@ TEST_F(Calibrate, DoubtsImagesThatAreMixedUp) {
   const Finished finished =
       run_program({"calibrate", sequence_.string(), "--out", (folder_.path() / "c.yaml").string()});
   EXPECT_THAT(finished.out, testing::HasSubstr("mixed up"));
+}
+
+TEST_F(Calibrate, RefusesRecordingsThatAreMostlyDamaged) {
+  const auto run_after_damage_to = [&](std::size_t frames) {
+    const std::vector<std::string> names = names_in(sequence_ / "phase_a");
+    for (std::size_t i = 0; i < std::min(frames, names.size()); ++i) {
+      std::ofstream(sequence_ / "phase_a" / names[i]) << "no image";
+    }
+    return run_program(
+        {"calibrate", sequence_.string(), "--out", (folder_.path() / "camera.yaml").string()});
+  };
+  EXPECT_THAT(run_after_damage_to(1).out, testing::HasSubstr("doubtful: 1 of"));
+  const Finished finished = run_after_damage_to(1000);
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, testing::HasSubstr("damaged"));
 }
 
 TEST_F(Calibrate, SaysWhatIsMissing) {

@@ -3,9 +3,11 @@
 
 #include "program.hpp"
 
+#include <cstdlib>
 #include <fstream>
 
 #include <gmock/gmock.h>
+#include <sys/wait.h>
 
 namespace tofmap::test {
 namespace {
@@ -39,6 +41,16 @@ class OutputFolder : public WithRecording {
     }
   }
 };
+
+TEST_F(FullDisk, OfStandardOutputIsNoSuccess) {
+  if (!fs::is_character_file("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  const fs::path said = folder_.path() / "said";
+  const std::string command =
+      std::string(TOFMAP_PROGRAM) + " config map > /dev/full 2> " + said.string();
+  const int status = std::system(command.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 3);
+  EXPECT_THAT(read_text(said), HasSubstr("is the disk full?"));
+}
 
 TEST_F(OutputFolder, IsMadeWithItsParents) {
   const fs::path deep = folder_.path() / "a" / "b" / "result";
@@ -75,6 +87,26 @@ TEST_F(OutputFolder, WithFilesOfOthersIsKept) {
   std::ofstream(out_ / "thesis.txt") << "mine";
   expect_refusal(out_, "no result of tofmap");
   EXPECT_EQ(read_text(out_ / "thesis.txt"), "mine");
+}
+
+TEST_F(OutputFolder, OfAResultWithFilesOfOthersIsKept) {
+  ASSERT_EQ(run("unwrap").status, 0);
+  std::ofstream(out_ / "thesis.txt") << "mine";
+  expect_refusal(out_, "holds thesis.txt, which no result of tofmap has");
+  EXPECT_EQ(read_text(out_ / "thesis.txt"), "mine");
+}
+
+TEST_F(OutputFolder, OfAnyEarlierResultIsReplaced) {
+  for (const std::string command : {"unwrap", "map", "evaluate"}) {
+    ASSERT_EQ(run(command).status, 0) << command;
+    ASSERT_EQ(run(command).status, 0) << command << ": its own, with pictures and page";
+  }
+  ASSERT_EQ(run("map", {"--pcd"}).status, 0);
+  ASSERT_EQ(run("map").status, 0);
+  const std::string simulated = (folder_.path() / "simulated").string();
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_EQ(run_program({"simulate", "wall", "--frames", "2", "--out", simulated}).status, 0);
+  }
 }
 
 TEST_F(OutputFolder, ThatIsTheRecordingIsKept) {

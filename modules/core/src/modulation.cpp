@@ -19,6 +19,14 @@ void validate(const Modulation& modulation) {
     message << "modulation: frequencies must be positive, got " << a << " and " << b << " Hz";
     throw InputError(message.str());
   }
+  constexpr double lowest_hz = 1e4;    // 15 km of range; megahertz taken for hertz are far below
+  constexpr double highest_hz = 1e11;  // 1.5 mm
+  if (std::min(a, b) < lowest_hz || std::max(a, b) > highest_hz) {
+    std::ostringstream message;
+    message << "modulation: frequencies of " << a << " and " << b
+            << " Hz are none of a time-of-flight camera; they are given in hertz, as 29e6";
+    throw InputError(message.str());
+  }
   if (std::abs(a - b) < 1e-6 * a) {
     std::ostringstream message;
     message << "modulation: frequency_a_hz and frequency_b_hz are equal (" << a

@@ -17,7 +17,8 @@ struct Modulation {
   double wavelength_b_m() const { return speed_of_light_m_per_s / (2 * frequency_b_hz); }
 };
 
-/// Throws InputError if a frequency is not a positive number, or both are equal (then the
+/// Throws InputError if a frequency is not a positive number or none of a camera's (below 10 kHz,
+/// above 100 GHz: wrong units), or both are equal (then the
 /// second image says nothing about wraps).
 void validate(const Modulation& modulation);
 
