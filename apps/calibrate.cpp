@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "command.hpp"
-#include "frame_report.hpp"
-#include "interruption.hpp"
-#include "options.hpp"
-#include "output_file.hpp"
-#include "progress.hpp"
-#include "recording.hpp"
+#include "console/interruption.hpp"
+#include "console/progress.hpp"
+#include "input/recording.hpp"
+#include "options/options.hpp"
+#include "output/output_file.hpp"
+#include "reports/frame_report.hpp"
 
 #include <cmath>
 #include <cstdint>

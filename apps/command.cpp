@@ -3,7 +3,7 @@
 
 #include "command.hpp"
 
-#include "options.hpp"
+#include "options/options.hpp"
 
 #include <CLI/CLI.hpp>
 #include <omp.h>
@@ -27,6 +27,11 @@ OptionTable CommonArguments::resolve(const std::string& command, ProgramOptions&
   if (threads >= 0) options.run.threads = threads;
   if (options.run.threads > 0) omp_set_num_threads(options.run.threads);
   return table;
+}
+
+void add_method_option(CLI::App& command, std::string& method) {
+  command.add_option("--method", method, "how to unwrap (default: unwrap.method)")
+      ->type_name("{" + unwrap_method_names(",") + "}");
 }
 
 }  // namespace tofmap::app

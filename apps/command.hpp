@@ -40,6 +40,9 @@ struct CommonArguments {
   OptionTable resolve(const std::string& command, ProgramOptions& options) const;
 };
 
+/// Adds --method, which `method` is empty without.
+void add_method_option(CLI::App& command, std::string& method);
+
 /// Where commands leave their exit status.
 struct Outcome {
   int status = exit_status::done;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "command.hpp"
-#include "options.hpp"
+#include "options/options.hpp"
 
 #include <cstdio>
 #include <memory>

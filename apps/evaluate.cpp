@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "command.hpp"
-#include "evaluation_page.hpp"
-#include "evaluation_report.hpp"
-#include "method_run.hpp"
-#include "options.hpp"
-#include "output_folder.hpp"
-#include "recording.hpp"
-#include "watched_source.hpp"
+#include "console/interruption.hpp"
+#include "input/recording.hpp"
+#include "input/watched_source.hpp"
+#include "options/options.hpp"
+#include "output/output_folder.hpp"
+#include "reports/evaluation_page.hpp"
+#include "reports/evaluation_report.hpp"
+#include "runs/method_run.hpp"
 
 #include <cstdio>
 #include <memory>
@@ -68,6 +69,26 @@ void write_method(const OutputFolder& out, const MethodResult& result) {
   write_trajectory(out.path() / result.name / "trajectory.txt", result.map->trajectory);
 }
 
+/// Adds pictures and page of the methods that were asked for, as far as they have results.
+void add_report(const std::filesystem::path& result, const std::vector<std::string>& methods,
+                EvaluationPageSubject subject, bool quiet) {
+  const ProgramOptions& options = subject.options;
+  const bool interrupted = subject.results.size() < methods.size();
+  const bool down_to_map = options.evaluation.down_to == "map";
+  if (!interrupted && (down_to_map || options.pictures.frames > 0)) {
+    add_pictures(result, [&](const std::filesystem::path& folder) {
+      write_method_pictures(folder, subject.recording, methods, options.pipeline.unwrap,
+                            options.pipeline.filters, options.pictures, quiet);
+      if (down_to_map) write_comparison(folder, subject.results, options.pictures);
+    });
+  }
+  if (interrupted) subject.warnings.push_back(what_is_missing(methods, subject.results));
+  write_evaluation_page(result, subject, quiet);
+  if (!quiet) {
+    std::printf("report: %s, figures: report.json beside it\n", (result / "report.html").c_str());
+  }
+}
+
 int run_evaluate(const EvaluateArguments& arguments) {
   ProgramOptions options;
   OptionTable table = arguments.common.resolve("evaluate", options);
@@ -98,24 +119,14 @@ int run_evaluate(const EvaluateArguments& arguments) {
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit();
   if (!results.empty()) print_table(report);
-  if (!results.empty() && !interrupted && (down_to_map || options.pictures.frames > 0)) {
-    add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
-      write_method_pictures(folder, source, methods, options.pipeline.unwrap,
-                            options.pipeline.filters, options.pictures, quiet);
-      if (down_to_map) write_comparison(folder, results, options.pictures);
-    });
-  }
-  if (!results.empty()) {
-    std::vector<std::string> warnings = doubts_about(source);
-    if (interrupted) warnings.push_back(what_is_missing(methods, results));
-    write_evaluation_page(out.final_path(), {source, truth, results, report, std::move(warnings),
-                                             options, table.to_yaml(false)});
-  }
-  if (!quiet) {
-    std::printf("report: %s, figures: report.json beside it\n",
-                (out.final_path() / "report.html").c_str());
-  }
-  return interrupted ? exit_status::interrupted : exit_status::done;
+  return add_to_result(
+      out.final_path(), interrupted ? exit_status::interrupted : exit_status::done, [&] {
+        if (results.empty()) return;
+        add_report(
+            out.final_path(), methods,
+            {source, truth, results, report, doubts_about(source), options, table.to_yaml(false)},
+            quiet);
+      });
 }
 
 }  // namespace

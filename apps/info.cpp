@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "command.hpp"
-#include "interruption.hpp"
-#include "options.hpp"
-#include "progress.hpp"
-#include "recording.hpp"
+#include "console/interruption.hpp"
+#include "console/progress.hpp"
+#include "input/recording.hpp"
+#include "options/options.hpp"
 
 #include <cmath>
 #include <cstdio>

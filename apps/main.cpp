@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "command.hpp"
-#include "interruption.hpp"
+#include "console/interruption.hpp"
 
 #include <cstdio>
 #include <exception>
@@ -64,6 +64,8 @@ int main(int argc, char** argv) {
     const int status = run(argc, argv);
     flush_output();
     return status;
+  } catch (const tofmap::app::Interrupted&) {
+    return fail(exit_status::interrupted, "interrupted before there was a result");
   } catch (const tofmap::UsageError& error) {
     return fail(exit_status::bad_use, error.what());
   } catch (const tofmap::InputError& error) {

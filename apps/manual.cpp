@@ -4,7 +4,7 @@
 #include "manual.hpp"
 
 #include "command.hpp"
-#include "options.hpp"
+#include "options/options.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -76,6 +76,26 @@ std::string name_of(const CLI::Option& positional) { return positional.get_name(
 
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
+/// The values that an option is limited to, as its type tells them ("{a,b,c}"), separated by
+/// spaces; empty if there are none.
+std::string choices_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t begin = type.find('{');
+  const std::size_t end = type.find('}');
+  if (begin == std::string::npos || end == std::string::npos) return "";
+  std::string choices = type.substr(begin + 1, end - begin - 1);
+  std::ranges::replace(choices, ',', ' ');
+  return choices;
+}
+
+/// Those of a setting ("a | b | c").
+std::string choices_of(const OptionText& setting) {
+  std::string choices = setting.allowed;
+  if (choices.find(" | ") == std::string::npos) return "";
+  std::erase(choices, '|');
+  return choices;
+}
+
 void write_command(std::ostream& out, const CLI::App& command) {
   out << ".SS " << roff("tofmap " + command.get_name());
   for (const CLI::Option* positional : positionals(command)) {
@@ -116,6 +136,30 @@ std::string cell(std::string text) {
     text.insert(i, "\\");
   }
   return text;
+}
+
+/// What options and settings that are limited to some values may be, as cases of bash.
+std::string choice_cases(const CLI::App& program) {
+  std::ostringstream out;
+  const auto add = [&](const std::string& pattern, const std::string& choices) {
+    if (!choices.empty()) out << "    " << pattern << ") choices=\"" << choices << "\" ;;\n";
+  };
+  for (const CLI::App* command : commands_of(program)) {
+    const std::string& name = command->get_name();
+    for (const CLI::Option* option : named_options(*command)) {
+      for (const std::string& word : option->get_lnames()) {
+        add(name + ":--" + word + ":", choices_of(*option));
+      }
+    }
+    for (const CLI::Option* positional : positionals(*command)) {
+      add(name + ":" + name + ":", choices_of(*positional));
+    }
+  }
+  ProgramOptions options;
+  for (const OptionText& setting : option_table("", options).texts()) {
+    add("*:" + setting.key(), choices_of(setting));
+  }
+  return out.str();
 }
 
 }  // namespace
@@ -165,11 +209,20 @@ std::string bash_completion(const CLI::App& program) {
     out << "    " << command->get_name() << ")\n      options=\"" << joined(options, " ")
         << "\"\n      keys=\"" << joined(keys, " ") << "\" ;;\n";
   }
+  // A setting and its value are three words, with = between.
   out << R"(  esac
   for ((i = COMP_CWORD - 1; i > 1; i--)); do
     [[ ${COMP_WORDS[i]} == -* ]] && option=${COMP_WORDS[i]} && break
   done
-  if [[ $word == -* ]]; then
+  local before=${COMP_WORDS[COMP_CWORD - 1]} key= choices=
+  [[ $word == = ]] && key=$before && word=
+  [[ $before == = ]] && key=${COMP_WORDS[COMP_CWORD - 2]}
+  case $command:$before:$key in
+)" << choice_cases(program)
+      << R"(  esac
+  if [[ $choices ]]; then
+    COMPREPLY=($(compgen -W "$choices" -- "$word"))
+  elif [[ $word == -* ]]; then
     COMPREPLY=($(compgen -W "$options" -- "$word"))
   elif [[ $option == --set && $word != = && ${COMP_WORDS[COMP_CWORD - 1]} != = ]]; then
     compopt -o nospace 2>/dev/null

@@ -2,18 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "command.hpp"
-#include "frame_report.hpp"
-#include "interruption.hpp"
-#include "live_input.hpp"
-#include "live_view.hpp"
-#include "map_page.hpp"
-#include "map_state.hpp"
-#include "options.hpp"
-#include "output_folder.hpp"
-#include "progress.hpp"
-#include "recording.hpp"
-#include "sampled_frames.hpp"
-#include "watched_source.hpp"
+#include "console/interruption.hpp"
+#include "console/progress.hpp"
+#include "input/live_input.hpp"
+#include "input/recording.hpp"
+#include "input/sampled_frames.hpp"
+#include "input/watched_source.hpp"
+#include "options/options.hpp"
+#include "output/output_folder.hpp"
+#include "reports/frame_report.hpp"
+#include "reports/map_page.hpp"
+#include "runs/map_state.hpp"
+#include "views/live_view.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -96,7 +96,7 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
   std::printf("%zu of %zu frames registered, %zu keyframes, %zu map points\n",
               map.trajectory.size(), map.frames.size(), map.keyframes.size(), map.surface.size());
   if (map.damaged() > 0) std::printf("%d frames were damaged, see report.json\n", map.damaged());
-  std::printf("map: %s, mesh, pictures and report.html beside it\n", (folder / "map.ply").c_str());
+  std::printf("map: %s, mesh beside it\n", (folder / "map.ply").c_str());
 }
 
 /// Puts the map in place; what it is doubted for comes to the doubts.
@@ -123,10 +123,15 @@ void add_page(const OutputFolder& out, const FinishedMap& finished, const MapOut
       {output.arguments.recording.sequence.string(), finished.map, output.sensor, output.frames,
        recording, warnings, finished.consistency, output.options, output.options_yaml},
       output.arguments.common.quiet);
+  if (!output.arguments.common.quiet) {
+    std::printf("report: %s, pictures beside it\n", (out.final_path() / "report.html").c_str());
+  }
 }
 
-int status_of(const RoomMap& map) {
-  return map.interrupted ? exit_status::interrupted : exit_status::done;
+/// The command's status, after `add` has added to the map that is in place.
+int status_with(const OutputFolder& out, const RoomMap& map, const std::function<void()>& add) {
+  return add_to_result(out.final_path(),
+                       map.interrupted ? exit_status::interrupted : exit_status::done, add);
 }
 
 /// A window for the map, if it is wanted.
@@ -178,15 +183,17 @@ int map_recording(const MapArguments& arguments, const ProgramOptions& options,
   if (map.interrupted && !arguments.common.quiet) {
     std::printf("interrupted; --resume goes on from %s\n", out.final_path().c_str());
   }
-  add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
-    write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
-    if (map.interrupted) return;
-    write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures,
-                         arguments.common.quiet);
+  const int status = status_with(out, map, [&] {
+    add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
+      write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
+      if (map.interrupted) return;
+      write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures,
+                           arguments.common.quiet);
+    });
+    add_page(out, finished, output, map.interrupted ? nullptr : &source, output.doubts);
   });
-  add_page(out, finished, output, map.interrupted ? nullptr : &source, output.doubts);
-  if (view) view->show_result(map);
-  return status_of(map);
+  if (view && status == exit_status::done) view->show_result(map);
+  return status;
 }
 
 int map_device(const MapArguments& arguments, const ProgramOptions& options,
@@ -220,16 +227,18 @@ int map_device(const MapArguments& arguments, const ProgramOptions& options,
   if (!losses.empty() && !arguments.common.quiet) {
     std::printf("not mapped: %s; see report.json\n", losses.c_str());
   }
-  add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
-    write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
+  const int status = status_with(out, map, [&] {
+    add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
+      write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
+    });
+    std::vector<std::string> warnings = output.doubts;
+    if (!losses.empty()) warnings.push_back("not mapped: " + losses);
+    add_page(out, finished, output, nullptr, warnings);
   });
-  std::vector<std::string> warnings = output.doubts;
-  if (!losses.empty()) warnings.push_back("not mapped: " + losses);
-  add_page(out, finished, output, nullptr, warnings);
-  if (view) view->show_result(map);
+  if (view && status == exit_status::done) view->show_result(map);
   const std::string silence = input.silence();
   if (!silence.empty()) throw InputError(silence);
-  return status_of(map);
+  return status;
 }
 
 int run_map(const MapArguments& arguments) {
@@ -250,7 +259,7 @@ void add_map_command(CLI::App& program, Outcome& outcome) {
       program.add_subcommand("map", "make a map of the room from a recording or camera");
   arguments->recording.add_to(*app, "folder of the recording, OpenNI2 device or .oni file");
   app->add_option("--out", arguments->out, "folder for the result")->required();
-  app->add_option("--method", arguments->method, "how to unwrap: " + unwrap_method_names(", "));
+  add_method_option(*app, arguments->method);
   app->add_flag("--resume", arguments->resume,
                 "go on where an interrupted run with this --out ended");
   app->add_flag("--view", arguments->view, "show the map in a window as it grows");

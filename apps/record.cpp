@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "command.hpp"
-#include "interruption.hpp"
-#include "live_input.hpp"
-#include "options.hpp"
-#include "output_file.hpp"
-#include "output_folder.hpp"
-#include "progress.hpp"
-#include "recording.hpp"
+#include "console/interruption.hpp"
+#include "console/progress.hpp"
+#include "input/live_input.hpp"
+#include "input/recording.hpp"
+#include "options/options.hpp"
+#include "output/output_file.hpp"
+#include "output/output_folder.hpp"
 
 #include <cstdio>
 #include <memory>

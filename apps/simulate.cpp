@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "command.hpp"
-#include "interruption.hpp"
-#include "options.hpp"
-#include "output_folder.hpp"
-#include "progress.hpp"
+#include "console/interruption.hpp"
+#include "console/progress.hpp"
+#include "options/options.hpp"
+#include "output/output_folder.hpp"
 
 #include <algorithm>
 #include <cstdio>

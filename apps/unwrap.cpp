@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "command.hpp"
-#include "frame_fusion.hpp"
-#include "frame_report.hpp"
-#include "interruption.hpp"
-#include "options.hpp"
-#include "output_folder.hpp"
-#include "progress.hpp"
-#include "recording.hpp"
-#include "unwrapped_frame.hpp"
+#include "console/interruption.hpp"
+#include "console/progress.hpp"
+#include "input/recording.hpp"
+#include "options/options.hpp"
+#include "output/output_folder.hpp"
+#include "reports/frame_report.hpp"
+#include "runs/frame_fusion.hpp"
+#include "runs/unwrapped_frame.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -124,13 +124,14 @@ int run_unwrap(const UnwrapArguments& arguments) {
     std::printf("%zu of %d frames unwrapped, %d damaged: %s\n", frames.size(), total, damaged,
                 out.final_path().c_str());
   }
-  if (!interrupted && options.pictures.frames > 0) {
+  if (interrupted) return exit_status::interrupted;
+  return add_to_result(out.final_path(), exit_status::done, [&] {
+    if (options.pictures.frames == 0) return;
     add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
       write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures,
                            arguments.common.quiet);
     });
-  }
-  return interrupted ? exit_status::interrupted : exit_status::done;
+  });
 }
 
 }  // namespace
@@ -140,7 +141,7 @@ void add_unwrap_command(CLI::App& program, Outcome& outcome) {
   CLI::App* app = program.add_subcommand("unwrap", "make unwrapped range images of a recording");
   arguments->recording.add_to(*app);
   app->add_option("--out", arguments->out, "folder for the result")->required();
-  app->add_option("--method", arguments->method, "how to unwrap: " + unwrap_method_names(", "));
+  add_method_option(*app, arguments->method);
   app->add_option("--min-confidence", arguments->min_confidence,
                   "pixels less sure than this become invalid")
       ->check(CLI::Range(0.0, 1.0));

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "command.hpp"
-#include "interruption.hpp"
-#include "options.hpp"
-#include "viewed.hpp"
+#include "console/interruption.hpp"
+#include "options/options.hpp"
+#include "views/viewed.hpp"
 
 #include <chrono>
 #include <cstdio>
@@ -143,13 +143,13 @@ void add_view_command(CLI::App& program, Outcome& outcome) {
   app->add_option("--from", arguments->from, "viewpoint: outside, above, inside")
       ->check(CLI::IsMember({"outside", "above", "inside"}));
   app->add_option(
-      "--color", request.color,
-      "what a map is coloured by (height, confidence, count, plain), or a frame (moved, "
-      "range, wrap, confidence, height, amplitude)");
+         "--color", request.color,
+         "what a map is coloured by (height, confidence, count, plain), or a frame (moved, "
+         "range, wrap, confidence, height, amplitude)")
+      ->type_name("{height,confidence,count,plain,moved,range,wrap,amplitude}");
   app->add_flag("--cameras", request.cameras, "show what the camera saw from keyframes");
   app->add_flag("--wrapped", request.wrapped, "show a frame's ranges as measured");
-  app->add_option("--method", request.method,
-                  "how to unwrap a recording: " + unwrap_method_names(", "));
+  add_method_option(*app, request.method);
   app->add_option("--frame", request.frame, "frame of a recording, from 0")
       ->check(CLI::Range(0, 1000000));
   app->add_option("--width", arguments->width_px, "of the picture or window, pixels")

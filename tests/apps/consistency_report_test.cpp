@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "consistency_report.hpp"
+#include "reports/consistency_report.hpp"
 
 #include <cmath>
 

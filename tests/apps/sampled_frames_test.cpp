@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "sampled_frames.hpp"
+#include "input/sampled_frames.hpp"
 
 #include <limits>
 

@@ -151,7 +151,9 @@ TEST_F(BadRecording, OfIdenticalFramesIsMappedAtOnePlace) {
                     fs::copy_options::overwrite_existing);
     }
   }
-  ASSERT_EQ(run("map").status, 0);
+  const Finished finished = run("map");
+  ASSERT_EQ(finished.status, 0);
+  EXPECT_THAT(finished.out, HasSubstr("doubtful: 3 frames repeat the one before"));
   const Trajectory trajectory = read_trajectory(out_ / "trajectory.txt");
   ASSERT_EQ(trajectory.size(), frames);
   for (const StampedPose& pose : trajectory) {

@@ -18,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using testing::AllOf;
+using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -140,6 +141,22 @@ TEST_F(Interruption, OfAnEvaluationNamesTheMethodsThatAreMissing) {
   EXPECT_THAT(
       read_text(out_ / "report.html"),
       AllOf(HasSubstr("these methods are missing: jump, joint"), Not(HasSubstr("Looks right."))));
+}
+
+TEST_F(Interruption, OfDrawingLeavesTheMapWhole) {
+  constexpr std::size_t few = 30;  // soon mapped, and drawn in some seconds
+  shorten_recording(few);
+  RunningProgram program({"map", sequence_.string(), "--out", out_.string(), "--set",
+                          "pictures.frames=" + std::to_string(few)});
+  ASSERT_TRUE(comes_true([&] { return program.has_ended() || fs::exists(out_ / "map.ply"); }));
+  program.send(SIGINT);
+  const Finished finished = program.wait();
+  EXPECT_EQ(finished.status, 130) << finished.err;
+  EXPECT_THAT(finished.err, HasSubstr("lacks pictures or report.html"));
+  EXPECT_EQ(read_json(out_ / "report.json")["summary"]["interrupted"], false);
+  EXPECT_EQ(read_json(out_ / "report.json")["frames"].size(), few);
+  EXPECT_FALSE(fs::exists(out_ / "report.html"));
+  EXPECT_THAT(names_in(out_), Not(Contains(HasSubstr("partial"))));
 }
 
 TEST_F(InterruptedMap, GoesOnToTheSameResult) {

@@ -80,5 +80,14 @@ TEST(Completion, OffersCommandsOptionsAndSettings) {
   EXPECT_EQ(completions({"info", "--resum"}), "\n") << "no option of that command";
 }
 
+TEST(Completion, OffersTheValuesThatAreAllowed) {
+  EXPECT_EQ(completions({"map", "room", "--method", "j"}), "joint jump\n");
+  EXPECT_EQ(completions({"view", "map", "--from", "i"}), "inside\n");
+  EXPECT_EQ(completions({"view", "map", "--color", "c"}), "confidence count\n");
+  EXPECT_EQ(completions({"manual", "b"}), "bash\n");
+  EXPECT_EQ(completions({"map", "--set", "unwrap.method", "="}), "joint jump single pixel none\n");
+  EXPECT_EQ(completions({"map", "--set", "loops.close", "=", "t"}), "true\n");
+}
+
 }  // namespace
 }  // namespace tofmap::test

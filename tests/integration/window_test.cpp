@@ -58,9 +58,9 @@ TEST_F(ProgramWindow, ClosedEarlyDoesNotEndTheWork) {
 
 TEST_F(ProgramWindow, GoesWhenTheProgramIsInterrupted) {
   RunningProgram program(mapping());
-  EXPECT_TRUE(comes_true([&] { return fs::exists(out_ / "map.ply"); }));
+  EXPECT_TRUE(comes_true([&] { return fs::exists(out_ / "report.html"); }));
   program.send(SIGINT);
-  EXPECT_EQ(program.wait().status, 0) << "the map is whole";
+  EXPECT_EQ(program.wait().status, 0) << "the result is whole";
 }
 
 TEST_F(ProgramWindow, TellsWhyWorkBesideItFailed) {

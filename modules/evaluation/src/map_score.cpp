@@ -90,16 +90,17 @@ struct Clouds {
 std::vector<float> errors_m(const Clouds& clouds) {
   const Cloud& truth = *clouds.truth;
   const Tree truth_tree = make_tree(clouds.truth);
-  std::vector<float> errors;
-  errors.reserve(clouds.placed->size());
-  for (const pcl::PointXYZ& point : clouds.placed->points) {
+  std::vector<float> errors(clouds.placed->size());
+#pragma omp parallel for schedule(dynamic, 256)
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const pcl::PointXYZ& point = (*clouds.placed)[i];
     const Nearest found = nearest(truth_tree, point);
     double gap_m = found.gap_m;
     if (gap_m < near_m) {
       const Eigen::Vector3f d = point.getVector3fMap() - truth[found.index].getVector3fMap();
       gap_m = std::abs(d.dot(plane_normal(truth, truth_tree, found.index)));
     }
-    errors.push_back(static_cast<float>(gap_m));
+    errors[i] = static_cast<float>(gap_m);
   }
   return errors;
 }
@@ -137,7 +138,8 @@ MapScore score_map(const MapCloud& map, const Pose& truth_from_map,
 
   double sum = 0;
   int far = 0;
-  for (const double error_m : errors_m(clouds)) {
+  score.errors_m = errors_m(clouds);
+  for (const double error_m : score.errors_m) {
     sum += std::min(error_m, worst_m);
     far += error_m > far_m ? 1 : 0;
   }
@@ -146,11 +148,13 @@ MapScore score_map(const MapCloud& map, const Pose& truth_from_map,
   score.far_percent = 100.0 * far / count;
 
   const Tree map_tree = make_tree(clouds.placed);
-  const auto covered = std::ranges::count_if(clouds.truth->points, [&](const pcl::PointXYZ& point) {
-    return nearest(map_tree, point).gap_m < near_m;
-  });
-  score.completeness_percent =
-      100.0 * static_cast<double>(covered) / static_cast<double>(clouds.truth->size());
+  const Cloud& truth = *clouds.truth;
+  int covered = 0;
+#pragma omp parallel for schedule(dynamic, 256) reduction(+ : covered)
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    covered += nearest(map_tree, truth[i]).gap_m < near_m ? 1 : 0;
+  }
+  score.completeness_percent = 100.0 * covered / static_cast<double>(truth.size());
   return score;
 }
 

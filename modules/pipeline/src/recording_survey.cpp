@@ -100,11 +100,7 @@ void doubt_images(const RecordingSurvey& survey, std::vector<std::string>& doubt
                   "measurement",
                   survey.constant_images.size(), survey.constant_images.front().c_str()));
   }
-  if (survey.repeated > 0) {
-    doubts.push_back(counted(static_cast<std::size_t>(survey.repeated), "frame") +
-                     (survey.repeated == 1 ? " repeats" : " repeat") +
-                     " the one before; did the camera's software stand still?");
-  }
+  if (const auto doubt = repetition_doubt(survey.repeated)) doubts.push_back(*doubt);
 }
 
 void doubt_times(const RecordingSurvey& survey, std::vector<std::string>& doubts) {
@@ -129,6 +125,17 @@ void doubt_times(const RecordingSurvey& survey, std::vector<std::string>& doubts
 
 }  // namespace
 
+bool repeats(const DualFrequencyFrame& frame, const DualFrequencyFrame& last) {
+  return same_values(frame.phase_a, last.phase_a) && same_values(frame.phase_b, last.phase_b);
+}
+
+std::optional<std::string> repetition_doubt(int repeated) {
+  if (repeated == 0) return std::nullopt;
+  return counted(static_cast<std::size_t>(repeated), "frame") +
+         (repeated == 1 ? " repeats" : " repeat") +
+         " the one before; did the camera's software stand still?";
+}
+
 RecordingSurvey survey_recording(const SequenceReader& recording,
                                  const std::function<bool(int)>& keep_going) {
   const SensorModel& sensor = recording.sensor();
@@ -150,9 +157,7 @@ RecordingSurvey survey_recording(const SequenceReader& recording,
     totals.add(frame, sensor.saturation_amplitude);
     survey.without_amplitude += frame.has_amplitude() ? 0 : 1;
     survey.without_return += is_without_return(frame) ? 1 : 0;
-    const bool is_repeated =
-        same_values(frame.phase_a, last.phase_a) && same_values(frame.phase_b, last.phase_b);
-    survey.repeated += is_repeated ? 1 : 0;
+    survey.repeated += repeats(frame, last) ? 1 : 0;
     const SequenceFrameFiles& files = recording.files()[static_cast<std::size_t>(i)];
     if (is_constant(frame.phase_a)) survey.constant_images.push_back(files.phase_a.string());
     if (is_constant(frame.phase_b)) survey.constant_images.push_back(files.phase_b.string());

@@ -3,23 +3,14 @@
 
 #include "tofmap/visualization/report_page.hpp"
 
+#include "base64.hpp"
+#include "page_scene.hpp"
 #include "page_texts.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <string_view>
-
-#include <Eigen/Geometry>
-#include <nlohmann/json.hpp>
-#include <vtkBase64Utilities.h>
-
-#include <tofmap/core/error.hpp>
 
 namespace tofmap {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string escaped(std::string_view text) {
   std::string out;
@@ -48,20 +39,6 @@ std::string escaped(std::string_view text) {
 std::string element(std::string_view start, std::string_view text) {
   const std::string name(start.substr(0, start.find(' ')));
   return "<" + std::string(start) + ">" + escaped(text) + "</" + name + ">\n";
-}
-
-std::string base64(const void* data, std::size_t size) {
-  const auto* input = static_cast<const unsigned char*>(data);
-  std::string out(4 * (size / 3 + 1), '\0');
-  const auto length = vtkBase64Utilities::Encode(input, static_cast<unsigned long>(size),
-                                                 reinterpret_cast<unsigned char*>(out.data()), 0);
-  out.resize(length);
-  return out;
-}
-
-template <class Value>
-std::string base64(const std::vector<Value>& values) {
-  return base64(values.data(), values.size() * sizeof(Value));
 }
 
 std::string image(const Picture& picture, const std::string& caption) {
@@ -104,87 +81,6 @@ VerdictWords words_of(Verdict verdict) {
       break;
   }
   return {"bad", "Not to be trusted."};
-}
-
-using Box = Eigen::AlignedBox3f;
-
-Box box_of(const PageScene& scene) {
-  Box box;
-  for (const SceneCloud& cloud : scene.clouds) {
-    for (const Eigen::Vector3f& point : cloud.points_m) box.extend(point);
-  }
-  for (const ScenePath& path : scene.paths) {
-    for (const Eigen::Vector3f& point : path.points_m) box.extend(point);
-  }
-  if (box.isEmpty()) box = Box(Eigen::Vector3f::Zero(), Eigen::Vector3f::Ones());
-  return box;
-}
-
-/// Places as shares of the box, in 65535 steps.
-std::string packed_places(const std::vector<Eigen::Vector3f>& points_m, const Box& box) {
-  const Eigen::Array3f steps = 65535 / box.sizes().array().max(1e-6F);
-  std::vector<std::uint16_t> packed;
-  for (const Eigen::Vector3f& point : points_m) {
-    const Eigen::Array3f place = (point - box.min()).array() * steps;
-    for (int i = 0; i < 3; ++i) packed.push_back(static_cast<std::uint16_t>(std::lround(place[i])));
-  }
-  return base64(packed);
-}
-
-std::string packed_normals(const std::vector<Eigen::Vector3f>& normals) {
-  std::vector<std::int8_t> packed;
-  for (const Eigen::Vector3f& normal : normals) {
-    for (int i = 0; i < 3; ++i) {
-      packed.push_back(
-          static_cast<std::int8_t>(std::lround(127 * std::clamp(normal[i], -1.0F, 1.0F))));
-    }
-  }
-  return base64(packed);
-}
-
-Json json_of(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
-
-Json json_of(const SceneCloud& cloud, const Box& box) {
-  Json colorings = Json::array();
-  for (const std::vector<Rgb>& colors : cloud.colorings) colorings.push_back(base64(colors));
-  return {{"name", cloud.name},
-          {"points", packed_places(cloud.points_m, box)},
-          {"normals", packed_normals(cloud.normals)},
-          {"colorings", std::move(colorings)}};
-}
-
-Json json_of(const ScenePath& path, const Box& box) {
-  const int color = path.color.red << 16 | path.color.green << 8 | path.color.blue;
-  return {{"name", path.name}, {"points", packed_places(path.points_m, box)}, {"color", color}};
-}
-
-Json json_of(const PageScene& scene) {
-  const Box box = box_of(scene);
-  Json json = {{"box", {{"min", json_of(box.min())}, {"max", json_of(box.max())}}},
-               {"point_size_m", scene.point_size_m},
-               {"clouds", Json::array()},
-               {"paths", Json::array()}};
-  for (const SceneCloud& cloud : scene.clouds) json["clouds"].push_back(json_of(cloud, box));
-  for (const ScenePath& path : scene.paths) json["paths"].push_back(json_of(path, box));
-  return json;
-}
-
-void check(const PageScene& scene) {
-  for (const SceneCloud& cloud : scene.clouds) {
-    const auto as_many = [&](const std::vector<Rgb>& colors) {
-      return colors.size() == cloud.points_m.size();
-    };
-    const auto is_finite = [](const Eigen::Vector3f& v) { return v.allFinite(); };
-    if (!std::ranges::all_of(cloud.points_m, is_finite) ||
-        !std::ranges::all_of(cloud.normals, is_finite)) {
-      throw UsageError("page: cloud '" + cloud.name + "' has points that are nowhere");
-    }
-    if (cloud.normals.size() != cloud.points_m.size() ||
-        cloud.colorings.size() != scene.colorings.size() ||
-        !std::ranges::all_of(cloud.colorings, as_many)) {
-      throw UsageError("page: cloud '" + cloud.name + "' lacks normals or colours");
-    }
-  }
 }
 
 /// A choice of one of several names; the first is chosen.
@@ -262,9 +158,8 @@ void ReportPage::add_strip(const std::vector<StripFrame>& frames,
 }
 
 void ReportPage::add_scene(const PageScene& scene) {
-  check(scene);
+  const std::string json = scene_json(scene);
   const std::string number = std::to_string(scenes_++);  // tells the groups of scenes apart
-  std::string json = json_of(scene).dump();
   body_ += "<div class=\"scene\">\n<div class=\"controls\" hidden>\n" +
            choice("cloud" + number, "Map:", scene.clouds) + "</div>\n" +
            "<div class=\"controls\" hidden>\n" +

@@ -32,6 +32,7 @@ struct MapScore {
   double accuracy_m = 0;   ///< mean distance of map points to the true surface, each at most 5 m
   double far_percent = 0;  ///< map points more than 0.2 m off
   double completeness_percent = 0;  ///< true points with a map point within 0.1 m
+  std::vector<float> errors_m;      ///< of each point of the map, as map_errors_m finds them
 };
 
 /// How far each point of a map is from the true surface, metres; `truth_from_map` moves it into the

@@ -30,6 +30,12 @@ struct RecordingSurvey {
   std::optional<BeatSurvey> beat;  ///< if some hundred pixels have returns at both frequencies
 };
 
+/// Whether a frame has the phases of the one before it.
+bool repeats(const DualFrequencyFrame& frame, const DualFrequencyFrame& last);
+
+/// So many such frames as a sentence; nothing if there are none.
+std::optional<std::string> repetition_doubt(int repeated);
+
 /// Reads all frames. `keep_going` is asked before each, with the number done; false ends it.
 RecordingSurvey survey_recording(const SequenceReader& recording,
                                  const std::function<bool(int frames_done)>& keep_going = {});

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "input/live_input.hpp"
+
+#include "console/interruption.hpp"
+#include "input/recording.hpp"
+
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
+
+namespace tofmap::app {
+namespace {
+
+OpenNi2Source::Settings settings_of(const ProgramOptions& options,
+                                    const LiveInput::Wanted& wanted) {
+  return {.options = options.device,
+          .calibration = calibration_of(options.camera),
+          .oni_file = wanted.oni_file,
+          .most_frames = wanted.most_frames,
+          .keep_going = [] { return !is_interrupted(); }};
+}
+
+LateFrames policy(const LiveOptions& options, const OpenNi2Source& source) {
+  if (options.late_frames == "auto") {
+    return source.waits_for_reader() ? LateFrames::block : LateFrames::drop_oldest;
+  }
+  return options.late_frames == "block" ? LateFrames::block : LateFrames::drop_oldest;
+}
+
+const char* end_name(OpenNi2Source::End end) {
+  switch (end) {
+    case OpenNi2Source::End::of_recording:
+      return "end of the recording";
+    case OpenNi2Source::End::unplugged:
+      return "unplugged";
+    case OpenNi2Source::End::timeout:
+      return "no image came any more";
+    case OpenNi2Source::End::none:  // nobody reads on
+    case OpenNi2Source::End::asked:
+      return "as asked";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::vector<OptionField<LiveOptions>> LiveOptions::fields() {
+  return {
+      {"queue", &LiveOptions::queue, 1, 10000, "", "frames that may wait to be worked on"},
+      {"late_frames", &LiveOptions::late_frames, 0, 0, "",
+       "what to do when the queue is full: drop the oldest, or block the device; auto: block what "
+       "waits for its reader, as files do",
+       "auto | drop | block"},
+  };
+}
+
+LiveInput::LiveInput(const std::string& uri, const ProgramOptions& options, const Wanted& wanted)
+    : uri_(uri),
+      timeout_s_(options.device.timeout_s),
+      source_(uri, settings_of(options, wanted)),
+      queue_(source_, options.live.queue, policy(options.live, source_)),
+      watched_(queue_) {}
+
+std::string LiveInput::losses() const {
+  const PairingCounts counts = source_.counts();
+  std::string text;
+  const auto add = [&](int count, const char* what) {
+    if (count == 0) return;
+    text += (text.empty() ? "" : ", ") + counted(static_cast<std::size_t>(count), what);
+  };
+  add(queue_.dropped(), "late frame");
+  add(counts.dropped(), "unpaired image");
+  add(counts.lost, "lost image");
+  return text;
+}
+
+nlohmann::ordered_json LiveInput::report() {
+  const PairingCounts counts = source_.counts();
+  return {{"uri", uri_},
+          {"end", end_name(source_.end())},
+          {"frames_dropped_late", queue_.dropped()},
+          {"images",
+           {{"paired", counts.paired},
+            {"half_missing", counts.half_missing},
+            {"duplicates", counts.duplicates},
+            {"out_of_order", counts.out_of_order},
+            {"unreadable", counts.unreadable},
+            {"undecided", counts.undecided},
+            {"lost", counts.lost}}}};
+}
+
+std::string LiveInput::silence() const {
+  if (source_.end() != OpenNi2Source::End::timeout) return "";
+  std::ostringstream text;
+  text << uri_ << ": no image for " << timeout_s_
+       << " s (device.timeout_s); what came before is kept";
+  return text.str();
+}
+
+}  // namespace tofmap::app

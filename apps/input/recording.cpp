@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "input/recording.hpp"
+
+#include <cstdio>
+
+#include <CLI/CLI.hpp>
+
+namespace tofmap::app {
+
+void RecordingArguments::add_to(CLI::App& command, const std::string& meaning) {
+  command.add_option("SEQ", sequence, meaning)->required();
+  command.add_option("--calibration", calibration, "what 'tofmap calibrate' found of the camera");
+}
+
+void RecordingArguments::apply(OptionTable& table) const {
+  if (!calibration.empty()) table.set("camera.calibration_file", calibration);
+}
+
+CameraCalibration calibration_of(const CameraOptions& options) {
+  if (options.calibration_file.empty()) return {};
+  return read_calibration(options.calibration_file);
+}
+
+void print_doubts(const std::vector<std::string>& doubts) {
+  for (const std::string& doubt : doubts) std::printf("doubtful: %s\n", doubt.c_str());
+}
+
+SequenceReader open_recording(const std::filesystem::path& sequence, const CameraOptions& options) {
+  return SequenceReader(sequence, calibration_of(options));
+}
+
+}  // namespace tofmap::app

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "options/options.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <tofmap/acquisition/sequence.hpp>
+
+namespace CLI {
+class App;
+}
+
+namespace tofmap::app {
+
+/// A recording as commands take it from the command line: SEQ, and --calibration, which is short
+/// for camera.calibration_file.
+struct RecordingArguments {
+  std::filesystem::path sequence;
+  std::string calibration;
+
+  /// `meaning` says what SEQ may be.
+  void add_to(CLI::App& command, const std::string& meaning = "folder of the recording");
+
+  /// Puts what was given into the table of a command.
+  void apply(OptionTable& table) const;
+};
+
+/// What the options say of a camera; nothing if they name no file.
+CameraCalibration calibration_of(const CameraOptions& options);
+
+/// On stdout, a line each.
+void print_doubts(const std::vector<std::string>& doubts);
+
+/// Opens a recording of a calibrated camera.
+SequenceReader open_recording(const std::filesystem::path& sequence, const CameraOptions& options);
+
+}  // namespace tofmap::app

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "input/watched_source.hpp"
+
+#include <algorithm>
+
+#include <tofmap/core/median.hpp>
+#include <tofmap/core/text.hpp>
+#include <tofmap/pipeline/axial_depth.hpp>
+#include <tofmap/pipeline/beat_survey.hpp>
+#include <tofmap/pipeline/recording_survey.hpp>
+
+namespace tofmap::app {
+namespace {
+
+/// As many of the first frames tell.
+constexpr std::size_t enough = 12;
+
+std::vector<std::string> doubts_about_first(const std::vector<DualFrequencyFrame>& frames,
+                                            const SensorModel& sensor) {
+  std::vector<std::string> doubts;
+  if (const auto doubt = axial_depth_doubt(frames, sensor)) {
+    doubts.push_back(*doubt);
+  } else if (const std::optional<BeatSurvey> beat = survey_beat(frames, sensor)) {
+    doubts = tofmap::doubts_about(*beat);
+  }
+  int repeated = 0;
+  for (std::size_t i = 1; i < frames.size(); ++i) repeated += repeats(frames[i], frames[i - 1]);
+  if (const auto doubt = repetition_doubt(repeated)) doubts.push_back(*doubt);
+  return doubts;
+}
+
+/// Where more than three periods passed from one frame to the next.
+std::optional<std::string> gap_doubt(const std::vector<double>& times_s) {
+  std::vector<double> periods_s;
+  for (std::size_t i = 1; i < times_s.size(); ++i) periods_s.push_back(times_s[i] - times_s[i - 1]);
+  if (periods_s.empty()) return std::nullopt;
+  const auto longest = std::ranges::max_element(periods_s);
+  const double longest_s = *longest;
+  const double before_s = times_s[static_cast<std::size_t>(longest - periods_s.begin())];
+  constexpr double most_periods = 3.5;
+  const double usual_s = median(periods_s);
+  const auto gaps = static_cast<std::size_t>(std::ranges::count_if(
+      periods_s, [&](double period_s) { return period_s > most_periods * usual_s; }));
+  if (gaps == 0) return std::nullopt;
+  return counted(gaps, "gap") +
+         formatted(
+             " between frames, the longest of %.2f s after time %.3f s; a path across is less sure",
+             longest_s, before_s);
+}
+
+}  // namespace
+
+std::optional<SourcedFrame> WatchedSource::next() {
+  std::optional<SourcedFrame> sourced = source_.next();
+  if (sourced && sourced->frame) times_s_.push_back(sourced->timestamp_s);
+  if (!doubts_ && sourced && sourced->frame) {
+    first_.push_back(*sourced->frame);
+    if (first_.size() == enough) judge();
+  }
+  return sourced;
+}
+
+void WatchedSource::judge() {
+  doubts_ = doubts_about_first(first_, sensor());
+  first_.clear();
+}
+
+std::vector<std::string> WatchedSource::doubts() {
+  if (!doubts_) judge();
+  std::vector<std::string> all = *doubts_;
+  if (const auto gap = gap_doubt(times_s_)) all.push_back(*gap);
+  return all;
+}
+
+std::vector<std::string> doubts_about(const SequenceReader& recording) {
+  std::vector<DualFrequencyFrame> first;
+  std::vector<double> times_s;
+  for (int i = 0; i < *recording.frame_count(); ++i) {
+    const SequenceFrameFiles& files = recording.files()[static_cast<std::size_t>(i)];
+    if (files.damage.empty()) times_s.push_back(files.timestamp_s);
+    if (first.size() == enough) continue;
+    SourcedFrame sourced = recording.read(i);
+    if (sourced.frame) first.push_back(*std::move(sourced.frame));
+  }
+  std::vector<std::string> doubts = doubts_about_first(first, recording.sensor());
+  if (const auto gap = gap_doubt(times_s)) doubts.push_back(*gap);
+  return doubts;
+}
+
+}  // namespace tofmap::app

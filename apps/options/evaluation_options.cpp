@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "options/evaluation_options.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/unwrap/unwrap.hpp>
+
+namespace tofmap::app {
+
+std::vector<OptionField<EvaluationOptions>> EvaluationOptions::fields() {
+  using O = EvaluationOptions;
+  static const std::string methods_meaning =
+      "methods to compare, separated by spaces: " + unwrap_method_names(", ");
+  return {
+      {"methods", &O::methods, 0, 0, "", methods_meaning},
+      {"down_to", &O::down_to, 0, 0, "", "how far to go", "unwrapping | map"},
+  };
+}
+
+std::vector<std::string> method_names(const EvaluationOptions& options) {
+  std::vector<std::string> names;
+  std::istringstream words(options.methods);
+  for (std::string name; words >> name;) {
+    if (!find_unwrap_method(name)) {
+      throw UsageError("option evaluation.methods: '" + name +
+                       "' is no method; allowed: " + unwrap_method_names(" "));
+    }
+    if (std::ranges::find(names, name) != names.end()) {
+      throw UsageError("option evaluation.methods: '" + name + "' is named twice");
+    }
+    names.push_back(name);
+  }
+  if (names.empty()) {
+    throw UsageError("option evaluation.methods: names no method; allowed: " +
+                     unwrap_method_names(" "));
+  }
+  return names;
+}
+
+}  // namespace tofmap::app

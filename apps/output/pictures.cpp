@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "output/pictures.hpp"
+
+#include "console/interruption.hpp"
+#include "console/progress.hpp"
+#include "input/sampled_frames.hpp"
+#include "output/output_folder.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include <tofmap/evaluation/range_score.hpp>
+#include <tofmap/unwrap/jump_estimate.hpp>
+#include <tofmap/visualization/cloud_pictures.hpp>
+#include <tofmap/visualization/drawing.hpp>
+#include <tofmap/visualization/frame_pictures.hpp>
+#include <tofmap/visualization/map_pictures.hpp>
+
+namespace tofmap::app {
+namespace {
+
+bool finds_jumps(const UnwrapOptions& options) {
+  const UnwrapMethod method = unwrap_method(options);
+  return method == UnwrapMethod::jump || method == UnwrapMethod::single;
+}
+
+/// Each term by itself, fused, and after propagation; probabilities sum to one in all of them.
+Picture jump_stages_picture(const DualFrequencyFrame& frame, const SensorModel& sensor,
+                            const UnwrapOptions& options) {
+  const PhaseSigma sigma(frame, estimate_phase_noise(frame));
+  JumpEstimator estimator;
+  const JumpEstimate& jumps =
+      estimator.estimate(frame, sigma, beat_limits(sensor, options.max_range_m), options);
+  const bool has_frequency = unwrap_method(options) == UnwrapMethod::jump;
+  const ImageF reconstruction_cycles =
+      has_frequency ? reconstruct_cycles(frame.phase_a, jumps.nearest) : ImageF();
+  const auto evidence = [&](double trust_discontinuity, double trust_frequency) {
+    JumpTerms terms = jump_terms(options);
+    terms.trust_discontinuity = trust_discontinuity;
+    terms.trust_frequency = trust_frequency;
+    JumpProbabilities out;
+    find_jump_evidence(frame.phase_a, sigma.a_cycles, reconstruction_cycles, terms, out);
+    return out;
+  };
+  const JumpProbabilities by_discontinuity = evidence(1, 0);
+  std::vector<JumpStage> stages{
+      {"discontinuity term f_d", &by_discontinuity.x, &by_discontinuity.y}};
+  JumpProbabilities by_frequency;
+  if (has_frequency) {
+    by_frequency = evidence(0, 1);
+    stages.push_back({"frequency term f_f", &by_frequency.x, &by_frequency.y});
+    stages.push_back({"fused", &jumps.evidence.x, &jumps.evidence.y});
+  }
+  stages.push_back({"after propagation", &jumps.beliefs.marginals.x, &jumps.beliefs.marginals.y});
+  return jump_picture(stages);
+}
+
+void write_pictures_of(const DualFrequencyFrame& frame, const SensorModel& sensor,
+                       const PixelRays& rays, const UnwrapOptions& options,
+                       const std::filesystem::path& stem) {
+  const RangeImage unwrapped = unwrap(frame, sensor, options).image;
+  const auto wavelength_m = static_cast<float>(sensor.modulation.wavelength_a_m());
+  const ImageF wrapped_m = (unwrapped.reason == 0).select(frame.phase_a * wavelength_m, NAN);
+  const auto write = [&](const char* what, const Picture& picture) {
+    write_picture(stem.string() + "_" + what + ".png", picture);
+  };
+  write("range", range_picture(wrapped_m, unwrapped.range_m));
+  write("wraps", wrap_count_picture(unwrapped.wrap_count));
+  write("confidence", confidence_picture(unwrapped));
+  if (finds_jumps(options)) write("jumps", jump_stages_picture(frame, sensor, options));
+  write("cloud", cloud_picture(unwrapped, wrapped_m, rays));
+}
+
+/// The method, and how much of the frame it gets wrong, if that is known.
+std::string method_title(const std::string& method, const RangeImage& image,
+                         const std::optional<ImageF>& truth_m, double wavelength_m) {
+  if (!truth_m) return method;
+  char title[80];
+  std::snprintf(title, sizeof title, "%s: %.1f %% wrong", method.c_str(),
+                score_ranges(image, *truth_m, wavelength_m).wrong_wrap_percent);
+  return title;
+}
+
+/// What filters removed of what a method gave them.
+FilteredRanges filtered_ranges(const std::string& method, const RangeImage& before,
+                               const RangeImage& after) {
+  const int valid = before.count_valid();
+  const double removed = valid > 0 ? 100.0 * (valid - after.count_valid()) / valid : 0;
+  char title[80];
+  std::snprintf(title, sizeof title, "%s: filters remove %.1f %%",
+                method == "none" ? "without unwrapping" : method.c_str(), removed);
+  return {title, before.range_m, after.reason};
+}
+
+}  // namespace
+
+std::vector<OptionField<PictureOptions>> PictureOptions::fields() {
+  using O = PictureOptions;
+  return {
+      {"frames", &O::frames, 0, 100000, "",
+       "frames to draw, spread evenly over the recording; 0: none"},
+      {"map_size_px", &O::map_size_px, 100, 8000, "px", "longer side of the map's pictures"},
+  };
+}
+
+void write_frame_pictures(const std::filesystem::path& folder, const SequenceReader& source,
+                          const UnwrapOptions& unwrap, const PictureOptions& options, bool quiet) {
+  const PixelRays rays = pixel_rays(source.sensor().camera);
+  const std::vector<int> indices = spread_indices(*source.frame_count(), options.frames);
+  Progress progress("drawing frame", static_cast<int>(indices.size()), quiet);
+  int done = 0;
+  for (const int index : indices) {
+    stop_if_interrupted();
+    progress.show(done++);
+    const SourcedFrame frame = source.read(index);
+    if (!frame.frame) continue;
+    const auto& file = source.files()[static_cast<std::size_t>(index)];
+    write_pictures_of(*frame.frame, source.sensor(), rays, unwrap, folder / file.phase_a.stem());
+  }
+}
+
+void write_method_pictures(const std::filesystem::path& folder, const SequenceReader& source,
+                           const std::vector<std::string>& methods, UnwrapOptions unwrap,
+                           const FilterOptions& filters, const PictureOptions& options,
+                           bool quiet) {
+  const PixelRays rays = pixel_rays(source.sensor().camera);
+  const double wavelength_m = source.sensor().modulation.wavelength_a_m();
+  const std::vector<int> indices = spread_indices(*source.frame_count(), options.frames);
+  Progress progress("drawing methods, frame", static_cast<int>(indices.size()), quiet);
+  int done = 0;
+  for (const int index : indices) {
+    stop_if_interrupted();
+    progress.show(done++);
+    const SourcedFrame frame = source.read(index);
+    if (!frame.frame) continue;
+    const std::optional<ImageF> truth_m = source.range_truth(index);
+    const auto unwrapped_by = [&](const std::string& method) {
+      unwrap.method = method;
+      return tofmap::unwrap(*frame.frame, source.sensor(), unwrap).image;
+    };
+    const auto filtered_by = [&](const std::string& method, const RangeImage& image) {
+      return filtered_ranges(
+          method, image,
+          apply_filters(image, *frame.frame, source.sensor().modulation, rays, filters).image);
+    };
+    std::vector<MethodRanges> ranges;
+    RangeImage last;
+    for (const std::string& method : methods) {
+      last = unwrapped_by(method);
+      ranges.push_back({method_title(method, last, truth_m, wavelength_m), last.range_m});
+    }
+    const auto& file = source.files()[static_cast<std::size_t>(index)];
+    write_picture(folder / (file.phase_a.stem().string() + "_methods.png"),
+                  method_picture(ranges, truth_m.value_or(ImageF()), wavelength_m));
+    const std::vector<FilteredRanges> filtered{filtered_by("none", unwrapped_by("none")),
+                                               filtered_by(methods.back(), last)};
+    write_picture(folder / (file.phase_a.stem().string() + "_filters.png"),
+                  filter_picture(filtered));
+  }
+}
+
+void write_map_pictures(const std::filesystem::path& folder, const MapCloud& map,
+                        const Trajectory& trajectory, const PictureOptions& options) {
+  const LevelFrame frame = level_frame(map, trajectory);
+  write_picture(folder / "map_above.png",
+                map_from_above(map, trajectory, frame, options.map_size_px));
+  write_picture(folder / "map_inside.png",
+                map_from_inside(map, trajectory, frame, options.map_size_px));
+}
+
+void add_pictures(const std::filesystem::path& result,
+                  const std::function<void(const std::filesystem::path& folder)>& draw) {
+  try {
+    OutputFolder pictures(result / "pictures");
+    draw(pictures.path());
+    pictures.commit();
+  } catch (const DrawingError& error) {
+    std::fprintf(stderr, "tofmap: no pictures: %s\n", error.what());
+  }
+}
+
+}  // namespace tofmap::app

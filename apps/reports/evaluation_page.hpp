@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "options/options.hpp"
+#include "runs/method_run.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace tofmap::app {
+
+/// What the page of an evaluation tells of.
+struct EvaluationPageSubject {
+  const SequenceReader& recording;
+  const Truth& truth;
+  const std::vector<MethodResult>& results;  ///< not empty
+  const nlohmann::ordered_json& report;      ///< of them (evaluation_report.hpp)
+  std::vector<std::string> warnings;
+  const ProgramOptions& options;
+  std::string options_yaml;
+};
+
+/// Writes report.html into a result that is in place already: what unwrapping does to ranges, path
+/// and map. Throws InputError if it cannot be written, and
+/// Interrupted.
+void write_evaluation_page(const std::filesystem::path& result,
+                           const EvaluationPageSubject& subject, bool quiet);
+
+}  // namespace tofmap::app

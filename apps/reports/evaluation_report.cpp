@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "reports/evaluation_report.hpp"
+
+#include "reports/consistency_report.hpp"
+#include "reports/frame_report.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include <nlohmann/json.hpp>
+
+namespace tofmap::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json unwrapping_json(const MethodResult& result) {
+  Json json;
+  std::vector<RangeScore> scores;
+  double milliseconds = 0;
+  double iterations = 0;
+  double converged = 0;
+  for (const UnwrappingRecord& frame : result.frames) {
+    if (frame.score) scores.push_back(*frame.score);
+    milliseconds += frame.milliseconds;
+    iterations += frame.iterations;
+    converged += frame.converged ? 1 : 0;
+  }
+  if (!scores.empty()) {
+    const RangeScore mean = mean_score(scores);
+    json["wrong_wrap_percent"] = json_number(mean.wrong_wrap_percent);
+    json["coverage_percent"] = json_number(mean.coverage_percent);
+    json["range_rmse_m"] = json_number(mean.range_rmse_m);
+  }
+  const auto count = static_cast<double>(result.frames.size());
+  json["converged_percent"] = json_number(100 * converged / count);
+  json["iterations_per_frame"] = json_number(iterations / count);
+  json["milliseconds_per_frame"] = json_number(milliseconds / count);
+  return json;
+}
+
+Json over_range_json(const MethodResult& result) {
+  Json bins = Json::array();
+  for (const ErrorsOverRange::Bin& bin : over_range(result.frames).bins()) {
+    bins.push_back({{"range_m", bin.range_m},
+                    {"pixels", bin.pixels},
+                    {"wrong_wrap_percent", json_number(bin.wrong_wrap_percent)},
+                    {"range_rmse_m", json_number(bin.range_rmse_m)}});
+  }
+  return bins;
+}
+
+Json trajectory_json(const MethodResult& result) {
+  Json json = {{"registered_frames", result.map->trajectory.size()}};
+  if (!result.scores.trajectory) return json;
+  json["ate_rmse_m"] = json_number(result.scores.trajectory->ate_rmse_m);
+  json["ate_max_m"] = json_number(result.scores.trajectory->ate_max_m);
+  json["rpe_rmse_m_per_m"] = json_number(result.scores.trajectory->rpe_rmse_m_per_m);
+  json["rpe_rmse_deg_per_m"] = json_number(result.scores.trajectory->rpe_rmse_deg_per_m);
+  return json;
+}
+
+/// Shares of the pixels that unwrapping left, by filter and in all.
+Json filters_json(const MethodResult& result) {
+  double valid = 0;
+  double kept = 0;
+  std::map<std::string, double> removed;
+  for (const FrameRecord& frame : result.map->frames) {
+    valid += frame.valid_pixels;
+    kept += frame.kept_pixels;
+    for (const FilterCount& count : frame.filters) removed[count.name] += count.removed;
+  }
+  Json json = {{"removed_percent", json_number(100 * (valid - kept) / valid)}};
+  for (const auto& [name, pixels] : removed)
+    json[name + "_percent"] = json_number(100 * pixels / valid);
+  return json;
+}
+
+Json map_json(const MethodResult& result) {
+  Json json = {{"points", result.map->surface.size()}};
+  if (result.scores.surface) {
+    json["accuracy_m"] = json_number(result.scores.surface->accuracy_m);
+    json["far_percent"] = json_number(result.scores.surface->far_percent);
+    json["completeness_percent"] = json_number(result.scores.surface->completeness_percent);
+  }
+  json["milliseconds_per_frame"] = summary_json(*result.map)["milliseconds_per_frame"];
+  return json;
+}
+
+struct Column {
+  const char* group;
+  const char* metric;
+  const char* title;
+  const char* unit;
+  const char* format;
+};
+
+constexpr std::array columns{
+    Column{"unwrapping", "wrong_wrap_percent", "wrong", "wraps %", "%.3f"},
+    Column{"unwrapping", "range_rmse_m", "range", "RMSE m", "%.3f"},
+    Column{"unwrapping", "milliseconds_per_frame", "unwrap", "ms/frame", "%.1f"},
+    Column{"filters", "removed_percent", "filters", "remove %", "%.1f"},
+    Column{"trajectory", "registered_frames", "frames", "placed", "%.0f"},
+    Column{"trajectory", "ate_rmse_m", "ATE", "RMSE m", "%.4f"},
+    Column{"trajectory", "rpe_rmse_m_per_m", "RPE", "m per m", "%.4f"},
+    Column{"map", "accuracy_m", "map", "error m", "%.4f"},
+    Column{"map", "completeness_percent", "map", "seen %", "%.1f"},
+    Column{"map", "milliseconds_per_frame", "all", "ms/frame", "%.1f"}};
+
+std::string cell(const Json& report, const Column& column, const std::string& method) {
+  const auto group = report.find(column.group);
+  if (group == report.end() || !group->contains(method)) return "-";
+  const Json& values = (*group)[method];
+  if (!values.contains(column.metric) || !values[column.metric].is_number()) return "-";
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), column.format, values[column.metric].get<double>());
+  return text.data();
+}
+
+}  // namespace
+
+void add_to_report(Json& report, const MethodResult& result) {
+  report["unwrapping"][result.name] = unwrapping_json(result);
+  Json bins = over_range_json(result);
+  if (!bins.empty()) report["over_range"][result.name] = std::move(bins);
+  if (!result.map) return;
+  report["consistency"][result.name] = consistency_json(*result.consistency);
+  report["filters"][result.name] = filters_json(result);
+  report["trajectory"][result.name] = trajectory_json(result);
+  report["map"][result.name] = map_json(result);
+}
+
+std::vector<std::vector<std::string>> table_of(const Json& report) {
+  std::vector<std::vector<std::string>> lines{{"method"}, {""}};
+  for (const auto& [method, values] : report["unwrapping"].items()) lines.push_back({method});
+  for (const Column& column : columns) {
+    if (!report.contains(column.group)) continue;
+    lines[0].push_back(column.title);
+    lines[1].push_back(column.unit);
+    for (std::size_t i = 2; i < lines.size(); ++i) {
+      lines[i].push_back(cell(report, column, lines[i].front()));
+    }
+  }
+  return lines;
+}
+
+void print_table(const Json& report) {
+  for (const std::vector<std::string>& line : table_of(report)) {
+    std::printf("%-8s", line.front().c_str());
+    for (std::size_t i = 1; i < line.size(); ++i) std::printf(" %10s", line[i].c_str());
+    std::printf("\n");
+  }
+}
+
+}  // namespace tofmap::app

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "reports/frame_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <nlohmann/json.hpp>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json times_json(const StageTimes& times) {
+  return {{"unwrap", times.unwrap_ms},     {"filter", times.filter_ms}, {"cloud", times.cloud_ms},
+          {"register", times.register_ms}, {"map", times.map_ms},       {"loops", times.loop_ms}};
+}
+
+Json tracking_json(const TrackingResult& tracking) {
+  const RegistrationResult& registration = tracking.registration;
+  return {{"status", status_name(tracking.status)},
+          {"is_keyframe", tracking.is_keyframe},
+          {"registration", status_name(registration.status)},
+          {"iterations", registration.iterations},
+          {"overlap", registration.overlap},
+          {"inlier_share", registration.inlier_share},
+          {"rmse_m", registration.rmse_m},
+          {"residual_scale", registration.residual_scale},
+          {"degenerate_directions", registration.degenerate_directions}};
+}
+
+Json loops_json(const RoomMap& map) {
+  Json loops = Json::array();
+  for (const Loop& loop : map.loops) {
+    loops.push_back({{"from", loop.from_frame},
+                     {"to", loop.to_frame},
+                     {"error_m", loop.error_m},
+                     {"deviations", loop.deviations},
+                     {"is_used", loop.is_used}});
+  }
+  return loops;
+}
+
+/// Mean over the frames that were read.
+double mean_of(const RoomMap& map, const std::function<double(const FrameRecord&)>& value) {
+  double sum = 0;
+  int count = 0;
+  for (const FrameRecord& record : map.frames) {
+    if (!record.damage.empty()) continue;
+    sum += value(record);
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+}  // namespace
+
+Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json damaged_json(const SourcedFrame& frame) {
+  return {{"index", frame.index}, {"timestamp", frame.timestamp_s}, {"damage", frame.damage}};
+}
+
+void add_filter_counts(Json& frame, const std::vector<FilterCount>& counts) {
+  Json removed = Json::object();
+  Json corrected = Json::object();
+  for (const FilterCount& count : counts) {
+    removed[count.name] = removed.value(count.name, 0) + count.removed;
+    corrected[count.name] = corrected.value(count.name, 0) + count.corrected;
+  }
+  frame["removed"] = std::move(removed);
+  frame["corrected"] = std::move(corrected);
+}
+
+Json frame_json(const FrameRecord& record) {
+  Json json = {{"index", record.index}, {"timestamp", record.timestamp_s}};
+  if (!record.damage.empty()) {
+    json["damage"] = record.damage;
+    return json;
+  }
+  json["iterations"] = record.iterations;
+  json["curl_violations"] = record.curl_violations;
+  json["phase_noise_cycles"] = record.phase_noise_cycles;
+  json["valid_pixels"] = record.valid_pixels;
+  json["kept_pixels"] = record.kept_pixels;
+  add_filter_counts(json, record.filters);
+  json["tracking"] = tracking_json(record.tracking);
+  json["milliseconds"] = times_json(record.times);
+  return json;
+}
+
+StageTimes mean_times(const RoomMap& map) {
+  StageTimes mean;
+  mean.unwrap_ms = mean_of(map, [](const FrameRecord& r) { return r.times.unwrap_ms; });
+  mean.filter_ms = mean_of(map, [](const FrameRecord& r) { return r.times.filter_ms; });
+  mean.cloud_ms = mean_of(map, [](const FrameRecord& r) { return r.times.cloud_ms; });
+  mean.register_ms = mean_of(map, [](const FrameRecord& r) { return r.times.register_ms; });
+  mean.map_ms = mean_of(map, [](const FrameRecord& r) { return r.times.map_ms; });
+  mean.loop_ms = mean_of(map, [](const FrameRecord& r) { return r.times.loop_ms; });
+  return mean;
+}
+
+Json summary_json(const RoomMap& map) {
+  const StageTimes mean = mean_times(map);
+  int degenerate = 0;
+  for (const FrameRecord& record : map.frames) {
+    degenerate += record.tracking.registration.degenerate_directions > 0 ? 1 : 0;
+  }
+  return {{"frames", map.frames.size()},
+          {"damaged", map.damaged()},
+          {"registered", map.trajectory.size()},
+          {"keyframes", map.keyframes.size()},
+          {"frames_with_degenerate_directions", degenerate},
+          {"loops", loops_json(map)},
+          {"map_points", map.surface.size()},
+          {"interrupted", map.interrupted},
+          {"milliseconds_per_frame", mean.total_ms()},
+          {"milliseconds", times_json(mean)}};
+}
+
+void refuse_mostly_damaged(int damaged, int total, const std::string& first_damage) {
+  if (2 * damaged <= total) return;
+  throw InputError(
+      std::to_string(damaged) + " of " + std::to_string(total) +
+      " frames are damaged, more than half; nothing was written. The first: " + first_damage);
+}
+
+void refuse_mostly_damaged(const RoomMap& map) {
+  const auto first = std::ranges::find_if(
+      map.frames, [](const FrameRecord& record) { return !record.damage.empty(); });
+  if (first == map.frames.end()) return;
+  refuse_mostly_damaged(map.damaged(), static_cast<int>(map.frames.size()), first->damage);
+}
+
+}  // namespace tofmap::app

@@ -1,0 +1,230 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "reports/map_page.hpp"
+
+#include "console/interruption.hpp"
+#include "reports/error_curves.hpp"
+#include "reports/frame_report.hpp"
+#include "reports/map_section.hpp"
+#include "reports/report_sections.hpp"
+#include "reports/verdict.hpp"
+#include "runs/method_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <tofmap/core/text.hpp>
+#include <tofmap/visualization/plot.hpp>
+
+namespace tofmap::app {
+namespace {
+
+std::optional<ImageF> range_truth(const MapPageSubject& subject, int frame) {
+  return subject.recording ? subject.recording->range_truth(frame) : std::nullopt;
+}
+
+double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
+
+/// The map that the same path would give if nobody unwrapped.
+MapCloud wrapped_map(const MapPageSubject& subject) {
+  PipelineOptions options = subject.options.pipeline;
+  options.unwrap.method = "none";
+  options.map.min_observations = 1;  // there are but some of the frames
+  Unwrapper unwrapper(subject.sensor, options.unwrap);
+  const PixelRays rays = pixel_rays(subject.sensor.camera);
+  SurfaceMap map(options.map);
+  for (const DualFrequencyFrame& frame : subject.frames) {
+    stop_if_interrupted();
+    const auto pose = pose_at(subject.map.trajectory, frame.timestamp_s);
+    if (!pose) continue;
+    map.integrate(*prepare_frame(frame, unwrapper, subject.sensor, rays, options).cloud, *pose);
+  }
+  return map.extract();
+}
+
+/// What a method makes of the page's frames.
+struct UnwrappedSample {
+  std::vector<UnwrappingRecord> frames;
+  double moved_percent = 0;  ///< of the ranges
+};
+
+UnwrappedSample unwrap_sample(const MapPageSubject& subject, const std::string& method) {
+  UnwrapOptions options = subject.options.pipeline.unwrap;
+  options.method = method;
+  Unwrapper unwrapper(subject.sensor, options);
+  UnwrappedSample sample;
+  double moved = 0;
+  double valid = 0;
+  for (const DualFrequencyFrame& frame : subject.frames) {
+    stop_if_interrupted();
+    const UnwrapResult unwrapped = unwrapper.unwrap(frame);
+    const RangeImage& image = unwrapped.image;
+    valid += image.count_valid();
+    moved += static_cast<double>((image.reason == 0 && image.wrap_count > 0).count());
+    sample.frames.push_back(record_of(unwrapped, frame.timestamp_s, 0,
+                                      range_truth(subject, frame.index),
+                                      subject.sensor.modulation.wavelength_a_m()));
+  }
+  sample.moved_percent = percent(moved, valid);
+  return sample;
+}
+
+std::string sentence_of(const MapPageSubject& subject, const MapScores& scores,
+                        double moved_percent) {
+  const RoomMap& map = subject.map;
+  std::string text = std::to_string(map.trajectory.size()) + " of " +
+                     counted(map.frames.size(), "frame") + " could be placed. ";
+  if (map.interrupted) text += "Then the run was interrupted. ";
+  if (subject.options.pipeline.unwrap.method == "none") {
+    text += "Nothing was unwrapped. ";
+  } else {
+    text += formatted(
+        "Unwrapping moved %.0f %% of the ranges, to beyond the %.2f m that one frequency can "
+        "tell. ",
+        moved_percent, subject.sensor.modulation.wavelength_a_m());
+  }
+  if (scores.surface) {
+    text +=
+        formatted("Against the truth, the map is %.0f mm off and shows %.1f %% of what was seen. ",
+                  1000 * scores.surface->accuracy_m, scores.surface->completeness_percent);
+  }
+  if (scores.trajectory) {
+    text += formatted("The path is %.0f mm off.", 1000 * scores.trajectory->ate_rmse_m);
+  } else if (!map.interrupted) {
+    text += "The truth is not known.";
+  }
+  return text;
+}
+
+PageTable summary_table(const RoomMap& map, const MapScores& scores) {
+  PageTable table{{"", ""}, {}};
+  const auto add = [&](const char* what, const std::string& value) {
+    table.rows.push_back({what, value});
+  };
+  const auto used = std::ranges::count_if(map.loops, [](const Loop& loop) { return loop.is_used; });
+  add("frames", std::to_string(map.frames.size()));
+  add("damaged", std::to_string(map.damaged()));
+  add("placed", std::to_string(map.trajectory.size()));
+  add("degenerate (a direction that no surface held), %",
+      formatted("%.1f", degenerate_percent(map)));
+  add("keyframes", std::to_string(map.keyframes.size()));
+  add("loops found, and believed", std::to_string(map.loops.size()) + ", " + std::to_string(used));
+  add("points of the map", std::to_string(map.surface.size()));
+  if (scores.trajectory) {
+    add("ATE, m (RMSE)", formatted("%.4f", scores.trajectory->ate_rmse_m));
+    add("ATE, m (greatest)", formatted("%.4f", scores.trajectory->ate_max_m));
+    add("RPE, m per m", formatted("%.4f", scores.trajectory->rpe_rmse_m_per_m));
+    add("RPE, degrees per m", formatted("%.3f", scores.trajectory->rpe_rmse_deg_per_m));
+  }
+  if (scores.surface) {
+    add("map error, m", formatted("%.4f", scores.surface->accuracy_m));
+    add("map points more than 0.2 m off, %", formatted("%.2f", scores.surface->far_percent));
+    add("surface shown of what was seen, %",
+        formatted("%.1f", scores.surface->completeness_percent));
+  }
+  return table;
+}
+
+/// How well each frame fitted, over time.
+Plot tracking_plot(const RoomMap& map) {
+  PlotLine overlap{"overlap with the map", {}, {}};
+  PlotLine inliers{"points that fit", {}, {}};
+  PlotLine kept{"pixels kept by filters", {}, {}};
+  for (const FrameRecord& frame : map.frames) {
+    if (!frame.damage.empty()) continue;
+    const double time_s = frame.timestamp_s - map.frames.front().timestamp_s;
+    for (PlotLine* line : {&overlap, &inliers, &kept}) line->x.push_back(time_s);
+    overlap.y.push_back(frame.tracking.registration.overlap);
+    inliers.y.push_back(frame.tracking.registration.inlier_share);
+    kept.y.push_back(frame.kept_pixels / std::max(1.0, static_cast<double>(frame.valid_pixels)));
+  }
+  return {"", "time, s", "share", {overlap, inliers, kept}, 0, 1};
+}
+
+/// Of the path and of the frames' ranges, and of these as measured.
+void add_errors(ReportPage& page, const MapPageSubject& subject, const Truth& truth,
+                const MapScores& scores, const UnwrappedSample& sample) {
+  const std::string& method = subject.options.pipeline.unwrap.method;
+  std::vector<MethodErrors> methods{{method, {}, sample.frames}};
+  if (scores.trajectory) {
+    methods.back().path =
+        pose_errors(subject.map.trajectory, truth.poses, scores.trajectory->truth_from_estimate);
+  }
+  UnwrappedSample as_measured;
+  if (method != "none") {
+    as_measured = unwrap_sample(subject, "none");
+    methods.push_back({"none", {}, as_measured.frames});
+  }
+  add_error_curves(page, methods);
+}
+
+/// The map, and what the same path would have made of ranges as measured.
+std::vector<ShownMap> shown_maps(const MapPageSubject& subject, const Truth& truth,
+                                 const MapScores& scores, const MapCloud& wrapped) {
+  std::vector<ShownMap> maps{
+      shown_map(name_of_map(subject.options.pipeline.unwrap.method), subject.map, scores)};
+  if (wrapped.empty()) return maps;
+  ShownMap as_measured = maps.front();
+  as_measured.name =
+      "the same path, ranges as measured (of " + counted(subject.frames.size(), "frame") + ")";
+  as_measured.surface = &wrapped;
+  if (scores.surface) {
+    as_measured.errors_m = map_errors_m(wrapped, *as_measured.truth_from_map, truth.surface);
+  }
+  maps.push_back(std::move(as_measured));
+  return maps;
+}
+
+}  // namespace
+
+int frames_for_page(const ReportOptions& options) {
+  return std::max(consistency_frames, options.frames);
+}
+
+void write_map_page(const std::filesystem::path& result, const MapPageSubject& subject,
+                    bool quiet) {
+  const RoomMap& map = subject.map;
+  const Truth truth = subject.recording ? read_truth(*subject.recording, quiet) : Truth{};
+  PageProgress progress(5, quiet);
+  progress.step("errors of the map");
+  const MapScores scores = score_of(map, truth);
+  progress.step("ranges as measured");
+  const bool is_unwrapped = subject.options.pipeline.unwrap.method != "none";
+  const MapCloud wrapped = is_unwrapped ? wrapped_map(subject) : MapCloud();
+  const UnwrappedSample sample = unwrap_sample(subject, subject.options.pipeline.unwrap.method);
+
+  ReportPage page("Map of " + subject.source,
+                  "tofmap " TOFMAP_VERSION ", method " + subject.options.pipeline.unwrap.method);
+  const Judgement judgement =
+      judge({.map = map,
+             .method = subject.options.pipeline.unwrap.method,
+             .score = scores.surface,
+             .voxel_m = subject.options.pipeline.map.voxel_m,
+             .is_seen_twice = !std::isnan(subject.consistency.contradicted_percent),
+             .is_warned = !subject.warnings.empty()});
+  page.add_verdict(judgement.verdict,
+                   sentence_of(subject, scores, sample.moved_percent) + told_reasons(judgement));
+  page.add_warnings(subject.warnings);
+  progress.step("maps");
+  add_maps(page, shown_maps(subject, truth, scores, wrapped), truth.poses, subject.options.report);
+  progress.step("errors");
+  add_errors(page, subject, truth, scores, sample);
+  progress.step("frames");
+  add_frames(
+      page, subject.frames, subject.sensor, subject.options.pipeline,
+      [&](int frame) { return range_truth(subject, frame); }, subject.options.report);
+  page.add_heading("Figures");
+  page.add_table(summary_table(map, scores));
+  page.add_heading("Tracking over time");
+  add_drawn(page, [&] {
+    return std::vector<PageFigure>{
+        {plot_picture(tracking_plot(map), 1000, 420), "how each frame fitted what was there"}};
+  });
+  add_consistency(page, {"map"}, {subject.consistency});
+  add_stage_times(page, {"mean"}, {&map});
+  add_options(page, subject.options_yaml);
+  write_page(result, page);
+}
+
+}  // namespace tofmap::app

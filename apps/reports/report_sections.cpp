@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "reports/report_sections.hpp"
+
+#include "console/interruption.hpp"
+#include "input/sampled_frames.hpp"
+#include "output/output_file.hpp"
+#include "reports/frame_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
+#include <tofmap/visualization/drawing.hpp>
+#include <tofmap/visualization/frame_strip.hpp>
+
+namespace tofmap::app {
+namespace {
+
+StagedFrame staged_frame(const DualFrequencyFrame& frame, const SensorModel& sensor,
+                         const PixelRays& rays, const PipelineOptions& pipeline,
+                         Unwrapper& unwrapper) {
+  const PreparedFrame prepared = prepare_frame(frame, unwrapper, sensor, rays, pipeline);
+  StagedFrame staged;
+  staged.title = formatted("Frame %d, %.2f s", frame.index, frame.timestamp_s);
+  staged.amplitude = frame.amplitude_a;
+  staged.wrapped_m = frame.phase_a * static_cast<float>(sensor.modulation.wavelength_a_m());
+  staged.unwrapped = prepared.unwrapped.image;
+  staged.filtered = prepared.filtered.image;
+  return staged;
+}
+
+}  // namespace
+
+std::vector<OptionField<ReportOptions>> ReportOptions::fields() {
+  using O = ReportOptions;
+  return {
+      {"frames", &O::frames, 0, 200, "",
+       "frames that report.html steps through, spread evenly over the recording"},
+      {"points", &O::points, 1000, 500000, "",
+       "points, at most, of a map that can be turned in report.html"},
+  };
+}
+
+PageProgress::PageProgress(int steps, bool quiet)
+    : progress_("making report.html, step", steps, quiet) {}
+
+void PageProgress::step(const std::string& what) {
+  stop_if_interrupted();
+  progress_.show(done_++, what);
+}
+
+void add_drawn(ReportPage& page, const std::function<std::vector<PageFigure>()>& draw) {
+  try {
+    page.add_figures(draw());
+  } catch (const DrawingError& error) {
+    page.add_text(std::string("Not drawn: ") + error.what());
+  }
+}
+
+void add_frames(ReportPage& page, const std::vector<DualFrequencyFrame>& frames,
+                const SensorModel& sensor, const PipelineOptions& pipeline,
+                const std::function<std::optional<ImageF>(int index)>& truth_m,
+                const ReportOptions& options) {
+  if (frames.empty() || options.frames == 0) return;
+  const PixelRays rays = pixel_rays(sensor.camera);
+  Unwrapper unwrapper(sensor, pipeline.unwrap);
+  std::vector<StagedFrame> staged;
+  for (const int i : spread_indices(static_cast<int>(frames.size()), options.frames)) {
+    stop_if_interrupted();
+    const DualFrequencyFrame& frame = frames[static_cast<std::size_t>(i)];
+    staged.push_back(staged_frame(frame, sensor, rays, pipeline, unwrapper));
+    if (auto truth = truth_m(frame.index)) staged.back().truth_m = *std::move(truth);
+  }
+  const FrameStrip strip = frame_strip(staged, sensor.modulation.wavelength_a_m());
+  page.add_heading("Frames, from what was measured to what goes into the map");
+  page.add_text("Step by the buttons, the slider, or the arrow keys.");
+  page.add_strip(strip.frames, strip.legends);
+}
+
+void add_consistency(ReportPage& page, const std::vector<std::string>& names,
+                     const std::vector<Consistency>& runs) {
+  PageTable table;
+  table.header = {"without any truth"};
+  table.header.insert(table.header.end(), names.begin(), names.end());
+  const auto add_row = [&](const char* measure, const char* format, double Consistency::*value) {
+    std::vector<std::string> row{measure};
+    for (const Consistency& run : runs) {
+      row.push_back(std::isfinite(run.*value) ? formatted(format, run.*value) : "-");
+    }
+    table.rows.push_back(std::move(row));
+  };
+  add_row("points that other frames see through, %", "%.2f", &Consistency::contradicted_percent);
+  add_row("pixels that fit the beat better with another count, %", "%.2f",
+          &Consistency::beat_misfit_percent);
+  add_row("residual of phase B after A's range, cycles (RMS)", "%.4f",
+          &Consistency::beat_residual_cycles);
+  add_row("pixels whose count the frequencies cannot tell, %", "%.2f",
+          &Consistency::ambiguous_percent);
+  add_row("thickness of planes in the map, m (median)", "%.4f", &Consistency::plane_thickness_m);
+  add_row("curl violations per frame (jump, single)", "%.1f",
+          &Consistency::curl_violations_per_frame);
+  page.add_heading("Does it agree with itself?");
+  page.add_table(table);
+}
+
+void add_stage_times(ReportPage& page, const std::vector<std::string>& names,
+                     const std::vector<const RoomMap*>& runs) {
+  PageTable table;
+  table.header = {"stage, ms per frame"};
+  table.header.insert(table.header.end(), names.begin(), names.end());
+  std::vector<StageTimes> means;
+  for (const RoomMap* run : runs) means.push_back(mean_times(*run));
+  const auto add_row = [&](const char* stage, const auto& time_of) {
+    std::vector<std::string> row{stage};
+    for (const StageTimes& mean : means) row.push_back(formatted("%.1f", time_of(mean)));
+    table.rows.push_back(std::move(row));
+  };
+  add_row("unwrap", [](const StageTimes& times) { return times.unwrap_ms; });
+  add_row("filter", [](const StageTimes& times) { return times.filter_ms; });
+  add_row("cloud", [](const StageTimes& times) { return times.cloud_ms; });
+  add_row("register", [](const StageTimes& times) { return times.register_ms; });
+  add_row("map", [](const StageTimes& times) { return times.map_ms; });
+  add_row("loops", [](const StageTimes& times) { return times.loop_ms; });
+  add_row("all", [](const StageTimes& times) { return times.total_ms(); });
+  page.add_heading("Time");
+  page.add_table(table);
+}
+
+void add_options(ReportPage& page, const std::string& options_yaml) {
+  page.add_heading("How it was made");
+  page.add_folded("Options, to be used again with --config", options_yaml);
+}
+
+void write_page(const std::filesystem::path& result, const ReportPage& page) {
+  OutputFile file(result / "report.html", [](const auto&) { return true; });
+  std::ofstream out(file.path(), std::ios::binary);
+  out << page.html();
+  out.close();
+  if (!out) {
+    throw InputError((result / "report.html").string() +
+                     ": cannot be written; is the disk full, the folder writable?");
+  }
+  file.commit();
+}
+
+}  // namespace tofmap::app

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "console/progress.hpp"
+#include "reports/consistency_report.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/core/option_table.hpp>
+#include <tofmap/pipeline/pipeline.hpp>
+#include <tofmap/visualization/report_page.hpp>
+
+namespace tofmap::app {
+
+/// What report.html holds, group `report`.
+struct ReportOptions {
+  int frames = 12;
+  int points = 40000;
+
+  static std::vector<OptionField<ReportOptions>> fields();
+};
+
+/// How far a page has come that takes some time to make.
+class PageProgress {
+ public:
+  PageProgress(int steps, bool quiet);
+
+  /// Begins the next step. Throws Interrupted.
+  void step(const std::string& what);
+
+ private:
+  Progress progress_;
+  int done_ = 0;
+};
+
+/// What becomes of some frames, to be stepped through; of these `options.frames` are shown. Where
+/// `truth_m` finds the true ranges of a frame, wrong wraps are, too. Throws Interrupted.
+void add_frames(ReportPage& page, const std::vector<DualFrequencyFrame>& frames,
+                const SensorModel& sensor, const PipelineOptions& pipeline,
+                const std::function<std::optional<ImageF>(int index)>& truth_m,
+                const ReportOptions& options);
+
+/// What tells without truth whether unwrapping was right, a column a run.
+void add_consistency(ReportPage& page, const std::vector<std::string>& names,
+                     const std::vector<Consistency>& runs);
+
+/// Mean times of the stages, a column a run. Names are as many as runs.
+void add_stage_times(ReportPage& page, const std::vector<std::string>& names,
+                     const std::vector<const RoomMap*>& runs);
+
+/// The options that a run can be repeated with, folded.
+void add_options(ReportPage& page, const std::string& options_yaml);
+
+/// Adds what has to be drawn; where there is nothing to draw with, the page says so instead.
+void add_drawn(ReportPage& page, const std::function<std::vector<PageFigure>()>& draw);
+
+/// Writes report.html into a result that is in place already. Throws InputError if it cannot be
+/// written whole.
+void write_page(const std::filesystem::path& result, const ReportPage& page);
+
+}  // namespace tofmap::app

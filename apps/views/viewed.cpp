@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "views/viewed.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include <tofmap/acquisition/triangle_mesh.hpp>
+#include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
+#include <tofmap/visualization/map_pictures.hpp>
+
+namespace tofmap::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Along the longer side of a room, from its middle.
+Viewpoint viewpoint_in_the_middle(const Eigen::AlignedBox3d& box_m) {
+  Viewpoint viewpoint;
+  if (box_m.isEmpty()) return viewpoint;
+  const bool is_wide = box_m.sizes().x() > box_m.sizes().y();
+  viewpoint.up = Eigen::Vector3d::UnitZ();
+  viewpoint.eye_m = box_m.center();
+  viewpoint.target_m =
+      viewpoint.eye_m + (is_wide ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY());
+  return viewpoint;
+}
+
+/// Triangles of others, in the grey of their reflectance.
+class ViewedMesh final : public Viewed {
+ public:
+  explicit ViewedMesh(const fs::path& file) : Viewed({"reflectance"}), mesh_(read_mesh(file)) {}
+
+  Drawing drawing() const override {
+    MeshLayer layer;
+    layer.points_m = mesh_.vertices;
+    layer.triangles = mesh_.triangles;
+    for (const float reflectance : mesh_.reflectance) {
+      const auto gray = static_cast<std::uint8_t>(
+          255 * std::clamp(std::isnan(reflectance) ? 0 : reflectance, 0.0F, 1.0F));
+      layer.colors.push_back({gray, gray, gray});
+    }
+    return {{}, {}, {std::move(layer)}};
+  }
+
+  Viewpoint viewpoint(const std::string& from, double aspect) const override {
+    const Eigen::AlignedBox3d box_m = bounds(mesh_);
+    if (from == "above") return viewpoint_above(box_m, aspect);
+    return from == "inside" ? viewpoint_in_the_middle(box_m) : viewpoint_outside(box_m);
+  }
+
+  Picture legend() const override { return {}; }
+
+  std::string status() const override { return counted(mesh_.triangles.size(), "triangle"); }
+
+ private:
+  TriangleMesh mesh_;
+};
+
+/// Whether a PLY file has faces, an OBJ file always.
+bool is_mesh(const fs::path& file) {
+  if (file.extension() == ".obj") return true;
+  if (file.extension() != ".ply") return false;
+  std::ifstream in(file, std::ios::binary);
+  for (std::string line; std::getline(in, line) && line.rfind("end_header", 0) != 0;) {
+    if (line.rfind("element face ", 0) == 0) return line.rfind("element face 0", 0) != 0;
+  }
+  return false;
+}
+
+/// What is asked of a recording, though PATH is none; empty if nothing is.
+std::string asked_of_recording(const ViewRequest& request) {
+  if (request.frame) return "--frame";
+  if (request.wrapped) return "--wrapped";
+  return request.method.empty() ? "" : "--method";
+}
+
+std::unique_ptr<Viewed> view_map_or_mesh(const ViewRequest& request, const fs::path& file) {
+  const std::string asked = asked_of_recording(request);
+  if (!asked.empty()) {
+    throw UsageError(asked + " is for recordings, and " + file.string() + " is none");
+  }
+  if (!fs::is_directory(request.path) && is_mesh(file)) return std::make_unique<ViewedMesh>(file);
+  return view_map(file, file.parent_path(), request.cameras);
+}
+
+}  // namespace
+
+Viewpoint viewpoint_above(const Eigen::AlignedBox3d& box_m, double aspect) {
+  Viewpoint viewpoint;
+  viewpoint.up = Eigen::Vector3d::UnitY();
+  if (box_m.isEmpty()) return viewpoint;
+  const Eigen::Vector3d size = box_m.sizes();
+  viewpoint.target_m = box_m.center();
+  viewpoint.eye_m = viewpoint.target_m + 2 * (size.z() + 1) * Eigen::Vector3d::UnitZ();
+  viewpoint.parallel_height_m = 1.05 * std::max({size.y(), size.x() / aspect, 0.1});
+  return viewpoint;
+}
+
+void Viewed::color_by(const std::string& name) {
+  const auto found = std::ranges::find(color_names_, name);
+  if (found == color_names_.end()) {
+    throw UsageError("--color " + name + ": this can be coloured by " + joined(color_names_, ", "));
+  }
+  color_ = static_cast<std::size_t>(found - color_names_.begin());
+}
+
+void Viewed::color_by_next() { color_ = (color_ + 1) % color_names_.size(); }
+
+std::unique_ptr<Viewed> open_viewed(const ViewRequest& request, const ProgramOptions& options) {
+  const fs::path& path = request.path;
+  if (!fs::exists(path)) {
+    throw InputError(path.string() +
+                     ": not found; give a result folder of 'tofmap map', a map, "
+                     "cloud or mesh (PLY, PCD, OBJ), or a recording");
+  }
+  if (!fs::is_directory(path)) return view_map_or_mesh(request, path);
+  for (const char* name : {"map.ply", "merged.ply"}) {
+    if (fs::exists(path / name)) return view_map_or_mesh(request, path / name);
+  }
+  if (fs::exists(path / "sequence.yaml")) {
+    if (request.cameras) {
+      throw UsageError("--cameras is for maps, and " + path.string() + " is a recording");
+    }
+    return view_recording(request, options);
+  }
+  throw InputError(path.string() +
+                   ": holds no map.ply, merged.ply or sequence.yaml; nothing to view");
+}
+
+}  // namespace tofmap::app
