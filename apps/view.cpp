@@ -136,7 +136,7 @@ void add_view_command(CLI::App& program, Outcome& outcome) {
   ViewRequest& request = arguments->request;
   CLI::App* app = program.add_subcommand("view", "look at a map, cloud, mesh or recording");
   app->add_option("PATH", request.path,
-                  "result folder of map, a PLY, PCD or OBJ file, or the folder of a recording")
+                  "result of map, register or evaluate, a PLY, PCD or OBJ file, or a recording")
       ->required();
   app->add_option("--screenshot", arguments->screenshot,
                   "write a PNG picture instead of opening a window; needs no display");

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <ranges>
 
 #include <tofmap/acquisition/triangle_mesh.hpp>
 #include <tofmap/core/error.hpp>
@@ -71,20 +72,47 @@ bool is_mesh(const fs::path& file) {
   return false;
 }
 
-/// What is asked of a recording, though PATH is none; empty if nothing is.
-std::string asked_of_recording(const ViewRequest& request) {
-  if (request.frame) return "--frame";
-  if (request.wrapped) return "--wrapped";
-  return request.method.empty() ? "" : "--method";
+/// Throws UsageError if something is asked for that only recordings have.
+void refuse_what_is_of_recordings(const ViewRequest& request) {
+  const std::string asked = request.frame ? "--frame" : request.wrapped ? "--wrapped" : "";
+  if (!asked.empty()) {
+    throw UsageError(asked + " is for recordings, and " + request.path.string() + " is none");
+  }
 }
 
 std::unique_ptr<Viewed> view_map_or_mesh(const ViewRequest& request, const fs::path& file) {
-  const std::string asked = asked_of_recording(request);
-  if (!asked.empty()) {
-    throw UsageError(asked + " is for recordings, and " + file.string() + " is none");
+  refuse_what_is_of_recordings(request);
+  if (!request.method.empty()) {
+    throw UsageError("--method is for recordings and evaluations, and " + request.path.string() +
+                     " is none");
   }
   if (!fs::is_directory(request.path) && is_mesh(file)) return std::make_unique<ViewedMesh>(file);
-  return view_map(file, file.parent_path(), request.cameras);
+  return view_maps({{file, ""}}, request.cameras);
+}
+
+/// The maps of an evaluation's methods, the best method first; empty if the folder has none.
+std::vector<MapFile> maps_of_methods(const fs::path& folder) {
+  std::vector<MapFile> files;
+  for (const std::string& method : unwrap_methods()) {
+    const fs::path file = folder / method / "map.ply";
+    if (fs::exists(file)) files.push_back({file, method});
+  }
+  return files;
+}
+
+/// Begins with the method that is asked for.
+std::unique_ptr<Viewed> view_evaluation(const ViewRequest& request, std::vector<MapFile> files) {
+  refuse_what_is_of_recordings(request);
+  if (!request.method.empty()) {
+    const auto first = std::ranges::find(files, request.method, &MapFile::method);
+    if (first == files.end()) {
+      throw UsageError("--method " + request.method + ": " + request.path.string() +
+                       " holds the maps of " +
+                       joined(std::views::transform(files, &MapFile::method), ", "));
+    }
+    std::ranges::rotate(files, first);
+  }
+  return view_maps(files, request.cameras);
 }
 
 }  // namespace
@@ -114,7 +142,7 @@ std::unique_ptr<Viewed> open_viewed(const ViewRequest& request, const ProgramOpt
   const fs::path& path = request.path;
   if (!fs::exists(path)) {
     throw InputError(path.string() +
-                     ": not found; give a result folder of 'tofmap map', a map, "
+                     ": not found; give the result folder of a command, a map, "
                      "cloud or mesh (PLY, PCD, OBJ), or a recording");
   }
   if (!fs::is_directory(path)) return view_map_or_mesh(request, path);
@@ -126,6 +154,9 @@ std::unique_ptr<Viewed> open_viewed(const ViewRequest& request, const ProgramOpt
       throw UsageError("--cameras is for maps, and " + path.string() + " is a recording");
     }
     return view_recording(request, options);
+  }
+  if (const auto files = maps_of_methods(path); !files.empty()) {
+    return view_evaluation(request, files);
   }
   throw InputError(path.string() +
                    ": holds no map.ply, merged.ply or sequence.yaml; nothing to view");

@@ -23,7 +23,7 @@ struct ViewRequest {
   std::string color;         ///< empty: the first there is
   bool cameras = false;      ///< of a map: pyramids of what the camera saw
   bool wrapped = false;      ///< of a recording: ranges as measured
-  std::string method;        ///< of a recording: how it is unwrapped; empty: as the options say
+  std::string method;        ///< of a recording or evaluation; empty: as the options say
   std::optional<int> frame;  ///< of a recording; none: the first
 };
 
@@ -69,13 +69,18 @@ class Viewed {
   std::size_t color_ = 0;
 };
 
-/// A map, result folder, cloud, mesh or recording. Throws InputError if there is nothing to see,
-/// UsageError if what is there cannot be shown as requested.
+/// A map, cloud, mesh, recording, or the result of map, register or evaluate. Throws InputError if
+/// there is nothing to see, UsageError if what is there cannot be shown as requested.
 std::unique_ptr<Viewed> open_viewed(const ViewRequest& request, const ProgramOptions& options);
 
-/// A map or cloud; path and keyframes may not be there.
-std::unique_ptr<Viewed> view_map(const std::filesystem::path& map_file,
-                                 const std::filesystem::path& folder, bool with_cameras);
+/// A map or cloud to be read; path and keyframes beside it may not be there.
+struct MapFile {
+  std::filesystem::path file;
+  std::string method;  ///< that made it, where there are maps of several
+};
+
+/// One map at a time, in the place of the first. Throws InputError if none has a point.
+std::unique_ptr<Viewed> view_maps(const std::vector<MapFile>& files, bool with_cameras);
 
 /// A frame of a recording at a time, unwrapped and filtered as the options say.
 std::unique_ptr<Viewed> view_recording(const ViewRequest& request, const ProgramOptions& options);

@@ -28,20 +28,36 @@ float most_observations(const MapCloud& map) {
   return static_cast<float>(std::max<std::uint32_t>(1, *place));
 }
 
-class ViewedMap final : public Viewed {
+/// A map that was read, with its path.
+struct PathedMap {
+  explicit PathedMap(const MapFile& from)
+      : method(from.method),
+        map(read_map(from.file)),
+        trajectory(read_if_there(from.file.parent_path() / "trajectory.txt")),
+        keyframes(read_if_there(from.file.parent_path() / "keyframes.txt")) {}
+
+  std::string method;
+  MapCloud map;
+  Trajectory trajectory;
+  Trajectory keyframes;
+};
+
+class ViewedMaps final : public Viewed {
  public:
-  ViewedMap(const fs::path& map_file, const fs::path& folder, bool with_cameras)
-      : Viewed({"height", "confidence", "count", "plain"}),
-        map_(read_map(map_file)),
-        trajectory_(read_if_there(folder / "trajectory.txt")),
-        keyframes_(read_if_there(folder / "keyframes.txt")),
-        with_cameras_(with_cameras) {
-    if (map_.empty()) throw InputError(map_file.string() + ": holds no point; nothing to view");
-    frame_ = level_frame(map_, trajectory_);
+  ViewedMaps(const std::vector<MapFile>& files, bool with_cameras)
+      : Viewed({"height", "confidence", "count", "plain"}), with_cameras_(with_cameras) {
+    for (const MapFile& file : files) {
+      maps_.emplace_back(file);
+      if (maps_.back().map.empty()) maps_.pop_back();
+    }
+    if (maps_.empty()) {
+      throw InputError(files.front().file.string() + ": holds no point; nothing to view");
+    }
+    frame_ = level_frame(shown().map, shown().trajectory);
   }
 
   Drawing drawing() const override {
-    Drawing drawing = map_drawing(map_, trajectory_, frame_, coloring());
+    Drawing drawing = map_drawing(shown().map, shown().trajectory, frame_, coloring());
     if (color() == "plain") {
       for (PointLayer& layer : drawing.points) std::ranges::fill(layer.colors, plain);
     }
@@ -53,7 +69,8 @@ class ViewedMap final : public Viewed {
   Viewpoint viewpoint(const std::string& from, double aspect) const override {
     if (from == "above") return viewpoint_above(frame_.box_m, aspect);
     if (from != "inside") return viewpoint_outside(frame_.box_m);
-    return viewpoint_inside(map_drawing(map_, trajectory_, frame_), trajectory_, frame_, aspect);
+    return viewpoint_inside(map_drawing(shown().map, shown().trajectory, frame_),
+                            shown().trajectory, frame_, aspect);
   }
 
   Picture legend() const override {
@@ -62,38 +79,51 @@ class ViewedMap final : public Viewed {
   }
 
   std::string status() const override {
-    std::string text = counted(map_.size(), "point") + ", coloured by " + color();
-    if (!trajectory_.empty()) text += "; " + counted(trajectory_.size(), "pose");
-    if (!keyframes_.empty()) text += ", " + counted(keyframes_.size(), "keyframe");
+    std::string text = shown().method.empty() ? "" : "method " + shown().method + ": ";
+    text += counted(shown().map.size(), "point") + ", coloured by " + color();
+    if (!shown().trajectory.empty()) text += "; " + counted(shown().trajectory.size(), "pose");
+    if (!shown().keyframes.empty()) text += ", " + counted(shown().keyframes.size(), "keyframe");
     return text;
   }
 
   std::string help() const override {
-    return trajectory_.empty() ? "" : "p: path of the camera, f: what it saw from keyframes";
+    std::string help = maps_.size() > 1 ? "m: map of the next method" : "";
+    if (!shown().trajectory.empty()) {
+      help += (help.empty() ? "" : ", ");
+      help += "p: path of the camera, f: what it saw from keyframes";
+    }
+    return help;
   }
 
   bool take_key(const std::string& key) override {
-    if (trajectory_.empty() || (key != "p" && key != "f")) return false;
-    bool& shown = key == "p" ? with_path_ : with_cameras_;
-    shown = !shown;
+    if (key == "m" && maps_.size() > 1) {
+      shown_ = (shown_ + 1) % maps_.size();
+      return true;
+    }
+    if (shown().trajectory.empty() || (key != "p" && key != "f")) return false;
+    bool& is_drawn = key == "p" ? with_path_ : with_cameras_;
+    is_drawn = !is_drawn;
     return true;
   }
 
  private:
   static constexpr Rgb plain{190, 196, 204};
 
+  const PathedMap& shown() const { return maps_[shown_]; }
+
   MapColoring coloring() const {
     if (color() == "confidence") return colored_by(&MapPoint::confidence, {0, 1, "confidence"});
     if (color() == "count") {
-      return colored_by(&MapPoint::observations, {0, most_observations(map_), "observations"});
+      return colored_by(&MapPoint::observations,
+                        {0, most_observations(shown().map), "observations"});
     }
-    return color_by_height(map_, frame_);
+    return color_by_height(shown().map, frame_);
   }
 
   template <class Value>
   MapColoring colored_by(Value MapPoint::*value, ColorScale scale) const {
     MapColoring coloring{{}, std::move(scale)};
-    for (const MapPoint& point : map_) {
+    for (const MapPoint& point : shown().map) {
       coloring.values.push_back(static_cast<float>(point.*value));
     }
     return coloring;
@@ -102,7 +132,7 @@ class ViewedMap final : public Viewed {
   /// Those of the keyframes; if they are not known, of some poses.
   void add_cameras(Drawing& drawing) const {
     constexpr std::size_t most = 100;
-    const Trajectory& poses = keyframes_.empty() ? trajectory_ : keyframes_;
+    const Trajectory& poses = shown().keyframes.empty() ? shown().trajectory : shown().keyframes;
     const std::size_t step = std::max<std::size_t>(1, poses.size() / most);
     for (std::size_t i = 0; i < poses.size(); i += step) {
       drawing.lines.push_back(
@@ -111,19 +141,17 @@ class ViewedMap final : public Viewed {
     }
   }
 
-  MapCloud map_;
-  Trajectory trajectory_;
-  Trajectory keyframes_;
-  LevelFrame frame_;
+  std::vector<PathedMap> maps_;
+  std::size_t shown_ = 0;
+  LevelFrame frame_;  ///< of the first map, and for all
   bool with_path_ = true;
   bool with_cameras_;
 };
 
 }  // namespace
 
-std::unique_ptr<Viewed> view_map(const fs::path& map_file, const fs::path& folder,
-                                 bool with_cameras) {
-  return std::make_unique<ViewedMap>(map_file, folder, with_cameras);
+std::unique_ptr<Viewed> view_maps(const std::vector<MapFile>& files, bool with_cameras) {
+  return std::make_unique<ViewedMaps>(files, with_cameras);
 }
 
 }  // namespace tofmap::app

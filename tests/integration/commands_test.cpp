@@ -251,6 +251,29 @@ TEST_F(Commands, ViewRefusesWhatDoesNotFitWhatIsThere) {
   EXPECT_FALSE(fs::exists(photo));
 }
 
+TEST_F(Commands, ViewShowsTheMapsOfAnEvaluation) {
+  ASSERT_EQ(
+      run("evaluate", {"--set", "evaluation.methods=none pixel", "--set", "map.min_observations=1"})
+          .status,
+      0);
+  const fs::path picture = folder_.path() / "view.png";
+  const auto view = [&](const fs::path& path, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"view", path.string(), "--screenshot", picture.string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(arguments);
+  };
+  ASSERT_EQ(view(out_, {}).status, 0);
+  const std::string of_pixel = read_text(picture);
+  ASSERT_EQ(view(out_ / "pixel", {}).status, 0);
+  EXPECT_TRUE(read_text(picture) == of_pixel) << "the best method is the first";
+  ASSERT_EQ(view(out_, {"--method", "none"}).status, 0);
+  EXPECT_FALSE(read_text(picture) == of_pixel);
+  const Finished missing = view(out_, {"--method", "joint"});
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_THAT(missing.err, HasSubstr("holds the maps of pixel, none"));
+  EXPECT_EQ(view(out_, {"--frame", "1"}).status, 2);
+}
+
 TEST_F(Commands, ViewColoursByWhatIsAskedFor) {
   ASSERT_EQ(run("map", {"--set", "map.min_observations=1"}).status, 0);
   const auto picture_of = [&](const fs::path& path, const std::vector<std::string>& more) {

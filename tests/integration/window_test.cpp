@@ -91,6 +91,21 @@ TEST_F(ProgramWindow, ShowsAMapInSeveralWays) {
   EXPECT_EQ(program.wait().status, 0);
 }
 
+TEST_F(ProgramWindow, GoesFromOneMethodOfAnEvaluationToTheNext) {
+  ASSERT_EQ(
+      run("evaluate", {"--set", "evaluation.methods=none pixel", "--set", "map.min_observations=1"})
+          .status,
+      0);
+  RunningProgram program({"view", out_.string()});
+  ASSERT_TRUE(display_.has_window(out_.string()));
+  EXPECT_TRUE(comes_true([&] { return display_.count_colors() > colors_of_a_map; }));
+  for (const char* key : {"m", "m"}) {
+    EXPECT_TRUE(display_.changes_by(key, out_.string())) << key;
+  }
+  EXPECT_TRUE(display_.close_by("q", out_.string()));
+  EXPECT_EQ(program.wait().status, 0);
+}
+
 TEST_F(ProgramWindow, StepsThroughARecording) {
   fs::remove(sequence_ / "phase_b" / "000002.png");  // a damaged frame is passed through
   RunningProgram program({"view", sequence_.string(), "--color", "range"});

@@ -4,7 +4,6 @@
 #include "tofmap/unwrap/unwrap_options.hpp"
 
 #include <array>
-#include <ranges>
 
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/text.hpp>
@@ -68,8 +67,14 @@ std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
   };
 }
 
+std::vector<std::string> unwrap_methods() {
+  std::vector<std::string> names;
+  for (const NamedMethod& named : methods) names.emplace_back(named.name);
+  return names;
+}
+
 std::string unwrap_method_names(const std::string& separator) {
-  return joined(std::views::transform(methods, &NamedMethod::name), separator);
+  return joined(unwrap_methods(), separator);
 }
 
 std::optional<UnwrapMethod> find_unwrap_method(std::string_view name) {

@@ -19,7 +19,10 @@ enum class UnwrapMethod {
   jump,    ///< the paper
 };
 
-/// The names of all methods, the best first, with `separator` between them.
+/// The names of all methods, the best first.
+std::vector<std::string> unwrap_methods();
+
+/// The same as a text, with `separator` between them.
 std::string unwrap_method_names(const std::string& separator);
 
 /// The options of unwrapping, group `unwrap`. docs/unwrapping.md has the effect of each.
