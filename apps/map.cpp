@@ -176,7 +176,7 @@ int map_recording(const MapArguments& arguments, const ProgramOptions& options,
                   [&] { return status_line(run); });
     if (run.is_interrupted()) write_map_state(out.path(), run, source, options.pipeline);
     output.frames = sampled_frames(source, static_cast<int>(run.frames().size()),
-                                   frames_for_page(options.report));
+                                   frames_for_page(source.sensor().camera, options.report));
     finished = finish_map(run, out, output);
   });
   const RoomMap& map = finished.map;
@@ -207,7 +207,7 @@ int map_device(const MapArguments& arguments, const ProgramOptions& options,
   const std::unique_ptr<LiveView> view = open_view(arguments);
   LiveInput input(uri, options, {});
   if (is_interrupted()) return exit_status::interrupted;
-  SamplingSource frames(input.frames(), frames_for_page(options.report));
+  SamplingSource frames(input.frames(), frames_for_page(input.sensor().camera, options.report));
   MapRun run(input.sensor(), options.pipeline);
   const auto remark = [&] {
     const std::string losses = input.losses();

@@ -6,7 +6,9 @@
 #include "input/sampled_frames.hpp"
 #include "reports/frame_report.hpp"
 
+#include <algorithm>
 #include <limits>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -33,24 +35,30 @@ double curl_violations_per_frame(const RoomMap& map, const std::string& method) 
 
 }  // namespace
 
+int consistency_frames(const CameraModel& camera) {
+  constexpr double most_pixels = 6e6;
+  return static_cast<int>(std::clamp(most_pixels / (camera.width_px * camera.height_px), 20., 60.));
+}
+
 Consistency consistency_of(const RoomMap& map, const std::vector<DualFrequencyFrame>& frames,
                            const SensorModel& sensor, const PipelineOptions& pipeline) {
   const PixelRays rays = pixel_rays(sensor.camera);
   auto unwrappers = one_a_thread(Unwrapper(sensor, pipeline.unwrap));
   const std::vector<int> chosen =
-      spread_indices(static_cast<int>(frames.size()), consistency_frames);
+      spread_indices(static_cast<int>(frames.size()), consistency_frames(sensor.camera));
   const auto prepare = [&](Unwrapper& unwrapper, int i) {
     const auto frame = static_cast<std::size_t>(chosen[static_cast<std::size_t>(i)]);
-    return prepare_frame(frames[frame], unwrapper, sensor, rays, pipeline);
+    PreparedFrame ranges = prepare_ranges(frames[frame], unwrapper, sensor, rays, pipeline);
+    return std::pair(std::move(ranges.unwrapped.image), std::move(ranges.filtered.image));
   };
   std::vector<RangedFrame> unwrapped;
   std::vector<RangedFrame> filtered;
-  const auto prepared = side_by_side(static_cast<int>(chosen.size()), unwrappers, prepare);
+  auto images = side_by_side(static_cast<int>(chosen.size()), unwrappers, prepare);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const DualFrequencyFrame& frame = frames[static_cast<std::size_t>(chosen[i])];
     const auto pose = pose_at(map.trajectory, frame.timestamp_s);
-    unwrapped.push_back({&frame, prepared[i].unwrapped.image, pose});
-    filtered.push_back({&frame, prepared[i].filtered.image, pose});
+    unwrapped.push_back({&frame, std::move(images[i].first), pose});
+    filtered.push_back({&frame, std::move(images[i].second), pose});
   }
   const BeatAgreement beat = beat_agreement(unwrapped, sensor.modulation);
   return {.beat_misfit_percent = beat.misfit_percent,

@@ -22,8 +22,8 @@ struct Consistency {
   double curl_violations_per_frame = 0;
 };
 
-/// How many frames tell enough; what they cost grows with the square.
-constexpr int consistency_frames = 60;
+/// How many frames tell enough: 60, fewer where images are large, for they are kept, but 20.
+int consistency_frames(const CameraModel& camera);
 
 /// Of a map, from at most `consistency_frames` of these frames of it, which are unwrapped and
 /// filtered once more.

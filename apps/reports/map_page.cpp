@@ -170,7 +170,8 @@ std::vector<ShownMap> shown_maps(const MapPageSubject& subject, const Truth& tru
       "the same path, ranges as measured (of " + counted(subject.frames.size(), "frame") + ")";
   as_measured.surface = &wrapped;
   if (scores.surface) {
-    as_measured.errors_m = map_errors_m(wrapped, *as_measured.truth_from_map, truth.surface);
+    as_measured.errors_m =
+        map_errors_m(wrapped, *as_measured.truth_from_map, truth.surface, wrong_m);
   }
   maps.push_back(std::move(as_measured));
   return maps;
@@ -178,8 +179,8 @@ std::vector<ShownMap> shown_maps(const MapPageSubject& subject, const Truth& tru
 
 }  // namespace
 
-int frames_for_page(const ReportOptions& options) {
-  return std::max(consistency_frames, options.frames);
+int frames_for_page(const CameraModel& camera, const ReportOptions& options) {
+  return std::max(consistency_frames(camera), options.frames);
 }
 
 void write_map_page(const std::filesystem::path& result, const MapPageSubject& subject,

@@ -27,7 +27,7 @@ struct MapPageSubject {
 };
 
 /// How many frames the page wants to be given.
-int frames_for_page(const ReportOptions& options);
+int frames_for_page(const CameraModel& camera, const ReportOptions& options);
 
 /// Writes report.html into a result that is in place already: what became of the map, and what it
 /// would be on the same path with ranges as measured. Throws InputError if it cannot be written,

@@ -16,9 +16,6 @@ namespace {
 
 constexpr int map_width_px = 900;
 
-/// Of a map whose truth is known: from here on points are all drawn as wrong.
-constexpr double wrong_m = 0.2;
-
 // The palette of Okabe and Ito, as in plots; the truth is black and lies undermost.
 constexpr std::array<Rgb, 4> path_colors{
     {{0, 114, 178}, {213, 94, 0}, {0, 158, 115}, {204, 121, 167}}};

@@ -23,7 +23,7 @@ namespace {
 StagedFrame staged_frame(const DualFrequencyFrame& frame, const SensorModel& sensor,
                          const PixelRays& rays, const PipelineOptions& pipeline,
                          Unwrapper& unwrapper) {
-  const PreparedFrame prepared = prepare_frame(frame, unwrapper, sensor, rays, pipeline);
+  const PreparedFrame prepared = prepare_ranges(frame, unwrapper, sensor, rays, pipeline);
   StagedFrame staged;
   staged.title = formatted("Frame %d, %.2f s", frame.index, frame.timestamp_s);
   staged.amplitude = frame.amplitude_a;

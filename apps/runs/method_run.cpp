@@ -108,9 +108,10 @@ MethodResult run_down_to_map(const std::string& method, const SequenceReader& re
   refuse_mostly_damaged(*result.map);
   result.interrupted = result.map->interrupted;
   if (result.interrupted) return result;
-  result.consistency = consistency_of(
-      *result.map, sampled_frames(recording, *recording.frame_count(), consistency_frames),
-      recording.sensor(), options);
+  result.consistency = consistency_of(*result.map,
+                                      sampled_frames(recording, *recording.frame_count(),
+                                                     consistency_frames(recording.sensor().camera)),
+                                      recording.sensor(), options);
   result.scores = score_of(*result.map, truth);
   return result;
 }

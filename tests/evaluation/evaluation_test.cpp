@@ -159,6 +159,7 @@ TEST(MapScore, RefusesAnEmptyReference) {
 }
 
 TEST(MapErrors, AreThoseOfTheScorePointByPoint) {
+  constexpr float most_error_m = 0.5;
   MapCloud map = plane_map(1.02, 0.03);
   MapPoint astray;
   astray.getVector3fMap() = Eigen::Vector3f(0, 0, 3);
@@ -167,6 +168,11 @@ TEST(MapErrors, AreThoseOfTheScorePointByPoint) {
   ASSERT_EQ(errors.size(), map.points.size());
   EXPECT_NEAR(errors.front(), 0.02, 1e-4);
   EXPECT_NEAR(errors.back(), 2, 1e-4);
+  std::vector<float> limited = map_errors_m(map, Pose::Identity(), plane_reference(), most_error_m);
+  EXPECT_FLOAT_EQ(limited.back(), most_error_m);
+  limited.back() = errors.back();
+  EXPECT_EQ(limited, errors) << "the others are near";
+  EXPECT_EQ(score_map(map, Pose::Identity(), plane_reference()).errors_m, errors);
   EXPECT_THROW(map_errors_m(map, Pose::Identity(), {}), UsageError);
 }
 

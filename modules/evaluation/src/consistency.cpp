@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include <Eigen/Eigenvalues>
@@ -182,9 +183,11 @@ double ambiguous_percent(const std::vector<RangedFrame>& frames) {
 double contradicted_percent(const std::vector<RangedFrame>& frames, const CameraModel& camera) {
   constexpr int least_points = 50;  // fewer is chance
   const PixelRays rays = pixel_rays(camera);
-  double points = 0;
-  double seen_through = 0;
-  for (const RangedFrame& from : frames) {
+  std::int64_t points = 0;
+  std::int64_t seen_through = 0;
+#pragma omp parallel for schedule(dynamic, 1) reduction(+ : points, seen_through)
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const RangedFrame& from = frames[i];
     for (const RangedFrame& to : frames) {
       if (&from == &to || !from.world_from_camera || !to.world_from_camera) continue;
       const Overlap pair = overlap(from, to, camera, rays);
@@ -193,7 +196,7 @@ double contradicted_percent(const std::vector<RangedFrame>& frames, const Camera
       seen_through += pair.seen_through;
     }
   }
-  return percent(seen_through, points);
+  return percent(static_cast<double>(seen_through), static_cast<double>(points));
 }
 
 double plane_thickness_m(const MapCloud& map) {

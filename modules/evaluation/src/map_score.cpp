@@ -64,11 +64,15 @@ struct Nearest {
   double gap_m = 0;
 };
 
-Nearest nearest(const Tree& tree, const pcl::PointXYZ& point) {
+constexpr double anywhere_m = std::numeric_limits<double>::infinity();
+
+/// Beyond `most_m` there is none, and its gap is that.
+Nearest nearest(const Tree& tree, const pcl::PointXYZ& point, double most_m) {
   std::vector<int> index(1);
   std::vector<float> square(1);
-  tree.nearestKSearch(point, 1, index, square);
-  return {index[0], std::sqrt(square[0])};
+  const int found = most_m < anywhere_m ? tree.radiusSearch(point, most_m, index, square, 1)
+                                        : tree.nearestKSearch(point, 1, index, square);
+  return found > 0 ? Nearest{index[0], std::sqrt(square[0])} : Nearest{-1, most_m};
 }
 
 /// A map in the frame of the reference, and the reference.
@@ -87,16 +91,16 @@ struct Clouds {
   Cloud::Ptr placed = std::make_shared<Cloud>();
 };
 
-std::vector<float> errors_m(const Clouds& clouds) {
+std::vector<float> errors_m(const Clouds& clouds, double most_m) {
   const Cloud& truth = *clouds.truth;
   const Tree truth_tree = make_tree(clouds.truth);
   std::vector<float> errors(clouds.placed->size());
 #pragma omp parallel for schedule(dynamic, 256)
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const pcl::PointXYZ& point = (*clouds.placed)[i];
-    const Nearest found = nearest(truth_tree, point);
+    const Nearest found = nearest(truth_tree, point, most_m);
     double gap_m = found.gap_m;
-    if (gap_m < near_m) {
+    if (found.index >= 0 && gap_m < near_m) {
       const Eigen::Vector3f d = point.getVector3fMap() - truth[found.index].getVector3fMap();
       gap_m = std::abs(d.dot(plane_normal(truth, truth_tree, found.index)));
     }
@@ -124,9 +128,9 @@ void ReferenceSurface::add(const ImageF& range_truth_m, const PixelRays& rays,
 }
 
 std::vector<float> map_errors_m(const MapCloud& map, const Pose& truth_from_map,
-                                const ReferenceSurface& reference) {
+                                const ReferenceSurface& reference, double most_m) {
   const Clouds clouds(map, truth_from_map, reference);
-  return errors_m(clouds);
+  return errors_m(clouds, most_m);
 }
 
 MapScore score_map(const MapCloud& map, const Pose& truth_from_map,
@@ -138,7 +142,7 @@ MapScore score_map(const MapCloud& map, const Pose& truth_from_map,
 
   double sum = 0;
   int far = 0;
-  score.errors_m = errors_m(clouds);
+  score.errors_m = errors_m(clouds, anywhere_m);
   for (const double error_m : score.errors_m) {
     sum += std::min(error_m, worst_m);
     far += error_m > far_m ? 1 : 0;
@@ -152,7 +156,7 @@ MapScore score_map(const MapCloud& map, const Pose& truth_from_map,
   int covered = 0;
 #pragma omp parallel for schedule(dynamic, 256) reduction(+ : covered)
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    covered += nearest(map_tree, truth[i]).gap_m < near_m ? 1 : 0;
+    covered += nearest(map_tree, truth[i], near_m).gap_m < near_m ? 1 : 0;
   }
   score.completeness_percent = 100.0 * covered / static_cast<double>(truth.size());
   return score;

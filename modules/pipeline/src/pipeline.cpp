@@ -106,9 +106,9 @@ int RoomMap::damaged() const {
       frames, [](const FrameRecord& record) { return !record.damage.empty(); }));
 }
 
-PreparedFrame prepare_frame(const DualFrequencyFrame& frame, Unwrapper& unwrapper,
-                            const SensorModel& sensor, const PixelRays& rays,
-                            const PipelineOptions& options) {
+PreparedFrame prepare_ranges(const DualFrequencyFrame& frame, Unwrapper& unwrapper,
+                             const SensorModel& sensor, const PixelRays& rays,
+                             const PipelineOptions& options) {
   PreparedFrame out;
   out.index = frame.index;
   out.timestamp_s = frame.timestamp_s;
@@ -119,6 +119,13 @@ PreparedFrame prepare_frame(const DualFrequencyFrame& frame, Unwrapper& unwrappe
   // Wrapped ranges are those of a camera that knows of no wraps: how likely they are right would
   // tell registration what only unwrapping knows.
   if (options.unwrap.method == "none") out.filtered.image.confidence.setOnes();
+  return out;
+}
+
+PreparedFrame prepare_frame(const DualFrequencyFrame& frame, Unwrapper& unwrapper,
+                            const SensorModel& sensor, const PixelRays& rays,
+                            const PipelineOptions& options) {
+  PreparedFrame out = prepare_ranges(frame, unwrapper, sensor, rays, options);
   out.cloud = timed(out.times.cloud_ms, [&] {
     return std::make_shared<const SurfaceCloud>(
         surface_cloud(out.filtered.image, rays, options.cloud));

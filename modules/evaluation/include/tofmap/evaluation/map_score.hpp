@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <unordered_map>
 #include <vector>
 
@@ -37,9 +38,11 @@ struct MapScore {
 
 /// How far each point of a map is from the true surface, metres; `truth_from_map` moves it into the
 /// frame of the reference. Near the reference (0.1 m) the distance is taken along its normal, so
-/// that its sampling does not count as error. Throws UsageError if the reference is empty.
+/// that its sampling does not count as error. Errors of more than `most_m` are `most_m`: far points
+/// take long to place. Throws UsageError if the reference is empty.
 std::vector<float> map_errors_m(const MapCloud& map, const Pose& truth_from_map,
-                                const ReferenceSurface& reference);
+                                const ReferenceSurface& reference,
+                                double most_m = std::numeric_limits<double>::infinity());
 
 /// Scores a map by these errors. An empty map has an accuracy of NaN. Throws UsageError if the
 /// reference is empty.

@@ -62,6 +62,11 @@ PreparedFrame prepare_frame(const DualFrequencyFrame& frame, Unwrapper& unwrappe
                             const SensorModel& sensor, const PixelRays& rays,
                             const PipelineOptions& options);
 
+/// The same as far as ranges go: `cloud` is null.
+PreparedFrame prepare_ranges(const DualFrequencyFrame& frame, Unwrapper& unwrapper,
+                             const SensorModel& sensor, const PixelRays& rays,
+                             const PipelineOptions& options);
+
 /// What became of one frame.
 struct FrameRecord {
   int index = 0;
