@@ -217,6 +217,7 @@ std::string bash_completion(const CLI::App& program) {
   local before=${COMP_WORDS[COMP_CWORD - 1]} key= choices=
   [[ $word == = ]] && key=$before && word=
   [[ $before == = ]] && key=${COMP_WORDS[COMP_CWORD - 2]}
+  [[ $key == --* ]] && before=$key && key=
   case $command:$before:$key in
 )" << choice_cases(program)
       << R"(  esac

@@ -58,6 +58,60 @@ Trajectory poses_of(const SequenceReader& source, const std::filesystem::path& f
                    "; is it of another recording?");
 }
 
+/// What became of the frames, in their order.
+struct UnwrappedRecording {
+  Json frames = Json::array();
+  int damaged = 0;
+  std::string first_damage;
+
+  bool is_empty() const {
+    return std::ranges::none_of(
+        frames, [](const Json& frame) { return frame.value("valid_pixels", 0) > 0; });
+  }
+};
+
+/// Writes the images of frames, and adds what became of them to the result.
+void write_frames(const OutputFolder& out, const std::vector<UnwrappedFrame>& ready,
+                  UnwrappedRecording& result) {
+  side_by_side(static_cast<int>(ready.size()), [&](int i) {
+    const UnwrappedFrame& frame = ready[static_cast<std::size_t>(i)];
+    if (frame.damage.empty()) write_images(out.path(), frame);
+    return 0;
+  });
+  for (const UnwrappedFrame& frame : ready) {
+    result.damaged += frame.damage.empty() ? 0 : 1;
+    if (result.first_damage.empty()) result.first_damage = frame.damage;
+    result.frames.push_back(frame.report);
+  }
+}
+
+/// Until the recording ends, or the user ends it. Frames whose `poses` are known are fused.
+UnwrappedRecording unwrap_recording(const SequenceReader& source, const Trajectory& poses,
+                                    const UnwrapArguments& arguments, const ProgramOptions& options,
+                                    const OutputFolder& out) {
+  const PixelRays rays = pixel_rays(source.sensor().camera);
+  const UnwrappedFrameOptions frame_options{arguments.min_confidence, arguments.with_filters,
+                                            options.pipeline.filters};
+  FrameFusion fusion(source.sensor().camera, rays, poses, options.fusion);
+  auto unwrappers = one_a_thread(Unwrapper(source.sensor(), options.pipeline.unwrap));
+  const int total = *source.frame_count();
+  UnwrappedRecording result;
+  Progress progress("unwrapping frame", total, arguments.common.quiet);
+  for (int begin = 0; begin < total && !is_interrupted();) {
+    const int end = std::min(total, begin + omp_get_max_threads());
+    const auto unwrap_one = [&](Unwrapper& unwrapper, int i) {
+      return unwrap_frame(source, begin + i, unwrapper, rays, frame_options);
+    };
+    for (UnwrappedFrame& frame : side_by_side(end - begin, unwrappers, unwrap_one)) {
+      fusion.add(std::move(frame));
+    }
+    write_frames(out, fusion.take(false), result);
+    progress.show(begin = end);
+  }
+  write_frames(out, fusion.take(true), result);
+  return result;
+}
+
 int run_unwrap(const UnwrapArguments& arguments) {
   ProgramOptions options;
   OptionTable table = arguments.common.resolve("unwrap", options);
@@ -72,56 +126,21 @@ int run_unwrap(const UnwrapArguments& arguments) {
   OutputFolder out(arguments.out);
   for (const char* name : {"range", "wraps", "confidence", "reason"}) out.make(name);
 
-  const PixelRays rays = pixel_rays(source.sensor().camera);
-  FrameFusion fusion(source.sensor().camera, rays, poses, options.fusion);
-  auto unwrappers = one_a_thread(Unwrapper(source.sensor(), options.pipeline.unwrap));
-  const UnwrappedFrameOptions frame_options{arguments.min_confidence, arguments.with_filters,
-                                            options.pipeline.filters};
+  const UnwrappedRecording result = unwrap_recording(source, poses, arguments, options, out);
+  const int done = static_cast<int>(result.frames.size());
   const int total = *source.frame_count();
-  Json frames = Json::array();
-  int damaged = 0;
-  std::string first_damage;
-  const auto write = [&](const std::vector<UnwrappedFrame>& ready) {
-    side_by_side(static_cast<int>(ready.size()), [&](int i) {
-      const UnwrappedFrame& frame = ready[static_cast<std::size_t>(i)];
-      if (frame.damage.empty()) write_images(out.path(), frame);
-      return 0;
-    });
-    for (const UnwrappedFrame& frame : ready) {
-      damaged += frame.damage.empty() ? 0 : 1;
-      if (first_damage.empty()) first_damage = frame.damage;
-      frames.push_back(frame.report);
-    }
-  };
-  {
-    Progress progress("unwrapping frame", total, arguments.common.quiet);
-    for (int begin = 0; begin < total && !is_interrupted();) {
-      const int end = std::min(total, begin + omp_get_max_threads());
-      const auto unwrap_one = [&](Unwrapper& unwrapper, int i) {
-        return unwrap_frame(source, begin + i, unwrapper, rays, frame_options);
-      };
-      for (UnwrappedFrame& frame : side_by_side(end - begin, unwrappers, unwrap_one)) {
-        fusion.add(std::move(frame));
-      }
-      write(fusion.take(false));
-      progress.show(begin = end);
-    }
-    write(fusion.take(true));
-  }
-  refuse_mostly_damaged(damaged, static_cast<int>(frames.size()), first_damage);
-  const bool interrupted = static_cast<int>(frames.size()) < total;
-  const Json report = {{"frames", frames},
-                       {"summary", unwrapping_summary(frames, damaged, interrupted)}};
+  refuse_mostly_damaged(result.damaged, done, result.first_damage);
+  const bool interrupted = done < total;
+  const Json report = {{"frames", result.frames},
+                       {"summary", unwrapping_summary(result.frames, result.damaged, interrupted)}};
   out.write_text("report.json", report.dump(1) + "\n");
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit();
-  const bool is_empty = std::ranges::none_of(
-      frames, [](const Json& frame) { return frame.value("valid_pixels", 0) > 0; });
-  if (is_empty) {
+  if (result.is_empty()) {
     std::fprintf(stderr, "tofmap: no pixel has a range; 'tofmap info' tells what is wrong\n");
   }
   if (!arguments.common.quiet) {
-    std::printf("%zu of %d frames unwrapped, %d damaged: %s\n", frames.size(), total, damaged,
+    std::printf("%d of %d frames unwrapped, %d damaged: %s\n", done, total, result.damaged,
                 out.final_path().c_str());
   }
   if (interrupted) return exit_status::interrupted;

@@ -152,7 +152,7 @@ TEST_F(Interruption, OfDrawingLeavesTheMapWhole) {
   program.send(SIGINT);
   const Finished finished = program.wait();
   EXPECT_EQ(finished.status, 130) << finished.err;
-  EXPECT_THAT(finished.err, HasSubstr("lacks pictures or report.html"));
+  EXPECT_THAT(finished.err, HasSubstr("while pictures or report.html were made"));
   EXPECT_EQ(read_json(out_ / "report.json")["summary"]["interrupted"], false);
   EXPECT_EQ(read_json(out_ / "report.json")["frames"].size(), few);
   EXPECT_FALSE(fs::exists(out_ / "report.html"));

@@ -83,6 +83,7 @@ TEST(Completion, OffersCommandsOptionsAndSettings) {
 TEST(Completion, OffersTheValuesThatAreAllowed) {
   EXPECT_EQ(completions({"map", "room", "--method", "j"}), "joint jump\n");
   EXPECT_EQ(completions({"view", "map", "--from", "i"}), "inside\n");
+  EXPECT_EQ(completions({"view", "map", "--from", "=", "i"}), "inside\n");
   EXPECT_EQ(completions({"view", "map", "--color", "c"}), "confidence count\n");
   EXPECT_EQ(completions({"manual", "b"}), "bash\n");
   EXPECT_EQ(completions({"map", "--set", "unwrap.method", "="}), "joint jump single pixel none\n");
