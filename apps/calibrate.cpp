@@ -6,8 +6,8 @@
 #include "console/progress.hpp"
 #include "input/recording.hpp"
 #include "options/options.hpp"
+#include "output/frame_report.hpp"
 #include "output/output_file.hpp"
-#include "reports/frame_report.hpp"
 
 #include <cmath>
 #include <cstdint>

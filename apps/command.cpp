@@ -29,9 +29,8 @@ OptionTable CommonArguments::resolve(const std::string& command, ProgramOptions&
   return table;
 }
 
-void add_method_option(CLI::App& command, std::string& method) {
-  command.add_option("--method", method, "how to unwrap (default: unwrap.method)")
-      ->type_name("{" + unwrap_method_names(",") + "}");
+void add_method_option(CLI::App& command, std::string& method, const std::string& meaning) {
+  command.add_option("--method", method, meaning)->type_name("{" + unwrap_method_names(",") + "}");
 }
 
 }  // namespace tofmap::app

@@ -40,8 +40,9 @@ struct CommonArguments {
   OptionTable resolve(const std::string& command, ProgramOptions& options) const;
 };
 
-/// Adds --method, which `method` is empty without.
-void add_method_option(CLI::App& command, std::string& method);
+/// Adds --method; `method` stays empty where it is not given.
+void add_method_option(CLI::App& command, std::string& method,
+                       const std::string& meaning = "how to unwrap (default: unwrap.method)");
 
 /// Where commands leave their exit status.
 struct Outcome {

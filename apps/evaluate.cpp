@@ -7,6 +7,7 @@
 #include "input/watched_source.hpp"
 #include "options/options.hpp"
 #include "output/output_folder.hpp"
+#include "output/pictures.hpp"
 #include "reports/evaluation_page.hpp"
 #include "reports/evaluation_report.hpp"
 #include "runs/method_run.hpp"
@@ -121,7 +122,11 @@ int run_evaluate(const EvaluateArguments& arguments) {
   if (!results.empty()) print_table(report);
   return add_to_result(
       out.final_path(), interrupted ? exit_status::interrupted : exit_status::done, [&] {
-        if (results.empty()) return;
+        if (results.empty()) {
+          std::fprintf(stderr, "tofmap: interrupted before any method was done: %s\n",
+                       out.final_path().c_str());
+          return;
+        }
         add_report(
             out.final_path(), methods,
             {source, truth, results, report, doubts_about(source), options, table.to_yaml(false)},

@@ -9,8 +9,10 @@
 #include "input/sampled_frames.hpp"
 #include "input/watched_source.hpp"
 #include "options/options.hpp"
+#include "output/frame_report.hpp"
 #include "output/output_folder.hpp"
-#include "reports/frame_report.hpp"
+#include "output/pictures.hpp"
+#include "reports/consistency_report.hpp"
 #include "reports/map_page.hpp"
 #include "runs/map_state.hpp"
 #include "views/live_view.hpp"
@@ -20,6 +22,7 @@
 #include <functional>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -29,6 +32,7 @@
 #include <tofmap/core/error.hpp>
 #include <tofmap/mapping/mesh_extraction.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
+#include <tofmap/pipeline/recording_survey.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -105,6 +109,7 @@ FinishedMap finish_map(MapRun& run, OutputFolder& out, MapOutput& output) {
   check_result(finished.map);
   finished.consistency =
       consistency_of(finished.map, output.frames, output.sensor, output.options.pipeline);
+  if (const auto doubt = repetition_doubt(finished.map.repeated())) output.doubts.push_back(*doubt);
   std::ranges::move(doubts_about(finished.consistency), std::back_inserter(output.doubts));
   write_result(out, finished, output);
   out.commit();
@@ -205,25 +210,29 @@ int map_device(const MapArguments& arguments, const ProgramOptions& options,
   }
   OutputFolder out(arguments.out);
   const std::unique_ptr<LiveView> view = open_view(arguments);
-  LiveInput input(uri, options, {});
+  std::optional<LiveInput> input;
+  input.emplace(uri, options, LiveInput::Wanted{});
   if (is_interrupted()) return exit_status::interrupted;
-  SamplingSource frames(input.frames(), frames_for_page(input.sensor().camera, options.report));
-  MapRun run(input.sensor(), options.pipeline);
+  const SensorModel sensor = input->sensor();
+  SamplingSource frames(input->frames(), frames_for_page(sensor.camera, options.report));
+  MapRun run(sensor, options.pipeline);
   const auto remark = [&] {
-    const std::string losses = input.losses();
+    const std::string losses = input->losses();
     return status_line(run) + (losses.empty() ? "" : ", " + losses);
   };
-  MapOutput output{arguments, options, table.to_yaml(false), {}, {}, input.sensor(), {}};
+  MapOutput output{arguments, options, table.to_yaml(false), {}, {}, sensor, {}};
   FinishedMap finished;
   accompany(view.get(), [&] {
     follow_camera(run, frames, arguments.common.quiet, view.get(), remark);
-    output.doubts = input.doubts();
-    output.acquisition = input.report();
+    output.doubts = input->doubts();
+    output.acquisition = input->report();
     output.frames = frames.kept();
     finished = finish_map(run, out, output);
   });
   const RoomMap& map = finished.map;
-  const std::string losses = input.losses();
+  const std::string losses = input->losses();
+  const std::string silence = input->silence();
+  input.reset();  // its thread ends while the Ctrl-C that ends it still stands
   if (!losses.empty() && !arguments.common.quiet) {
     std::printf("not mapped: %s; see report.json\n", losses.c_str());
   }
@@ -236,7 +245,6 @@ int map_device(const MapArguments& arguments, const ProgramOptions& options,
     add_page(out, finished, output, nullptr, warnings);
   });
   if (view && status == exit_status::done) view->show_result(map);
-  const std::string silence = input.silence();
   if (!silence.empty()) throw InputError(silence);
   return status;
 }

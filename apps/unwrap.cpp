@@ -6,8 +6,9 @@
 #include "console/progress.hpp"
 #include "input/recording.hpp"
 #include "options/options.hpp"
+#include "output/frame_report.hpp"
 #include "output/output_folder.hpp"
-#include "reports/frame_report.hpp"
+#include "output/pictures.hpp"
 #include "runs/frame_fusion.hpp"
 #include "runs/unwrapped_frame.hpp"
 
@@ -64,25 +65,26 @@ struct UnwrappedRecording {
   int damaged = 0;
   std::string first_damage;
 
+  void add(const std::vector<UnwrappedFrame>& more) {
+    for (const UnwrappedFrame& frame : more) {
+      damaged += frame.damage.empty() ? 0 : 1;
+      if (first_damage.empty()) first_damage = frame.damage;
+      frames.push_back(frame.report);
+    }
+  }
+
   bool is_empty() const {
     return std::ranges::none_of(
         frames, [](const Json& frame) { return frame.value("valid_pixels", 0) > 0; });
   }
 };
 
-/// Writes the images of frames, and adds what became of them to the result.
-void write_frames(const OutputFolder& out, const std::vector<UnwrappedFrame>& ready,
-                  UnwrappedRecording& result) {
+void write_frames(const OutputFolder& out, const std::vector<UnwrappedFrame>& ready) {
   side_by_side(static_cast<int>(ready.size()), [&](int i) {
     const UnwrappedFrame& frame = ready[static_cast<std::size_t>(i)];
     if (frame.damage.empty()) write_images(out.path(), frame);
     return 0;
   });
-  for (const UnwrappedFrame& frame : ready) {
-    result.damaged += frame.damage.empty() ? 0 : 1;
-    if (result.first_damage.empty()) result.first_damage = frame.damage;
-    result.frames.push_back(frame.report);
-  }
 }
 
 /// Until the recording ends, or the user ends it. Frames whose `poses` are known are fused.
@@ -96,6 +98,10 @@ UnwrappedRecording unwrap_recording(const SequenceReader& source, const Trajecto
   auto unwrappers = one_a_thread(Unwrapper(source.sensor(), options.pipeline.unwrap));
   const int total = *source.frame_count();
   UnwrappedRecording result;
+  const auto finish = [&](const std::vector<UnwrappedFrame>& ready) {
+    write_frames(out, ready);
+    result.add(ready);
+  };
   Progress progress("unwrapping frame", total, arguments.common.quiet);
   for (int begin = 0; begin < total && !is_interrupted();) {
     const int end = std::min(total, begin + omp_get_max_threads());
@@ -105,10 +111,10 @@ UnwrappedRecording unwrap_recording(const SequenceReader& source, const Trajecto
     for (UnwrappedFrame& frame : side_by_side(end - begin, unwrappers, unwrap_one)) {
       fusion.add(std::move(frame));
     }
-    write_frames(out, fusion.take(false), result);
+    finish(fusion.take(false));
     progress.show(begin = end);
   }
-  write_frames(out, fusion.take(true), result);
+  finish(fusion.take(true));
   return result;
 }
 

@@ -9,11 +9,13 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <set>
 #include <thread>
 
 #include <CLI/CLI.hpp>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 #include <tofmap/visualization/window.hpp>
 
@@ -129,12 +131,22 @@ int run_view(const ViewArguments& arguments) {
   return exit_status::done;
 }
 
+/// Each once.
+std::set<std::string> all_color_names() {
+  std::set<std::string> names;
+  for (const auto& of : {color_names::map, color_names::frame, color_names::mesh}) {
+    names.insert(of.begin(), of.end());
+  }
+  return names;
+}
+
 }  // namespace
 
 void add_view_command(CLI::App& program, Outcome& outcome) {
   auto arguments = std::make_shared<ViewArguments>();
   ViewRequest& request = arguments->request;
-  CLI::App* app = program.add_subcommand("view", "look at a map, cloud, mesh or recording");
+  CLI::App* app = program.add_subcommand(
+      "view", "look at a map, cloud, mesh or recording, or the maps of an evaluation");
   app->add_option("PATH", request.path,
                   "result of map, register or evaluate, a PLY, PCD or OBJ file, or a recording")
       ->required();
@@ -142,14 +154,16 @@ void add_view_command(CLI::App& program, Outcome& outcome) {
                   "write a PNG picture instead of opening a window; needs no display");
   app->add_option("--from", arguments->from, "viewpoint: outside, above, inside")
       ->check(CLI::IsMember({"outside", "above", "inside"}));
-  app->add_option(
-         "--color", request.color,
-         "what a map is coloured by (height, confidence, count, plain), or a frame (moved, "
-         "range, wrap, confidence, height, amplitude)")
-      ->type_name("{height,confidence,count,plain,moved,range,wrap,amplitude}");
+  app->add_option("--color", request.color,
+                  "what a map is coloured by (" + joined(color_names::map, ", ") + "), a frame (" +
+                      joined(color_names::frame, ", ") + ") or a mesh (" +
+                      joined(color_names::mesh, ", ") + ")")
+      ->type_name("{" + joined(all_color_names(), ",") + "}");
   app->add_flag("--cameras", request.cameras, "show what the camera saw from keyframes");
   app->add_flag("--wrapped", request.wrapped, "show a frame's ranges as measured");
-  add_method_option(*app, request.method);
+  add_method_option(*app, request.method,
+                    "how to unwrap a recording (default: unwrap.method), or whose map of an "
+                    "evaluation is the first");
   app->add_option("--frame", request.frame, "frame of a recording, from 0")
       ->check(CLI::Range(0, 1000000));
   app->add_option("--width", arguments->width_px, "of the picture or window, pixels")

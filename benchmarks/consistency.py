@@ -28,7 +28,7 @@ MEASURES = ("contradicted_percent", "beat_misfit_percent", "beat_residual_cycles
             "ambiguous_percent", "plane_thickness_m", "curl_violations_per_frame")
 WRONG_MAP_M = 0.05
 
-# What `map` and `evaluate` doubt (apps/consistency_report.cpp).
+# What `map` and `evaluate` doubt (apps/reports/consistency_report.cpp).
 MOST_CONTRADICTED_PERCENT = 3
 MOST_MISFIT_PERCENT = 10
 

@@ -42,10 +42,9 @@ int add_to_result(const std::filesystem::path& result, int status,
   try {
     add();
   } catch (const Interrupted&) {
-    std::fprintf(
-        stderr,
-        "tofmap: interrupted while pictures or report.html were made; the rest of %s is whole\n",
-        result.c_str());
+    std::fprintf(stderr,
+                 "tofmap: interrupted; %s is whole, but pictures or report.html are left out\n",
+                 result.c_str());
     return exit_status::interrupted;
   }
   return status;

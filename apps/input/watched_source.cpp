@@ -9,7 +9,6 @@
 #include <tofmap/core/text.hpp>
 #include <tofmap/pipeline/axial_depth.hpp>
 #include <tofmap/pipeline/beat_survey.hpp>
-#include <tofmap/pipeline/recording_survey.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -19,16 +18,9 @@ constexpr std::size_t enough = 12;
 
 std::vector<std::string> doubts_about_first(const std::vector<DualFrequencyFrame>& frames,
                                             const SensorModel& sensor) {
-  std::vector<std::string> doubts;
-  if (const auto doubt = axial_depth_doubt(frames, sensor)) {
-    doubts.push_back(*doubt);
-  } else if (const std::optional<BeatSurvey> beat = survey_beat(frames, sensor)) {
-    doubts = tofmap::doubts_about(*beat);
-  }
-  int repeated = 0;
-  for (std::size_t i = 1; i < frames.size(); ++i) repeated += repeats(frames[i], frames[i - 1]);
-  if (const auto doubt = repetition_doubt(repeated)) doubts.push_back(*doubt);
-  return doubts;
+  if (const auto doubt = axial_depth_doubt(frames, sensor)) return {*doubt};
+  const std::optional<BeatSurvey> beat = survey_beat(frames, sensor);
+  return beat ? tofmap::doubts_about(*beat) : std::vector<std::string>{};
 }
 
 /// Where more than three periods passed from one frame to the next.

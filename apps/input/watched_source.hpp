@@ -11,7 +11,7 @@
 namespace tofmap::app {
 
 /// Passes the frames of another source on, and looks at them: at the first whether A and B belong
-/// together, are ranges along rays, and change, and at all for gaps in time (docs/cameras.md).
+/// together, and are ranges along rays, and at all for gaps in time (docs/cameras.md).
 class WatchedSource final : public FrameSource {
  public:
   explicit WatchedSource(FrameSource& source) : source_(source) {}

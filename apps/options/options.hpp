@@ -4,8 +4,7 @@
 
 #include "options/calibration_options.hpp"
 #include "options/evaluation_options.hpp"
-#include "output/pictures.hpp"
-#include "reports/report_sections.hpp"
+#include "options/report_options.hpp"
 
 #include <string>
 #include <vector>

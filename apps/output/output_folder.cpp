@@ -60,6 +60,7 @@ std::string foreign_name(const fs::path& folder) {
   std::vector<std::string> foreign;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
+    if (name.starts_with("pictures.partial-")) continue;  // of a run that was killed
     if (std::ranges::find(result_names, name) == result_names.end()) foreign.push_back(name);
   }
   return foreign.empty() ? "" : *std::ranges::min_element(foreign);

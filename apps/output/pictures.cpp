@@ -96,15 +96,6 @@ FilteredRanges filtered_ranges(const std::string& method, const RangeImage& befo
 
 }  // namespace
 
-std::vector<OptionField<PictureOptions>> PictureOptions::fields() {
-  using O = PictureOptions;
-  return {
-      {"frames", &O::frames, 0, 100000, "",
-       "frames to draw, spread evenly over the recording; 0: none"},
-      {"map_size_px", &O::map_size_px, 100, 8000, "px", "longer side of the map's pictures"},
-  };
-}
-
 void write_frame_pictures(const std::filesystem::path& folder, const SequenceReader& source,
                           const UnwrapOptions& unwrap, const PictureOptions& options, bool quiet) {
   const PixelRays rays = pixel_rays(source.sensor().camera);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "options/report_options.hpp"
+
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -9,20 +11,11 @@
 
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/cloud/cloud_file.hpp>
-#include <tofmap/core/option_table.hpp>
 #include <tofmap/core/trajectory.hpp>
 #include <tofmap/filters/filter_chain.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap::app {
-
-/// Which pictures a result gets, group `pictures`.
-struct PictureOptions {
-  int frames = 3;
-  int map_size_px = 1200;
-
-  static std::vector<OptionField<PictureOptions>> fields();
-};
 
 /// Writes ranges, wrap counts, jump probabilities and clouds of a few frames, spread evenly over
 /// the recording, as `<frame>_<what>.png`. Damaged frames have none. Throws Interrupted.
@@ -31,6 +24,7 @@ void write_frame_pictures(const std::filesystem::path& folder, const SequenceRea
 
 /// Writes what every method makes of a few frames, as `<frame>_methods.png`, and what filters
 /// remove of it without unwrapping and after it, by the last method, as `<frame>_filters.png`.
+/// Throws Interrupted.
 void write_method_pictures(const std::filesystem::path& folder, const SequenceReader& source,
                            const std::vector<std::string>& methods, UnwrapOptions unwrap,
                            const FilterOptions& filters, const PictureOptions& options, bool quiet);
@@ -41,7 +35,8 @@ void write_map_pictures(const std::filesystem::path& folder, const MapCloud& map
 
 /// Draws into the folder `pictures` of a result that is in place already, so that nothing is lost
 /// if this fails. The folder appears when all pictures are there. Where there is nothing to draw
-/// with, says so on stderr and goes on; throws InputError if pictures cannot be written.
+/// with, says so on stderr and goes on; throws InputError if pictures cannot be written. What
+/// `draw` throws passes, and leaves no picture.
 void add_pictures(const std::filesystem::path& result,
                   const std::function<void(const std::filesystem::path& folder)>& draw);
 

@@ -4,6 +4,7 @@
 #include "reports/evaluation_page.hpp"
 
 #include "input/sampled_frames.hpp"
+#include "reports/consistency_report.hpp"
 #include "reports/error_curves.hpp"
 #include "reports/evaluation_report.hpp"
 #include "reports/map_section.hpp"
@@ -17,6 +18,7 @@
 #include <nlohmann/json.hpp>
 
 #include <tofmap/core/text.hpp>
+#include <tofmap/pipeline/recording_survey.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -89,6 +91,9 @@ std::string sentence_of(const EvaluationPageSubject& subject) {
 std::vector<std::string> warnings_of(const EvaluationPageSubject& subject) {
   std::vector<std::string> warnings = subject.warnings;
   const MethodResult& with = with_unwrapping(subject);
+  if (with.map) {
+    if (const auto doubt = repetition_doubt(with.map->repeated())) warnings.push_back(*doubt);
+  }
   if (with.consistency) {
     std::ranges::move(doubts_about(*with.consistency), std::back_inserter(warnings));
   }
@@ -157,7 +162,6 @@ void add_runs(ReportPage& page, const EvaluationPageSubject& subject) {
 void write_evaluation_page(const std::filesystem::path& result,
                            const EvaluationPageSubject& subject, bool quiet) {
   const MethodResult& with = with_unwrapping(subject);
-  PageProgress progress(3, quiet);
   ReportPage page("With and without unwrapping: " + subject.recording.folder().string(),
                   "tofmap " TOFMAP_VERSION);
   const Judgement judgement = judgement_of(subject);
@@ -165,11 +169,9 @@ void write_evaluation_page(const std::filesystem::path& result,
   page.add_warnings(warnings_of(subject));
   page.add_heading("Methods");
   page.add_table(methods_table(subject.report));
-  progress.step("maps");
   if (with.map) add_maps(page, shown_maps(subject), subject.truth.poses, subject.options.report);
-  progress.step("errors");
   add_curves(page, subject);
-  progress.step("frames");
+  PageProgress progress(static_cast<std::size_t>(subject.options.report.frames), quiet);
   PipelineOptions pipeline = subject.options.pipeline;
   pipeline.unwrap.method = with.name;
   add_frames(
@@ -177,7 +179,8 @@ void write_evaluation_page(const std::filesystem::path& result,
       sampled_frames(subject.recording, *subject.recording.frame_count(),
                      subject.options.report.frames),
       subject.recording.sensor(), pipeline,
-      [&](int index) { return subject.recording.range_truth(index); }, subject.options.report);
+      [&](int index) { return subject.recording.range_truth(index); }, subject.options.report,
+      progress);
   add_runs(page, subject);
   add_options(page, subject.options_yaml);
   write_page(result, page);

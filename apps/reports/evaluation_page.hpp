@@ -25,8 +25,7 @@ struct EvaluationPageSubject {
 };
 
 /// Writes report.html into a result that is in place already: what unwrapping does to ranges, path
-/// and map. Throws InputError if it cannot be written, and
-/// Interrupted.
+/// and map. Throws InputError if it cannot be written, and Interrupted.
 void write_evaluation_page(const std::filesystem::path& result,
                            const EvaluationPageSubject& subject, bool quiet);
 

@@ -3,8 +3,8 @@
 
 #include "reports/evaluation_report.hpp"
 
+#include "output/frame_report.hpp"
 #include "reports/consistency_report.hpp"
-#include "reports/frame_report.hpp"
 
 #include <array>
 #include <cmath>

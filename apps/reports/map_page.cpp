@@ -3,9 +3,8 @@
 
 #include "reports/map_page.hpp"
 
-#include "console/interruption.hpp"
+#include "output/frame_report.hpp"
 #include "reports/error_curves.hpp"
-#include "reports/frame_report.hpp"
 #include "reports/map_section.hpp"
 #include "reports/report_sections.hpp"
 #include "reports/verdict.hpp"
@@ -26,8 +25,12 @@ std::optional<ImageF> range_truth(const MapPageSubject& subject, int frame) {
 
 double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
 
+std::size_t shown_frames(const MapPageSubject& subject) {
+  return std::min(subject.frames.size(), static_cast<std::size_t>(subject.options.report.frames));
+}
+
 /// The map that the same path would give if nobody unwrapped.
-MapCloud wrapped_map(const MapPageSubject& subject) {
+MapCloud wrapped_map(const MapPageSubject& subject, PageProgress& progress) {
   PipelineOptions options = subject.options.pipeline;
   options.unwrap.method = "none";
   options.map.min_observations = 1;  // there are but some of the frames
@@ -35,7 +38,7 @@ MapCloud wrapped_map(const MapPageSubject& subject) {
   const PixelRays rays = pixel_rays(subject.sensor.camera);
   SurfaceMap map(options.map);
   for (const DualFrequencyFrame& frame : subject.frames) {
-    stop_if_interrupted();
+    progress.next_frame();
     const auto pose = pose_at(subject.map.trajectory, frame.timestamp_s);
     if (!pose) continue;
     map.integrate(*prepare_frame(frame, unwrapper, subject.sensor, rays, options).cloud, *pose);
@@ -49,7 +52,8 @@ struct UnwrappedSample {
   double moved_percent = 0;  ///< of the ranges
 };
 
-UnwrappedSample unwrap_sample(const MapPageSubject& subject, const std::string& method) {
+UnwrappedSample unwrap_sample(const MapPageSubject& subject, const std::string& method,
+                              PageProgress& progress) {
   UnwrapOptions options = subject.options.pipeline.unwrap;
   options.method = method;
   Unwrapper unwrapper(subject.sensor, options);
@@ -57,7 +61,7 @@ UnwrappedSample unwrap_sample(const MapPageSubject& subject, const std::string& 
   double moved = 0;
   double valid = 0;
   for (const DualFrequencyFrame& frame : subject.frames) {
-    stop_if_interrupted();
+    progress.next_frame();
     const UnwrapResult unwrapped = unwrapper.unwrap(frame);
     const RangeImage& image = unwrapped.image;
     valid += image.count_valid();
@@ -144,7 +148,7 @@ Plot tracking_plot(const RoomMap& map) {
 
 /// Of the path and of the frames' ranges, and of these as measured.
 void add_errors(ReportPage& page, const MapPageSubject& subject, const Truth& truth,
-                const MapScores& scores, const UnwrappedSample& sample) {
+                const MapScores& scores, const UnwrappedSample& sample, PageProgress& progress) {
   const std::string& method = subject.options.pipeline.unwrap.method;
   std::vector<MethodErrors> methods{{method, {}, sample.frames}};
   if (scores.trajectory) {
@@ -153,7 +157,7 @@ void add_errors(ReportPage& page, const MapPageSubject& subject, const Truth& tr
   }
   UnwrappedSample as_measured;
   if (method != "none") {
-    as_measured = unwrap_sample(subject, "none");
+    as_measured = unwrap_sample(subject, "none", progress);
     methods.push_back({"none", {}, as_measured.frames});
   }
   add_error_curves(page, methods);
@@ -171,7 +175,7 @@ std::vector<ShownMap> shown_maps(const MapPageSubject& subject, const Truth& tru
   as_measured.surface = &wrapped;
   if (scores.surface) {
     as_measured.errors_m =
-        map_errors_m(wrapped, *as_measured.truth_from_map, truth.surface, wrong_m);
+        map_errors_m(wrapped, *as_measured.truth_from_map, truth.surface, far_error_m);
   }
   maps.push_back(std::move(as_measured));
   return maps;
@@ -187,13 +191,14 @@ void write_map_page(const std::filesystem::path& result, const MapPageSubject& s
                     bool quiet) {
   const RoomMap& map = subject.map;
   const Truth truth = subject.recording ? read_truth(*subject.recording, quiet) : Truth{};
-  PageProgress progress(5, quiet);
-  progress.step("errors of the map");
   const MapScores scores = score_of(map, truth);
-  progress.step("ranges as measured");
   const bool is_unwrapped = subject.options.pipeline.unwrap.method != "none";
-  const MapCloud wrapped = is_unwrapped ? wrapped_map(subject) : MapCloud();
-  const UnwrappedSample sample = unwrap_sample(subject, subject.options.pipeline.unwrap.method);
+  // Unwrapped; if that is not all that was done, as measured, and for the map of these; shown.
+  PageProgress progress((is_unwrapped ? 3 : 1) * subject.frames.size() + shown_frames(subject),
+                        quiet);
+  const MapCloud wrapped = is_unwrapped ? wrapped_map(subject, progress) : MapCloud();
+  const UnwrappedSample sample =
+      unwrap_sample(subject, subject.options.pipeline.unwrap.method, progress);
 
   ReportPage page("Map of " + subject.source,
                   "tofmap " TOFMAP_VERSION ", method " + subject.options.pipeline.unwrap.method);
@@ -207,14 +212,11 @@ void write_map_page(const std::filesystem::path& result, const MapPageSubject& s
   page.add_verdict(judgement.verdict,
                    sentence_of(subject, scores, sample.moved_percent) + told_reasons(judgement));
   page.add_warnings(subject.warnings);
-  progress.step("maps");
   add_maps(page, shown_maps(subject, truth, scores, wrapped), truth.poses, subject.options.report);
-  progress.step("errors");
-  add_errors(page, subject, truth, scores, sample);
-  progress.step("frames");
+  add_errors(page, subject, truth, scores, sample, progress);
   add_frames(
       page, subject.frames, subject.sensor, subject.options.pipeline,
-      [&](int frame) { return range_truth(subject, frame); }, subject.options.report);
+      [&](int frame) { return range_truth(subject, frame); }, subject.options.report, progress);
   page.add_heading("Figures");
   page.add_table(summary_table(map, scores));
   page.add_heading("Tracking over time");

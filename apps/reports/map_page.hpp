@@ -3,7 +3,7 @@
 #pragma once
 
 #include "options/options.hpp"
-#include "reports/consistency_report.hpp"
+#include "runs/consistency.hpp"
 
 #include <filesystem>
 #include <string>

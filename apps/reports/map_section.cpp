@@ -26,7 +26,7 @@ bool has_errors(const ShownMap& map) { return map.errors_m && !map.errors_m->emp
 MapColoring color_by_error(const ShownMap& map) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   return {map.errors_m ? *map.errors_m : std::vector<float>(map.surface->size(), nan),
-          ColorScale(0, wrong_m, "error, m", ColorRamp::error)};
+          ColorScale(0, far_error_m, "error, m", ColorRamp::error)};
 }
 
 /// The level frame of the first map. Its box holds the others, too, as far as they are not more

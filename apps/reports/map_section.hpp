@@ -13,9 +13,6 @@
 
 namespace tofmap::app {
 
-/// Of a map whose truth is known: from here on points are all drawn as wrong.
-constexpr double wrong_m = 0.2;
-
 /// A map as a page compares it with others, all in the frame of the first camera.
 struct ShownMap {
   std::string name;  ///< "with unwrapping (joint)"

@@ -3,10 +3,9 @@
 
 #include "reports/report_sections.hpp"
 
-#include "console/interruption.hpp"
 #include "input/sampled_frames.hpp"
+#include "output/frame_report.hpp"
 #include "output/output_file.hpp"
-#include "reports/frame_report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -35,24 +34,6 @@ StagedFrame staged_frame(const DualFrequencyFrame& frame, const SensorModel& sen
 
 }  // namespace
 
-std::vector<OptionField<ReportOptions>> ReportOptions::fields() {
-  using O = ReportOptions;
-  return {
-      {"frames", &O::frames, 0, 200, "",
-       "frames that report.html steps through, spread evenly over the recording"},
-      {"points", &O::points, 1000, 500000, "",
-       "points, at most, of a map that can be turned in report.html"},
-  };
-}
-
-PageProgress::PageProgress(int steps, bool quiet)
-    : progress_("making report.html, step", steps, quiet) {}
-
-void PageProgress::step(const std::string& what) {
-  stop_if_interrupted();
-  progress_.show(done_++, what);
-}
-
 void add_drawn(ReportPage& page, const std::function<std::vector<PageFigure>()>& draw) {
   try {
     page.add_figures(draw());
@@ -64,13 +45,13 @@ void add_drawn(ReportPage& page, const std::function<std::vector<PageFigure>()>&
 void add_frames(ReportPage& page, const std::vector<DualFrequencyFrame>& frames,
                 const SensorModel& sensor, const PipelineOptions& pipeline,
                 const std::function<std::optional<ImageF>(int index)>& truth_m,
-                const ReportOptions& options) {
+                const ReportOptions& options, PageProgress& progress) {
   if (frames.empty() || options.frames == 0) return;
   const PixelRays rays = pixel_rays(sensor.camera);
   Unwrapper unwrapper(sensor, pipeline.unwrap);
   std::vector<StagedFrame> staged;
   for (const int i : spread_indices(static_cast<int>(frames.size()), options.frames)) {
-    stop_if_interrupted();
+    progress.next_frame();
     const DualFrequencyFrame& frame = frames[static_cast<std::size_t>(i)];
     staged.push_back(staged_frame(frame, sensor, rays, pipeline, unwrapper));
     if (auto truth = truth_m(frame.index)) staged.back().truth_m = *std::move(truth);

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "console/progress.hpp"
-#include "reports/consistency_report.hpp"
+#include "options/report_options.hpp"
+#include "reports/page_progress.hpp"
+#include "runs/consistency.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -12,39 +13,17 @@
 #include <vector>
 
 #include <tofmap/acquisition/sequence.hpp>
-#include <tofmap/core/option_table.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
 #include <tofmap/visualization/report_page.hpp>
 
 namespace tofmap::app {
-
-/// What report.html holds, group `report`.
-struct ReportOptions {
-  int frames = 12;
-  int points = 40000;
-
-  static std::vector<OptionField<ReportOptions>> fields();
-};
-
-/// How far a page has come that takes some time to make.
-class PageProgress {
- public:
-  PageProgress(int steps, bool quiet);
-
-  /// Begins the next step. Throws Interrupted.
-  void step(const std::string& what);
-
- private:
-  Progress progress_;
-  int done_ = 0;
-};
 
 /// What becomes of some frames, to be stepped through; of these `options.frames` are shown. Where
 /// `truth_m` finds the true ranges of a frame, wrong wraps are, too. Throws Interrupted.
 void add_frames(ReportPage& page, const std::vector<DualFrequencyFrame>& frames,
                 const SensorModel& sensor, const PipelineOptions& pipeline,
                 const std::function<std::optional<ImageF>(int index)>& truth_m,
-                const ReportOptions& options);
+                const ReportOptions& options, PageProgress& progress);
 
 /// What tells without truth whether unwrapping was right, a column a run.
 void add_consistency(ReportPage& page, const std::vector<std::string>& names,

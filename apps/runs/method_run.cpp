@@ -6,7 +6,7 @@
 #include "console/interruption.hpp"
 #include "console/progress.hpp"
 #include "input/sampled_frames.hpp"
-#include "reports/frame_report.hpp"
+#include "output/frame_report.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "reports/consistency_report.hpp"
+#include "runs/consistency.hpp"
 
 #include <optional>
 #include <span>

@@ -3,7 +3,7 @@
 
 #include "runs/unwrapped_frame.hpp"
 
-#include "reports/frame_report.hpp"
+#include "output/frame_report.hpp"
 
 #include <algorithm>
 #include <chrono>

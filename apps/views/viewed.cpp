@@ -33,7 +33,7 @@ Viewpoint viewpoint_in_the_middle(const Eigen::AlignedBox3d& box_m) {
 /// Triangles of others, in the grey of their reflectance.
 class ViewedMesh final : public Viewed {
  public:
-  explicit ViewedMesh(const fs::path& file) : Viewed({"reflectance"}), mesh_(read_mesh(file)) {}
+  explicit ViewedMesh(const fs::path& file) : Viewed(color_names::mesh), mesh_(read_mesh(file)) {}
 
   Drawing drawing() const override {
     MeshLayer layer;
@@ -159,7 +159,8 @@ std::unique_ptr<Viewed> open_viewed(const ViewRequest& request, const ProgramOpt
     return view_evaluation(request, files);
   }
   throw InputError(path.string() +
-                   ": holds no map.ply, merged.ply or sequence.yaml; nothing to view");
+                   ": holds no map.ply, merged.ply, sequence.yaml or METHOD/map.ply; nothing to "
+                   "view");
 }
 
 }  // namespace tofmap::app

@@ -23,9 +23,19 @@ struct ViewRequest {
   std::string color;         ///< empty: the first there is
   bool cameras = false;      ///< of a map: pyramids of what the camera saw
   bool wrapped = false;      ///< of a recording: ranges as measured
-  std::string method;        ///< of a recording or evaluation; empty: as the options say
+  std::string method;        ///< of a recording: how it is unwrapped; empty: as the options say.
+                             ///< Of an evaluation: whose map is the first; empty: the best that
+                             ///< there is
   std::optional<int> frame;  ///< of a recording; none: the first
 };
+
+/// What can be coloured by what; the first is the one that is taken if nothing is asked for.
+namespace color_names {
+inline const std::vector<std::string> map{"height", "confidence", "count", "plain"};
+inline const std::vector<std::string> frame{"moved",      "range",  "wrap",
+                                            "confidence", "height", "amplitude"};
+inline const std::vector<std::string> mesh{"reflectance"};
+}  // namespace color_names
 
 /// Something that can be looked at in several ways.
 class Viewed {
@@ -79,7 +89,8 @@ struct MapFile {
   std::string method;  ///< that made it, where there are maps of several
 };
 
-/// One map at a time, in the place of the first. Throws InputError if none has a point.
+/// One map at a time, in the place of the first and by one scale; others without a point are left
+/// out. Throws InputError if the first has none.
 std::unique_ptr<Viewed> view_maps(const std::vector<MapFile>& files, bool with_cameras);
 
 /// A frame of a recording at a time, unwrapped and filtered as the options say.

@@ -45,13 +45,17 @@ struct PathedMap {
 class ViewedMaps final : public Viewed {
  public:
   ViewedMaps(const std::vector<MapFile>& files, bool with_cameras)
-      : Viewed({"height", "confidence", "count", "plain"}), with_cameras_(with_cameras) {
+      : Viewed(color_names::map), with_cameras_(with_cameras) {
     for (const MapFile& file : files) {
-      maps_.emplace_back(file);
-      if (maps_.back().map.empty()) maps_.pop_back();
-    }
-    if (maps_.empty()) {
-      throw InputError(files.front().file.string() + ": holds no point; nothing to view");
+      PathedMap read(file);
+      if (!read.map.empty()) {
+        most_observations_ = std::max(most_observations_, most_observations(read.map));
+        maps_.push_back(std::move(read));
+      } else if (maps_.empty()) {
+        throw InputError(file.file.string() + ": holds no point; nothing to view");
+      } else {
+        without_points_ += (without_points_.empty() ? "; without points: " : ", ") + file.method;
+      }
     }
     frame_ = level_frame(shown().map, shown().trajectory);
   }
@@ -83,7 +87,7 @@ class ViewedMaps final : public Viewed {
     text += counted(shown().map.size(), "point") + ", coloured by " + color();
     if (!shown().trajectory.empty()) text += "; " + counted(shown().trajectory.size(), "pose");
     if (!shown().keyframes.empty()) text += ", " + counted(shown().keyframes.size(), "keyframe");
-    return text;
+    return text + without_points_;
   }
 
   std::string help() const override {
@@ -114,8 +118,7 @@ class ViewedMaps final : public Viewed {
   MapColoring coloring() const {
     if (color() == "confidence") return colored_by(&MapPoint::confidence, {0, 1, "confidence"});
     if (color() == "count") {
-      return colored_by(&MapPoint::observations,
-                        {0, most_observations(shown().map), "observations"});
+      return colored_by(&MapPoint::observations, {0, most_observations_, "observations"});
     }
     return color_by_height(shown().map, frame_);
   }
@@ -143,7 +146,9 @@ class ViewedMaps final : public Viewed {
 
   std::vector<PathedMap> maps_;
   std::size_t shown_ = 0;
-  LevelFrame frame_;  ///< of the first map, and for all
+  std::string without_points_;   ///< for the status
+  float most_observations_ = 0;  ///< of all
+  LevelFrame frame_;             ///< of the first map, and for all
   bool with_path_ = true;
   bool with_cameras_;
 };

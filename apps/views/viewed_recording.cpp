@@ -20,7 +20,7 @@ constexpr int legend_height_px = 220;
 class ViewedRecording final : public Viewed {
  public:
   ViewedRecording(const ViewRequest& request, const ProgramOptions& options)
-      : Viewed({"moved", "range", "wrap", "confidence", "height", "amplitude"}),
+      : Viewed(color_names::frame),
         source_(open_recording(request.path, options.camera)),
         rays_(pixel_rays(source_.sensor().camera)),
         unwrapper_(source_.sensor(), options.pipeline.unwrap),

@@ -30,6 +30,19 @@ TEST(ConsistencyDoubts, AreNoneAboutWhatIsNotKnown) {
   EXPECT_THAT(doubts_about({NAN, NAN, NAN, NAN, NAN, NAN}), IsEmpty());
 }
 
+TEST(ConsistencyFrames, AreFewerOfLargeImagesButNotTooFew) {
+  const auto frames_of = [](int width_px, int height_px) {
+    CameraModel camera;
+    camera.width_px = width_px;
+    camera.height_px = height_px;
+    return consistency_frames(camera);
+  };
+  EXPECT_EQ(frames_of(176, 144), 60);
+  EXPECT_EQ(frames_of(500, 400), 30);
+  EXPECT_EQ(frames_of(640, 480), 20);
+  EXPECT_EQ(frames_of(4000, 3000), 20);
+}
+
 TEST(ConsistencyJson, TellsWhatIsNotKnown) {
   Consistency consistency;
   consistency.curl_violations_per_frame = NAN;

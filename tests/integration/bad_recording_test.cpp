@@ -161,6 +161,21 @@ TEST_F(BadRecording, OfIdenticalFramesIsMappedAtOnePlace) {
   }
 }
 
+TEST_F(BadRecording, ThatStandsStillForAWhileIsDoubted) {
+  for (const std::string kind : {"phase_a", "phase_b"}) {
+    fs::copy_file(sequence_ / kind / "000002.png", sequence_ / kind / "000003.png",
+                  fs::copy_options::overwrite_existing);
+  }
+  const Finished finished = run("map");
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_THAT(finished.out, HasSubstr("doubtful: 1 frame repeats the one before"));
+  EXPECT_THAT(read_text(out_ / "report.html"), HasSubstr("1 frame repeats the one before"));
+  const auto report = read_json(out_ / "report.json");
+  EXPECT_EQ(report["summary"]["repeated"], 1);
+  EXPECT_FALSE(report["frames"][2].contains("repeats"));
+  EXPECT_EQ(report["frames"][3]["repeats"], true);
+}
+
 TEST_F(BadRecording, WhoseFrequenciesCannotTellTheSceneApartIsDoubted) {
   edit("sequence.yaml", "frequency_a_hz: 2.9e+07", "frequency_a_hz: 3.1e+08");
   EXPECT_THAT(run("info").out, HasSubstr("doubtful: the scene reaches farther"));

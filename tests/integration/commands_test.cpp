@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 
 #include <tofmap/acquisition/png_image.hpp>
+#include <tofmap/cloud/cloud_file.hpp>
 
 namespace tofmap::test {
 namespace {
@@ -272,6 +273,10 @@ TEST_F(Commands, ViewShowsTheMapsOfAnEvaluation) {
   EXPECT_EQ(missing.status, 2);
   EXPECT_THAT(missing.err, HasSubstr("holds the maps of pixel, none"));
   EXPECT_EQ(view(out_, {"--frame", "1"}).status, 2);
+
+  write_map(out_ / "none" / "map.ply", MapCloud());
+  EXPECT_EQ(view(out_, {}).status, 0) << "one of them has points";
+  EXPECT_EQ(view(out_, {"--method", "none"}).status, 3) << "and no other in its place";
 }
 
 TEST_F(Commands, ViewColoursByWhatIsAskedFor) {

@@ -152,10 +152,56 @@ TEST_F(Interruption, OfDrawingLeavesTheMapWhole) {
   program.send(SIGINT);
   const Finished finished = program.wait();
   EXPECT_EQ(finished.status, 130) << finished.err;
-  EXPECT_THAT(finished.err, HasSubstr("while pictures or report.html were made"));
+  EXPECT_THAT(finished.err, HasSubstr("pictures or report.html are left out"));
   EXPECT_EQ(read_json(out_ / "report.json")["summary"]["interrupted"], false);
   EXPECT_EQ(read_json(out_ / "report.json")["frames"].size(), few);
   EXPECT_FALSE(fs::exists(out_ / "report.html"));
+  EXPECT_THAT(names_in(out_), Not(Contains(HasSubstr("partial"))));
+}
+
+TEST_F(Interruption, OfDrawingLeavesUnwrappedRangesWhole) {
+  constexpr std::size_t few = 30;
+  shorten_recording(few);
+  RunningProgram program({"unwrap", sequence_.string(), "--out", out_.string(), "--set",
+                          "pictures.frames=" + std::to_string(few)});
+  ASSERT_TRUE(comes_true([&] { return program.has_ended() || fs::exists(out_ / "report.json"); }));
+  program.send(SIGINT);
+  const Finished finished = program.wait();
+  EXPECT_EQ(finished.status, 130) << finished.err;
+  EXPECT_EQ(names_in(out_ / "range").size(), few);
+  EXPECT_THAT(names_in(out_), Not(Contains(HasSubstr("pictures"))));
+}
+
+TEST_F(Interruption, OfAnEvaluationsPicturesLeavesItsMapsWhole) {
+  constexpr std::size_t few = 30;
+  shorten_recording(few);
+  RunningProgram program({"evaluate", sequence_.string(), "--out", out_.string(), "--set",
+                          "evaluation.methods=none pixel", "--set",
+                          "pictures.frames=" + std::to_string(few)});
+  ASSERT_TRUE(comes_true([&] { return program.has_ended() || fs::exists(out_ / "report.json"); }));
+  program.send(SIGINT);
+  const Finished finished = program.wait();
+  EXPECT_EQ(finished.status, 130) << finished.err;
+  EXPECT_EQ(read_json(out_ / "report.json")["interrupted"], false);
+  EXPECT_TRUE(fs::exists(out_ / "none" / "map.ply") && fs::exists(out_ / "pixel" / "map.ply"));
+  EXPECT_FALSE(fs::exists(out_ / "report.html"));
+}
+
+TEST_F(Interruption, ByKillWhileDrawingHindersNoOtherRun) {
+  constexpr std::size_t few = 30;
+  shorten_recording(few);
+  const std::vector<std::string> drawing{"unwrap", sequence_.string(),
+                                         "--out",  out_.string(),
+                                         "--set",  "pictures.frames=" + std::to_string(few)};
+  RunningProgram program(drawing);
+  ASSERT_TRUE(comes_true([&] {
+    if (program.has_ended()) return true;
+    return fs::exists(out_) && testing::Matches(Contains(HasSubstr("partial")))(names_in(out_));
+  }));
+  program.send(SIGKILL);
+  program.wait();
+  ASSERT_THAT(names_in(out_), Contains(HasSubstr("pictures.partial-")));
+  EXPECT_EQ(run("unwrap").status, 0);
   EXPECT_THAT(names_in(out_), Not(Contains(HasSubstr("partial"))));
 }
 

@@ -15,6 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* commands[] = {"simulate", "record", "info",     "calibrate", "unwrap",
                                     "map",      "view",   "evaluate", "register",  "config"};
@@ -88,6 +89,9 @@ TEST(Completion, OffersTheValuesThatAreAllowed) {
   EXPECT_EQ(completions({"manual", "b"}), "bash\n");
   EXPECT_EQ(completions({"map", "--set", "unwrap.method", "="}), "joint jump single pixel none\n");
   EXPECT_EQ(completions({"map", "--set", "loops.close", "=", "t"}), "true\n");
+  EXPECT_THAT(completions({"map", "--set", "unwrap.max_range_m", "="}), Not(HasSubstr("threads=")));
+  EXPECT_THAT(completions({"info", "--set", "loops.close", "="}), Not(HasSubstr("true")))
+      << "not of that command";
 }
 
 }  // namespace

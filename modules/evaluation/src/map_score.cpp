@@ -21,7 +21,6 @@ using Tree = pcl::KdTreeFLANN<pcl::PointXYZ>;
 
 constexpr double voxel_m = 0.04;
 constexpr double near_m = 0.1;
-constexpr double far_m = 0.2;
 constexpr double worst_m = 5;
 
 std::int64_t voxel_key(const Eigen::Vector3d& point) {
@@ -129,6 +128,7 @@ void ReferenceSurface::add(const ImageF& range_truth_m, const PixelRays& rays,
 
 std::vector<float> map_errors_m(const MapCloud& map, const Pose& truth_from_map,
                                 const ReferenceSurface& reference, double most_m) {
+  if (!(most_m > 0)) throw UsageError("map errors: the greatest is " + std::to_string(most_m));
   const Clouds clouds(map, truth_from_map, reference);
   return errors_m(clouds, most_m);
 }
@@ -145,7 +145,7 @@ MapScore score_map(const MapCloud& map, const Pose& truth_from_map,
   score.errors_m = errors_m(clouds, anywhere_m);
   for (const double error_m : score.errors_m) {
     sum += std::min(error_m, worst_m);
-    far += error_m > far_m ? 1 : 0;
+    far += error_m > far_error_m ? 1 : 0;
   }
   const auto count = static_cast<double>(map.size());
   score.accuracy_m = sum / count;

@@ -3,6 +3,7 @@
 
 #include "tofmap/pipeline/pipeline.hpp"
 
+#include "tofmap/pipeline/recording_survey.hpp"
 #include "tofmap/pipeline/side_by_side.hpp"
 
 #include <algorithm>
@@ -101,6 +102,10 @@ void bind_options(OptionTable& table, PipelineOptions& options) {
   table.bind("map", options.map);
 }
 
+int RoomMap::repeated() const {
+  return static_cast<int>(std::ranges::count_if(frames, &FrameRecord::repeats));
+}
+
 int RoomMap::damaged() const {
   return static_cast<int>(std::ranges::count_if(
       frames, [](const FrameRecord& record) { return !record.damage.empty(); }));
@@ -146,12 +151,15 @@ void MapRun::advance(FrameSource& source, const MapHooks& hooks) {
     return !is_interrupted_;
   };
   while (may_go_on()) {
-    const std::vector<SourcedFrame> frames = take(source, omp_get_max_threads());
+    std::vector<SourcedFrame> frames = take(source, omp_get_max_threads());
     if (frames.empty()) break;
     const auto prepared = prepare_all(frames, unwrappers_, sensor_, rays_, options_);
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (prepared[i] && hooks.on_frame) hooks.on_frame(*prepared[i]);
       frames_.push_back(prepared[i] ? place(*prepared[i], mapper_) : damaged_record(frames[i]));
+      if (!prepared[i]) continue;
+      frames_.back().repeats = repeats(*frames[i].frame, last_);
+      last_ = *std::move(frames[i].frame);
     }
   }
 }

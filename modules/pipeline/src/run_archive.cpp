@@ -26,7 +26,7 @@ void serialize(Archive& archive, tofmap::StageTimes& times, unsigned) {
 
 template <class Archive>
 void serialize(Archive& archive, tofmap::FrameRecord& record, unsigned) {
-  archive& record.index& record.timestamp_s& record.damage& record.iterations;
+  archive& record.index& record.timestamp_s& record.damage& record.repeats& record.iterations;
   archive& record.curl_violations& record.phase_noise_cycles& record.valid_pixels;
   archive& record.kept_pixels& record.filters& record.tracking& record.times;
 }

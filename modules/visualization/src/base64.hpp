@@ -8,6 +8,7 @@
 
 namespace tofmap {
 
+/// RFC 4648, padded, without line breaks.
 std::string base64(const void* data, std::size_t size);
 
 /// Of values as they lie in memory.

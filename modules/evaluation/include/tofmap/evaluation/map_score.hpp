@@ -28,10 +28,13 @@ class ReferenceSurface {
   std::vector<Eigen::Vector3f> points_;
 };
 
+/// From here on points of a map are not only inexact, but wrong.
+inline constexpr double far_error_m = 0.2;
+
 /// How right a map is.
 struct MapScore {
   double accuracy_m = 0;   ///< mean distance of map points to the true surface, each at most 5 m
-  double far_percent = 0;  ///< map points more than 0.2 m off
+  double far_percent = 0;  ///< map points more than far_error_m off
   double completeness_percent = 0;  ///< true points with a map point within 0.1 m
   std::vector<float> errors_m;      ///< of each point of the map, as map_errors_m finds them
 };
@@ -39,7 +42,7 @@ struct MapScore {
 /// How far each point of a map is from the true surface, metres; `truth_from_map` moves it into the
 /// frame of the reference. Near the reference (0.1 m) the distance is taken along its normal, so
 /// that its sampling does not count as error. Errors of more than `most_m` are `most_m`: far points
-/// take long to place. Throws UsageError if the reference is empty.
+/// take long to place. Throws UsageError if the reference is empty, or `most_m` not positive.
 std::vector<float> map_errors_m(const MapCloud& map, const Pose& truth_from_map,
                                 const ReferenceSurface& reference,
                                 double most_m = std::numeric_limits<double>::infinity());

@@ -71,7 +71,8 @@ PreparedFrame prepare_ranges(const DualFrequencyFrame& frame, Unwrapper& unwrapp
 struct FrameRecord {
   int index = 0;
   double timestamp_s = 0;
-  std::string damage;  ///< not empty: the frame could not be read, and nothing else holds
+  std::string damage;    ///< not empty: the frame could not be read, and nothing else holds
+  bool repeats = false;  ///< it has the phases of the one before it
   int iterations = 0;
   int curl_violations = 0;
   double phase_noise_cycles = 0;
@@ -92,6 +93,7 @@ struct RoomMap {
   bool interrupted = false;
 
   int damaged() const;
+  int repeated() const;
 };
 
 /// What a caller may hang into a run; any may be empty.
@@ -135,6 +137,7 @@ class MapRun {
   RoomMapper mapper_;
   std::vector<Unwrapper> unwrappers_;  ///< one a thread
   std::vector<FrameRecord> frames_;
+  DualFrequencyFrame last_;  ///< that could be read; empty before
   bool is_interrupted_ = false;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "reports/frame_report.hpp"
+#include "output/frame_report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -83,6 +83,7 @@ Json frame_json(const FrameRecord& record) {
     json["damage"] = record.damage;
     return json;
   }
+  if (record.repeats) json["repeats"] = true;
   json["iterations"] = record.iterations;
   json["curl_violations"] = record.curl_violations;
   json["phase_noise_cycles"] = record.phase_noise_cycles;
@@ -111,15 +112,11 @@ Json summary_json(const RoomMap& map) {
   for (const FrameRecord& record : map.frames) {
     degenerate += record.tracking.registration.degenerate_directions > 0 ? 1 : 0;
   }
-  return {{"frames", map.frames.size()},
-          {"damaged", map.damaged()},
-          {"registered", map.trajectory.size()},
-          {"keyframes", map.keyframes.size()},
-          {"frames_with_degenerate_directions", degenerate},
-          {"loops", loops_json(map)},
-          {"map_points", map.surface.size()},
-          {"interrupted", map.interrupted},
-          {"milliseconds_per_frame", mean.total_ms()},
+  return {{"frames", map.frames.size()},       {"damaged", map.damaged()},
+          {"repeated", map.repeated()},        {"registered", map.trajectory.size()},
+          {"keyframes", map.keyframes.size()}, {"frames_with_degenerate_directions", degenerate},
+          {"loops", loops_json(map)},          {"map_points", map.surface.size()},
+          {"interrupted", map.interrupted},    {"milliseconds_per_frame", mean.total_ms()},
           {"milliseconds", times_json(mean)}};
 }
 

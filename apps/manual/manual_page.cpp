@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "manual/description.hpp"
+#include "manual/manual.hpp"
+#include "options/options.hpp"
+
+#include <ostream>
+#include <sstream>
+
+#include <CLI/CLI.hpp>
+
+#include <tofmap/core/text.hpp>
+
+namespace tofmap::app {
+namespace {
+
+/// The letters of a text in UTF-8, a number each.
+std::vector<unsigned> code_points(const std::string& text) {
+  std::vector<unsigned> points;
+  for (const char letter : text) {
+    const auto byte = static_cast<unsigned char>(letter);
+    const bool goes_on = (byte & 0xC0) == 0x80;
+    if (goes_on && !points.empty()) {
+      points.back() = points.back() << 6 | (byte & 0x3F);
+    } else {
+      const unsigned bits = byte < 0x80 ? 0x7F : byte < 0xE0 ? 0x1F : byte < 0xF0 ? 0x0F : 0x07;
+      points.push_back(byte & bits);
+    }
+  }
+  return points;
+}
+
+/// A line of text as roff takes it.
+std::string roff(const std::string& text) {
+  std::string out = text.starts_with('.') || text.starts_with('\'') ? "\\&" : "";
+  for (const unsigned point : code_points(text)) {
+    if (point == '\\') {
+      out += "\\e";
+    } else if (point == '-') {
+      out += "\\-";
+    } else if (point < 0x80) {
+      out += static_cast<char>(point);
+    } else {
+      out += formatted("\\[u%04X]", point);
+    }
+  }
+  return out;
+}
+
+std::string name_of(const CLI::Option& positional) { return positional.get_name(true); }
+
+/// What follows an option: nothing, one of some values, or any.
+std::string value_of(const CLI::Option& option) {
+  if (option.get_items_expected_max() == 0) return "";
+  const std::vector<std::string> choices = choices_of(option);
+  return " \\fI" + (choices.empty() ? "VALUE" : roff(joined(choices, "|"))) + "\\fR";
+}
+
+void write_command(std::ostream& out, const CLI::App& command) {
+  out << ".SS " << roff("tofmap " + command.get_name());
+  for (const CLI::Option* positional : positionals(command)) {
+    const bool is_required = positional->get_required();
+    out << ' ' << (is_required ? "" : "[") << roff(name_of(*positional))
+        << (is_required ? "" : "]");
+  }
+  out << " [options]\n" << roff(command.get_description()) << ".\n";
+  for (const CLI::Option* positional : positionals(command)) {
+    out << ".TP\n.I " << roff(name_of(*positional)) << '\n'
+        << roff(positional->get_description()) << '\n';
+  }
+  for (const CLI::Option* option : named_options(command)) {
+    out << ".TP\n.B " << roff(option->get_name()) << value_of(*option) << '\n'
+        << roff(option->get_description()) << '\n';
+  }
+}
+
+}  // namespace
+
+std::string manual_page(const CLI::App& program) {
+  std::ostringstream out;
+  out << ".TH TOFMAP 1 \"\" \"tofmap " << TOFMAP_VERSION << "\" \"User Commands\"\n"
+      << ".SH NAME\ntofmap \\- " << roff(program.get_description()) << '\n'
+      << ".SH SYNOPSIS\n.B tofmap\n.I command\n[options]\n.SH COMMANDS\n";
+  for (const CLI::App* command : commands_of(program)) write_command(out, *command);
+  out << ".SH SETTINGS\nOptions that\n.B \\-\\-set\nand a file for\n.B \\-\\-config\ntake; "
+         "defaults in parentheses. A command has those of the groups that it uses: \\(aqtofmap "
+         "config COMMAND\\(aq prints them.\n";
+  ProgramOptions options;
+  for (const OptionText& option : option_table("", options).texts()) {
+    out << ".TP\n.B " << roff(option.key()) << " \\fR(" << roff(option.value) << ")\n"
+        << roff(option.meaning) << " [" << roff(limits(option)) << "]\n";
+  }
+  out << ".SH EXIT STATUS\n"
+         ".TP\n0\ndone\n.TP\n1\na fault of the program itself\n.TP\n2\nwrong use\n.TP\n3\nbad "
+         "input\n.TP\n130\ninterrupted; what was finished is kept\n";
+  return out.str();
+}
+
+}  // namespace tofmap::app

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "options/report_options.hpp"
+
+namespace tofmap::app {
+
+std::vector<OptionField<PictureOptions>> PictureOptions::fields() {
+  using O = PictureOptions;
+  return {
+      {"frames", &O::frames, 0, 100000, "",
+       "frames to draw, spread evenly over the recording; 0: none"},
+      {"map_size_px", &O::map_size_px, 100, 8000, "px", "longer side of the map's pictures"},
+  };
+}
+
+std::vector<OptionField<ReportOptions>> ReportOptions::fields() {
+  using O = ReportOptions;
+  return {
+      {"frames", &O::frames, 0, 200, "",
+       "frames that report.html steps through, spread evenly over the recording"},
+      {"points", &O::points, 1000, 500000, "",
+       "points, at most, of a map that can be turned in report.html"},
+  };
+}
+
+}  // namespace tofmap::app
