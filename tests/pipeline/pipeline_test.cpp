@@ -3,6 +3,7 @@
 
 // Composition: what holds of the whole, whatever its stages do.
 
+#include <algorithm>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -118,6 +119,57 @@ TEST(MapRoom, SkipsADamagedFrameAndSaysSo) {
   EXPECT_EQ(map.damaged(), 1);
   EXPECT_EQ(map.frames[3].damage, "b/000003.png: truncated");
   EXPECT_EQ(map.trajectory.size(), total_frames - 1);
+}
+
+/// A camera that shows one image for ever from the third frame on.
+class StuckSource final : public FrameSource {
+ public:
+  explicit StuckSource(const Simulator& simulator) : simulator_(simulator) {}
+
+  const SensorModel& sensor() const override { return simulator_.sensor(); }
+  std::optional<int> frame_count() const override { return total_frames; }
+  std::optional<SourcedFrame> next() override {
+    if (index_ == total_frames) return {};
+    SourcedFrame out;
+    out.index = index_;
+    DualFrequencyFrame frame = simulator_.simulate(std::min(index_, 2)).frame;
+    frame.index = index_;
+    frame.timestamp_s = simulator_.simulate(index_).frame.timestamp_s;
+    out.timestamp_s = frame.timestamp_s;
+    out.frame = std::move(frame);
+    ++index_;
+    return out;
+  }
+
+ private:
+  const Simulator& simulator_;
+  int index_ = 0;
+};
+
+TEST(MapRoom, CountsFramesThatRepeat) {
+  const Simulator simulator = small_room();
+  StuckSource source(simulator);
+  const RoomMap map = map_room(source, {});
+  ASSERT_EQ(map.frames.size(), static_cast<std::size_t>(total_frames));
+  EXPECT_EQ(map.repeated(), total_frames - 3);
+  EXPECT_FALSE(map.frames[0].repeats || map.frames[2].repeats);
+  EXPECT_TRUE(map.frames[3].repeats);
+}
+
+TEST(PrepareRanges, AreThoseOfTheWholeFrame) {
+  const Simulator simulator = small_room();
+  const DualFrequencyFrame frame = simulator.simulate(0).frame;
+  const SensorModel& sensor = simulator.sensor();
+  const PixelRays rays = pixel_rays(sensor.camera);
+  const PipelineOptions options;
+  Unwrapper unwrapper(sensor, options.unwrap);
+  const PreparedFrame whole = prepare_frame(frame, unwrapper, sensor, rays, options);
+  const PreparedFrame ranges = prepare_ranges(frame, unwrapper, sensor, rays, options);
+  EXPECT_TRUE(whole.cloud);
+  EXPECT_FALSE(ranges.cloud);
+  EXPECT_TRUE((ranges.unwrapped.image.wrap_count == whole.unwrapped.image.wrap_count).all());
+  EXPECT_TRUE((ranges.filtered.image.reason == whole.filtered.image.reason).all());
+  EXPECT_TRUE(same_values(ranges.filtered.image.range_m, whole.filtered.image.range_m));
 }
 
 TEST(MapRoom, EndsEarlyWithWhatItHasWhenToldTo) {
