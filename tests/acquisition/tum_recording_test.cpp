@@ -123,6 +123,35 @@ TEST_F(TumFolder, HasTheSensorsEffectsWanted) {
       (near_only.isNaN() == (ideal.range_truth_m > 4.2F || ideal.range_truth_m.isNaN())).all());
 }
 
+TEST_F(TumFolder, HasTheSystematicErrorsWanted) {
+  simulator_.range_noise_m = 0;
+  simulator_.offset_b_m = 0.05;
+  simulator_.phase_bits = 16;
+  const TumRecording::Frame shifted = open().read(0);
+  const double wavelength_m = open().sensor().modulation.wavelength_b_m();
+  for (const auto& [v, u] : {std::pair(10, 3), std::pair(23, 31)}) {
+    const double off = (double{shifted.range_truth_m(v, u)} + 0.05) / wavelength_m -
+                       double{shifted.frame.phase_b(v, u)};
+    EXPECT_NEAR(off, std::round(off), 1e-5);
+    const float level = 65536 * shifted.frame.phase_b(v, u);
+    EXPECT_EQ(level, std::round(level));
+  }
+  simulator_.phase_bits = 2;
+  EXPECT_THROW(open(), UsageError);
+}
+
+TEST_F(TumFolder, HasAmbientLightInItsPartOfTheImageAlone) {
+  const TumRecording::Frame dark = open().read(0);
+  simulator_.ambient_noise = 4;
+  const TumRecording::Frame lit = open().read(0);
+  const auto changed = [&](Eigen::Index v, Eigen::Index u) {
+    return lit.frame.phase_b(v, u) != dark.frame.phase_b(v, u);
+  };
+  EXPECT_TRUE(changed(11, 16)) << "the right upper quarter is lit by default";
+  EXPECT_FALSE(changed(11, 15));
+  EXPECT_FALSE(changed(12, 16));
+}
+
 TEST_F(TumFolder, RefusesOptionsThatNeedAScene) {
   simulator_.multipath_rays = 8;
   try {

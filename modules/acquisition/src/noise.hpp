@@ -18,6 +18,9 @@ inline std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31U);
 }
 
+/// A number in [0, 1) for a key.
+inline double share_of(std::uint64_t key) { return static_cast<double>(mix(key) >> 11U) * 0x1p-53; }
+
 /// Complex Gaussian noise with a standard deviation of 1 in either component, as a function of
 /// its key and counter alone: no state, so the order in which pixels are computed, and by how
 /// many threads, does not matter.

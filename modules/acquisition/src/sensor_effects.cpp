@@ -28,9 +28,6 @@ Eigen::Vector2d spread_point(int i, int n, const Eigen::Vector2d& shift) {
   return point - point.array().floor().matrix();
 }
 
-/// A number in [0, 1) for a key.
-double share_of(std::uint64_t key) { return static_cast<double>(mix(key) >> 11U) * 0x1p-53; }
-
 /// The direction that a point of the unit square stands for, if directions around the normal are
 /// spread by their cosine.
 Eigen::Vector3d around(const Eigen::Vector3d& normal, const Eigen::Vector2d& point) {

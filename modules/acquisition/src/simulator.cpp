@@ -6,6 +6,7 @@
 #include "noise.hpp"
 #include "pixel_signal.hpp"
 #include "sensor_effects.hpp"
+#include "systematic_errors.hpp"
 
 #include <algorithm>
 #include <array>
@@ -40,6 +41,7 @@ SimulatorOptions checked(SimulatorOptions options) {
       }
     }
   }
+  check_systematic_errors(options);
   return options;
 }
 
@@ -118,6 +120,32 @@ std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
        "charge that a sample can hold, in units of the amplitude; 0: any"},
       {"exposure_share", &S::exposure_share, 0, 1, "",
        "how long the four samples of an image take, as a share of a frame period"},
+      {"offset_a_m", &S::offset_a_m, -0.2, 0.2, "m", "how much too long all ranges of A are"},
+      {"offset_b_m", &S::offset_b_m, -0.2, 0.2, "m", "how much too long all ranges of B are"},
+      {"periodic_a_m", &S::periodic_a_m, 0, 0.2, "m",
+       "largest periodic error of A's ranges, two and four times a wavelength"},
+      {"periodic_b_m", &S::periodic_b_m, 0, 0.2, "m",
+       "largest periodic error of B's ranges, two and four times a wavelength"},
+      {"amplitude_error_a_m", &S::amplitude_error_a_m, -0.2, 0.2, "m",
+       "how much too long A's ranges are at an amplitude of 60, less with its logarithm to 0 at "
+       "60000"},
+      {"amplitude_error_b_m", &S::amplitude_error_b_m, -0.2, 0.2, "m",
+       "how much too long B's ranges are at an amplitude of 60, less with its logarithm to 0 at "
+       "60000"},
+      {"fixed_pattern_m", &S::fixed_pattern_m, 0, 0.2, "m",
+       "standard deviation of the constant errors that pixels have of their own, at A and at B"},
+      {"errors_seed", &S::errors_seed, 0, 2147483647, "",
+       "of the camera: draws its periodic errors and its fixed pattern, apart from the noise"},
+      {"ambient_noise", &S::ambient_noise, 1, 20, "",
+       "factor by which noise is larger where ambient light falls; 1: it falls nowhere"},
+      {"ambient_left", &S::ambient_left, 0, 1, "",
+       "where the part of the image begins that ambient light falls on, as a share of the width"},
+      {"ambient_top", &S::ambient_top, 0, 1, "",
+       "where that part begins, as a share of the height, from the top"},
+      {"ambient_right", &S::ambient_right, 0, 1, "", "where it ends, as a share of the width"},
+      {"ambient_bottom", &S::ambient_bottom, 0, 1, "", "where it ends, as a share of the height"},
+      {"phase_bits", &S::phase_bits, 0, 16, "",
+       "phases are rounded to 2^bits steps a cycle, 4 bits or more; 0: they are not"},
       {"b_delay_share", &S::b_delay_share, 0, 1, "", "B follows A by this share of a frame period"},
       {"frames", &S::frames, 0, 1000000, "", "frames to record; 0: as many as the path needs"},
       {"frame_rate_hz", &S::frame_rate_hz, 0.01, 10000, "Hz", "frames a second"},
@@ -160,6 +188,7 @@ struct Simulator::Exposure {
   bool stands_still = true;
   double wavelength_m = 0;
   std::uint64_t noise_key = 0;
+  RangeErrors errors;
 };
 
 struct Simulator::Exposed {
@@ -189,10 +218,10 @@ SimulatedFrame Simulator::simulate(int index) const {
   frame.timestamp_s = at_a.timestamp_s;
   const Modulation& modulation = sensor_.modulation;
   constexpr bool with_labels = true;
-  Exposed a =
-      expose(exposure_of(motion_.at_a, index, modulation.wavelength_a_m(), key(0)), with_labels);
-  Exposed b =
-      expose(exposure_of(motion_.at_b, index, modulation.wavelength_b_m(), key(1)), !with_labels);
+  Exposed a = expose(exposure_of(motion_.at_a, index, range_errors_a(options_, modulation), key(0)),
+                     with_labels);
+  Exposed b = expose(exposure_of(motion_.at_b, index, range_errors_b(options_, modulation), key(1)),
+                     !with_labels);
   frame.phase_a = std::move(a.phase);
   frame.amplitude_a = std::move(a.amplitude);
   frame.phase_b = std::move(b.phase);
@@ -208,11 +237,12 @@ SimulatedFrame Simulator::simulate(int index) const {
 }
 
 /// The four samples share the exposure evenly, about the instant of the image.
-Simulator::Exposure Simulator::exposure_of(const Trajectory& poses, int index, double wavelength_m,
+Simulator::Exposure Simulator::exposure_of(const Trajectory& poses, int index, RangeErrors errors,
                                            std::uint64_t noise_key) const {
   Exposure exposure;
-  exposure.wavelength_m = wavelength_m;
+  exposure.wavelength_m = errors.wavelength_m;
   exposure.noise_key = noise_key;
+  exposure.errors = std::move(errors);
   const auto i = static_cast<std::size_t>(index);
   exposure.world_from_camera.fill(poses[i].world_from_camera);
   if (options_.exposure_share == 0 || poses.size() == 1) return exposure;
@@ -254,12 +284,31 @@ PixelLight Simulator::light_of(std::size_t pixel, const Exposure& exposure,
   return light;
 }
 
+/// Without noise and errors of ranges; `rays` are left with what they met. Nothing if no ray meets
+/// a surface.
+std::optional<std::complex<double>> Simulator::ideal_signal(std::size_t pixel,
+                                                            const Exposure& exposure,
+                                                            const SensorEffects& effects,
+                                                            std::vector<SubRay>& rays) const {
+  std::array<PixelLight, 4> samples;
+  samples.fill(light_of(pixel, exposure, exposure.world_from_camera[0], rays));
+  for (std::size_t k = 1; k < samples.size() && !exposure.stands_still; ++k) {
+    samples[k] = light_of(pixel, exposure, exposure.world_from_camera[k], rays);
+  }
+  const bool any_hit =
+      std::ranges::any_of(rays, [](const SubRay& ray) { return ray.hit.has_value(); }) ||
+      std::ranges::any_of(samples, [](const PixelLight& light) { return light.level > 0; });
+  if (!any_hit) return std::nullopt;
+  return effects.are_none() && exposure.stands_still ? samples[0].first
+                                                     : demodulate(samples, effects);
+}
+
 Simulator::Exposed Simulator::expose(const Exposure& exposure, bool with_labels) const {
   const int rows = sensor_.camera.height_px;
   const int cols = sensor_.camera.width_px;
   const auto rays_per_pixel = static_cast<std::size_t>(options_.subpixels * options_.subpixels);
   const SensorEffects effects = sensor_effects(options_, sensor_.modulation);
-  const double noise_sigma = std::hypot(noise_sigma_, dark_noise_sigma(effects));
+  const AmbientLight ambient = ambient_light(options_, sensor_.camera);
   Exposed out{ImageF::Constant(rows, cols, nan), ImageF::Zero(rows, cols),
               ImageU8::Zero(rows, cols)};
 
@@ -269,28 +318,23 @@ Simulator::Exposed Simulator::expose(const Exposure& exposure, bool with_labels)
     std::vector<SubRay> rays(rays_per_pixel);
     for (int u = 0; u < cols; ++u) {
       const std::size_t pixel = static_cast<std::size_t>(v) * cols + u;
-      std::array<PixelLight, 4> samples;
-      samples.fill(light_of(pixel, exposure, exposure.world_from_camera[0], rays));
-      for (std::size_t k = 1; k < samples.size() && !exposure.stands_still; ++k) {
-        samples[k] = light_of(pixel, exposure, exposure.world_from_camera[k], rays);
-      }
-      const bool any_hit =
-          std::ranges::any_of(rays, [](const SubRay& ray) { return ray.hit.has_value(); }) ||
-          std::ranges::any_of(samples, [](const PixelLight& light) { return light.level > 0; });
-      if (!any_hit) continue;
-      const std::complex<double> ideal = effects.are_none() && exposure.stands_still
-                                             ? samples[0].first
-                                             : demodulate(samples, effects);
+      const auto ideal = ideal_signal(pixel, exposure, effects, rays);
+      if (!ideal) continue;
+      const double noise_sigma =
+          ambient.noise_factor(v, u) * std::hypot(noise_sigma_, dark_noise_sigma(effects));
+      const std::complex<double> rotation = exposure.errors.rotation(*ideal, pixel);
       const std::complex<double> signal =
-          ideal + noise_sigma * complex_noise(exposure.noise_key, pixel);
+          rotation * *ideal + noise_sigma * complex_noise(exposure.noise_key, pixel);
       const auto measured = measure(signal);
       if (!measured) continue;
       out.amplitude(v, u) = measured->amplitude;
-      out.phase(v, u) = measured->phase_cycles;
+      out.phase(v, u) = quantised(measured->phase_cycles, options_.phase_bits);
       if (!with_labels) continue;
+      // What the pixel would have measured without errors of its range.
+      const auto without_errors = measure(std::conj(rotation) * signal).value_or(*measured);
       const double sigma_m = noise_sigma / std::abs(signal) * exposure.wavelength_m / two_pi;
       out.label(v, u) = static_cast<std::uint8_t>(
-          label_pixel(rays, out.phase(v, u), exposure.wavelength_m, sigma_m));
+          label_pixel(rays, without_errors.phase_cycles, exposure.wavelength_m, sigma_m));
     }
   }
   return out;

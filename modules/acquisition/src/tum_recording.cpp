@@ -6,6 +6,7 @@
 #include "noise.hpp"
 #include "pixel_signal.hpp"
 #include "sensor_effects.hpp"
+#include "systematic_errors.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -78,9 +79,29 @@ CameraModel thinned_camera(const TumOptions& options, const ImageU16& first) {
 }
 
 /// Options of the simulator that need no scene.
-constexpr std::string_view used_options[] = {"frequency_a_hz", "frequency_b_hz", "range_noise_m",
-                                             "wiggle_m",       "dark_level",     "full_well",
-                                             "frames",         "max_range_m",    "seed"};
+constexpr std::string_view used_options[] = {"frequency_a_hz",
+                                             "frequency_b_hz",
+                                             "range_noise_m",
+                                             "wiggle_m",
+                                             "dark_level",
+                                             "full_well",
+                                             "offset_a_m",
+                                             "offset_b_m",
+                                             "periodic_a_m",
+                                             "periodic_b_m",
+                                             "amplitude_error_a_m",
+                                             "amplitude_error_b_m",
+                                             "fixed_pattern_m",
+                                             "errors_seed",
+                                             "ambient_noise",
+                                             "ambient_left",
+                                             "ambient_top",
+                                             "ambient_right",
+                                             "ambient_bottom",
+                                             "phase_bits",
+                                             "frames",
+                                             "max_range_m",
+                                             "seed"};
 
 /// An option that is set would otherwise be silently without effect.
 void refuse_unused(const SimulatorOptions& options) {
@@ -106,6 +127,13 @@ ImageU16 first_readable(const std::vector<TumRecording::DepthImage>& images) {
   return {};
 }
 
+/// Of a surface at that range, without noise and errors of ranges.
+std::complex<double> ideal_signal(double strength, double range_m, double wavelength_m,
+                                  const SensorEffects& effects) {
+  const PixelLight light = light_from(strength, range_m, wavelength_m);
+  return effects.are_none() ? light.first : demodulate({light, light, light, light}, effects);
+}
+
 }  // namespace
 
 std::vector<OptionField<TumOptions>> TumOptions::fields() {
@@ -127,6 +155,7 @@ TumRecording::TumRecording(std::filesystem::path folder, const TumOptions& optio
                            const SimulatorOptions& simulator)
     : folder_(std::move(folder)), options_(options), simulator_(simulator) {
   refuse_unused(simulator_);
+  check_systematic_errors(simulator_);
   for (Line& line : read_list(folder_ / "depth.txt")) {
     images_.push_back({line.timestamp_s, folder_ / line.file});
   }
@@ -158,7 +187,11 @@ TumRecording::Frame TumRecording::read(int index) const {
   frame.amplitude_a = frame.amplitude_b = ImageF::Zero(depth.rows(), depth.cols());
   const auto key =
       mix(static_cast<std::uint64_t>(simulator_.seed)) + 2 * static_cast<std::uint64_t>(index);
-  const SensorEffects effects = sensor_effects(simulator_, sensor_.modulation);
+  const Modulation& modulation = sensor_.modulation;
+  const SensorEffects effects = sensor_effects(simulator_, modulation);
+  const RangeErrors errors_a = range_errors_a(simulator_, modulation);
+  const RangeErrors errors_b = range_errors_b(simulator_, modulation);
+  const AmbientLight ambient = ambient_light(simulator_, sensor_.camera);
   const float farthest_m = sensor_.max_range_m > 0
                                ? std::min(longest_range_m, static_cast<float>(sensor_.max_range_m))
                                : longest_range_m;
@@ -169,19 +202,21 @@ TumRecording::Frame TumRecording::read(int index) const {
     if (range_m > farthest_m) continue;
     out.range_truth_m.data()[i] = range_m;
     const double strength = amplitude_unit * options_.reflectance / (double{range_m} * range_m);
-    const auto at = [&](double wavelength_m, std::uint64_t image_key) {
-      const PixelLight light = light_from(strength, double{range_m}, wavelength_m);
+    const double noise_sigma =
+        noise_sigma_ * ambient.noise_factor(i / depth.cols(), i % depth.cols());
+    const auto at = [&](const RangeErrors& errors, std::uint64_t image_key) {
+      const auto pixel = static_cast<std::size_t>(i);
       const std::complex<double> ideal =
-          effects.are_none() ? light.first : demodulate({light, light, light, light}, effects);
-      return measure(ideal +
-                     noise_sigma_ * complex_noise(mix(image_key), static_cast<std::uint64_t>(i)));
+          ideal_signal(strength, double{range_m}, errors.wavelength_m, effects);
+      const std::complex<double> noise = noise_sigma * complex_noise(mix(image_key), pixel);
+      return measure(errors.rotation(ideal, pixel) * ideal + noise);
     };
-    const auto a = at(sensor_.modulation.wavelength_a_m(), key);
-    const auto b = at(sensor_.modulation.wavelength_b_m(), key + 1);
+    const auto a = at(errors_a, key);
+    const auto b = at(errors_b, key + 1);
     if (!a || !b) continue;
-    frame.phase_a.data()[i] = a->phase_cycles;
+    frame.phase_a.data()[i] = quantised(a->phase_cycles, simulator_.phase_bits);
     frame.amplitude_a.data()[i] = a->amplitude;
-    frame.phase_b.data()[i] = b->phase_cycles;
+    frame.phase_b.data()[i] = quantised(b->phase_cycles, simulator_.phase_bits);
     frame.amplitude_b.data()[i] = b->amplitude;
   }
   return out;

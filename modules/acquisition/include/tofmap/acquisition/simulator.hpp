@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <complex>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -34,6 +35,20 @@ struct SimulatorOptions {
   double dark_level = 0;
   double full_well = 0;
   double exposure_share = 0;
+  double offset_a_m = 0;
+  double offset_b_m = 0;
+  double periodic_a_m = 0;
+  double periodic_b_m = 0;
+  double amplitude_error_a_m = 0;
+  double amplitude_error_b_m = 0;
+  double fixed_pattern_m = 0;
+  int errors_seed = 1;
+  double ambient_noise = 1;
+  double ambient_left = 0.5;
+  double ambient_top = 0;
+  double ambient_right = 1;
+  double ambient_bottom = 0.5;
+  int phase_bits = 0;
   double b_delay_share = 0.1;
   int frames = 0;
   double frame_rate_hz = 15;
@@ -61,6 +76,8 @@ struct SimulatedFrame {
 };
 
 struct PixelLight;
+struct RangeErrors;
+struct SensorEffects;
 struct SubRay;
 
 /// A dual-frequency time-of-flight camera on a path through a scene (docs/simulator.md).
@@ -69,8 +86,9 @@ struct SubRay;
 /// frequency, plus complex Gaussian noise of one strength: phase noise goes as 1 / amplitude,
 /// and pixels on an edge mix the surfaces on both sides, as in a real sensor. No ray hits, or
 /// an amplitude that rounds to zero: no return. Harmonics of the correlation function, light by way
-/// of other surfaces, dark charge, full wells and motion during an exposure come in by options. The
-/// same scene, options and seed give the same bits, whatever the number of threads.
+/// of other surfaces, dark charge, full wells and motion during an exposure come in by options, and
+/// so do systematic errors of ranges, ambient light and quantised phases. The same scene, options
+/// and seeds give the same bits, whatever the number of threads.
 class Simulator final : public FrameSource {
  public:
   /// `keep_going` is asked at every row of an image, from several threads; once it says no, the
@@ -97,17 +115,21 @@ class Simulator final : public FrameSource {
   const RayScene& rays() const { return ray_scene_; }
 
   /// Standard deviation of the noise of either component of the complex signal, in the units
-  /// of the amplitude; a pixel's phase noise is noise_sigma() / amplitude radians.
+  /// of the amplitude, where no ambient light falls; a pixel's phase noise is noise_sigma() /
+  /// amplitude radians.
   double noise_sigma() const { return noise_sigma_; }
 
  private:
   struct Exposure;
   struct Exposed;
-  Exposure exposure_of(const Trajectory& poses, int index, double wavelength_m,
+  Exposure exposure_of(const Trajectory& poses, int index, RangeErrors errors,
                        std::uint64_t noise_key) const;
   Exposed expose(const Exposure& exposure, bool with_labels) const;
   PixelLight light_of(std::size_t pixel, const Exposure& exposure, const Pose& world_from_camera,
                       std::vector<SubRay>& rays) const;
+  std::optional<std::complex<double>> ideal_signal(std::size_t pixel, const Exposure& exposure,
+                                                   const SensorEffects& effects,
+                                                   std::vector<SubRay>& rays) const;
   struct Truth;
   Truth cast_truth(const Pose& world_from_camera) const;
 

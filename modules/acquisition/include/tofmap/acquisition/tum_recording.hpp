@@ -27,8 +27,9 @@ struct TumOptions {
 
 /// Real depth as a dual-frequency camera would have measured it: depth images become radial ranges,
 /// which are wrapped at both frequencies of `simulator` with its noise, wiggling, dark charge, full
-/// wells and seed, as if every surface had one reflectance and faced the camera. B is taken at the
-/// instant of A. Other options of the simulator need a scene.
+/// wells, systematic errors of ranges, ambient light, phase bits and seeds, as if every surface had
+/// one reflectance and faced the camera. B is taken at the instant of A. Other options of the
+/// simulator need a scene.
 class TumRecording {
  public:
   /// Reads depth.txt and, if it is there, groundtruth.txt. Throws InputError that names the file
