@@ -125,6 +125,15 @@ TEST(PlanMotion, PutsBBetweenItsFrameAndTheNext) {
   EXPECT_DOUBLE_EQ(motion.at_a[20].timestamp_s, 2.0);
 }
 
+TEST(PlanMotion, GoesOnToTheLastB) {
+  for (const double b_delay_share : {0.1, 1.0}) {
+    const CameraMotion open = plan_motion(straight_path(5), limits, 0, 2, 10, b_delay_share);
+    const auto x = [](const StampedPose& pose) { return pose.world_from_camera.translation().x(); };
+    const double step_m = x(open.at_a[20]) - x(open.at_a[19]);
+    EXPECT_NEAR(x(open.at_b.back()) - x(open.at_a.back()), b_delay_share * step_m, 1e-3 * step_m);
+  }
+}
+
 TEST(PlanMotion, StandsStillOnAPathWithoutLength) {
   const CameraMotion motion = plan_motion(straight_path(0), limits, 3, 2, 15, 0.5);
   ASSERT_EQ(motion.at_a.size(), 3U);

@@ -113,6 +113,14 @@ CameraMotion plan_motion(const CameraPath& path, const MotionLimits& limits, int
     motion.at_a.push_back({timestamp_s, path.pose_at(efforts.place(i * step))});
     motion.at_b.push_back({timestamp_s, path.pose_at(efforts.place((i + b_delay_share) * step))});
   }
+  if (!path.closed() && count > 1 && b_delay_share > 0 &&
+      (count - 1 + b_delay_share) * step > efforts.total()) {
+    // An open path ends at the last A; the camera goes on by as much as before.
+    const std::size_t last = motion.at_a.size() - 1;
+    motion.at_b[last].world_from_camera =
+        interpolate(motion.at_a[last - 1].world_from_camera, motion.at_a[last].world_from_camera,
+                    1 + b_delay_share);
+  }
   return motion;
 }
 

@@ -63,7 +63,7 @@ struct CameraMotion {
 /// squares of a step's translation and turn, each as a share of its limit. `frames` = 0: as
 /// many as the whole path needs, but at least `min_frames`. More frames than the path needs
 /// make the camera slower; with fewer it stops before the end. B follows A by `b_delay_share` of
-/// a frame.
+/// a frame; the last B of an open path lies beyond its end by as much of the last step.
 CameraMotion plan_motion(const CameraPath& path, const MotionLimits& limits, int frames,
                          int min_frames, double frame_rate_hz, double b_delay_share);
 
