@@ -174,6 +174,25 @@ TEST(FlatScene, IsAClosedLoopOf300FramesOrMoreThroughSeveralRooms) {
   EXPECT_TRUE(simulator.rays().cast(first, away.normalized(), away.norm()));
 }
 
+TEST(PassageScene, HoldsBrightWallsCloseByBeforeDarkOnesFarAway) {
+  SimulatorOptions options = options_of(1);
+  options.width_px = 88;
+  options.height_px = 72;
+  const Simulator simulator(make_scene("passage"), options);
+  ASSERT_GE(*simulator.frame_count(), 120);
+  ASSERT_LE(*simulator.frame_count(), 200);
+  int both = 0;
+  for (int i = 0; i < *simulator.frame_count(); ++i) {
+    const SimulatedFrame simulated = simulator.simulate(i);
+    const ImageF& range_m = simulated.range_truth_m;
+    const ImageF& amplitude = simulated.frame.amplitude_a;
+    const auto is_bright = range_m < 0.4F && amplitude > 10000;
+    const auto is_dark = range_m > 15 && amplitude < 5;
+    if (is_bright.any() && is_dark.count() > range_m.size() / 100) ++both;
+  }
+  EXPECT_GE(both, 30) << "ten at each of three jambs";
+}
+
 TEST(Scenes, UnknownOnesAreRefusedWithTheNamesOfTheOthers) {
   try {
     find_scene("ballroom");

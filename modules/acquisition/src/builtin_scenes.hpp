@@ -15,6 +15,7 @@ Scene room_scene();
 Scene flat_scene();
 Scene hall_scene();
 Scene atrium_scene();
+Scene passage_scene();
 Scene random_scene(int seed);
 
 /// Floor, ceiling and four walls of a room with one corner at the origin.

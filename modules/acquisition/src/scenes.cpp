@@ -22,15 +22,16 @@ Scene without_seed(int /*seed*/) {
   return make();
 }
 
-constexpr std::array<NamedScene, 9> builtin{{{"wall", without_seed<wall_scene>},
-                                             {"slope", without_seed<slope_scene>},
-                                             {"beyond", without_seed<beyond_scene>},
-                                             {"corridor", without_seed<corridor_scene>},
-                                             {"room", without_seed<room_scene>},
-                                             {"flat", without_seed<flat_scene>},
-                                             {"hall", without_seed<hall_scene>},
-                                             {"atrium", without_seed<atrium_scene>},
-                                             {"random", random_scene}}};
+constexpr std::array<NamedScene, 10> builtin{{{"wall", without_seed<wall_scene>},
+                                              {"slope", without_seed<slope_scene>},
+                                              {"beyond", without_seed<beyond_scene>},
+                                              {"corridor", without_seed<corridor_scene>},
+                                              {"room", without_seed<room_scene>},
+                                              {"flat", without_seed<flat_scene>},
+                                              {"hall", without_seed<hall_scene>},
+                                              {"atrium", without_seed<atrium_scene>},
+                                              {"passage", without_seed<passage_scene>},
+                                              {"random", random_scene}}};
 
 bool is_mesh_name(const std::string& text) {
   const std::string ending = std::filesystem::path(text).extension().string();
