@@ -3,10 +3,10 @@
 
 // Methods of unwrapping against scenes, noise and pairs of frequencies, as tables in Markdown:
 //
-//     bench_unwrap_accuracy [--divide N] [SEQ …]
+//     bench_unwrap_accuracy [--divide N] [--departures] [SEQ …]
 //
 // The recordings are simulated; more can be named, with range_truth/. N divides the number of
-// frames.
+// frames. With --departures the tables are of what sets `jump` apart from the paper, instead.
 
 #include <algorithm>
 #include <chrono>
@@ -15,6 +15,7 @@
 #include <cstring>
 #include <functional>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@
 #include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/core/error.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
+
+// Inner parts of the module, to leave out one at a time.
+#include "jump.hpp"
 
 namespace tofmap {
 namespace {
@@ -41,7 +45,8 @@ struct Score {
   double sure_wrong_percent = 0;  ///< among the most confident 90 % of each frame
   double coverage_percent = 0;
   double calibration_error_percent = 0;
-  double range_rmse_m = 0;  ///< of right counts, mean over frames
+  double range_rmse_m = 0;       ///< of right counts, mean over frames
+  double converged_percent = 0;  ///< frames without curls, of methods of phase jumps
   double milliseconds = 0;
 };
 
@@ -105,21 +110,45 @@ void add_frame(const DualFrequencyFrame& frame, const RangeImage& image, const I
   score.sure_wrong_percent += 100 * wrong_among(sure) / static_cast<double>(sure);
 }
 
-Score score_case(const Case& data, const UnwrapOptions& options) {
+/// Options, and a method of phase jumps that none of them names.
+struct Variant {
+  std::string name;
+  UnwrapOptions options;
+  std::optional<JumpMethod> jumps = std::nullopt;
+};
+
+/// What unwraps the frames of a case.
+std::function<UnwrapResult(const DualFrequencyFrame&)> unwrapper_of(const Variant& variant,
+                                                                    const SensorModel& sensor) {
+  if (!variant.jumps) {
+    return [unwrapper = Unwrapper(sensor, variant.options)](const auto& frame) mutable {
+      return unwrapper.unwrap(frame);
+    };
+  }
+  return [&variant, saturation_amplitude = sensor.saturation_amplitude,
+          limits = beat_limits(sensor, variant.options.max_range_m),
+          estimator = JumpEstimator()](const auto& frame) mutable {
+    return unwrap_by_jumps(estimator, MeasuredFrame(frame, saturation_amplitude), limits,
+                           *variant.jumps, variant.options);
+  };
+}
+
+Score score_case(const Case& data, const Variant& variant) {
   Score score;
   Calibration calibration;
-  Unwrapper unwrapper(data.sensor, options);
+  const auto unwrap_frame = unwrapper_of(variant, data.sensor);
   const double wavelength_m = data.sensor.modulation.wavelength_a_m();
   for (std::size_t i = 0; i < data.frames.size(); ++i) {
     const auto start = std::chrono::steady_clock::now();
-    const UnwrapResult result = unwrapper.unwrap(data.frames[i]);
+    const UnwrapResult result = unwrap_frame(data.frames[i]);
     score.milliseconds +=
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     add_frame(data.frames[i], result.image, data.truth_m[i], wavelength_m, score, calibration);
+    score.converged_percent += result.converged ? 100 : 0;
   }
   const auto frames = static_cast<double>(data.frames.size());
   for (double* mean : {&score.wrong_percent, &score.sure_wrong_percent, &score.coverage_percent,
-                       &score.range_rmse_m, &score.milliseconds}) {
+                       &score.range_rmse_m, &score.converged_percent, &score.milliseconds}) {
     *mean /= frames;
   }
   score.calibration_error_percent = calibration.error_percent();
@@ -164,6 +193,20 @@ const std::vector<Recording> recordings{
     {"flat, 80 cm", "flat", 0.8},
 };
 
+/// The paper's experiments, and scenes with more counts than its two.
+const std::vector<Recording> scenes_of_paper{
+    {"wall", "wall"},
+    {"slope", "slope"},
+    {"room", "room"},
+    {"hall", "hall"},
+    {"flat", "flat"},
+    {"corridor", "corridor"},
+    {"atrium", "atrium"},
+    {"beyond", "beyond"},
+    {"random rooms", "random", 0.02, 29e6, 31e6, 24, 3},
+    {"flat, 80/100 MHz", "flat", 0.02, 80e6, 100e6},
+};
+
 Case simulate(const Recording& recording, int divisor) {
   Case data{.name = recording.name, .sensor = {}, .frames = {}, .truth_m = {}};
   SimulatorOptions options;
@@ -198,14 +241,9 @@ Case read_recording(const std::filesystem::path& folder, int divisor) {
   return data;
 }
 
-struct Variant {
-  std::string name;
-  UnwrapOptions options;
-};
-
 std::vector<Variant> methods() {
   std::vector<Variant> variants;
-  for (const char* name : {"none", "pixel", "single", "jump", "joint"}) {
+  for (const char* name : {"none", "pixel", "single", "paper", "jump", "joint"}) {
     variants.push_back({name, {}});
     variants.back().options.method = name;
   }
@@ -229,6 +267,46 @@ std::vector<Variant> ablations() {
       variant("1 iteration", [](auto& o) { o.count_iterations = 1; }),
       variant("10 iterations", [](auto& o) { o.count_iterations = 10; }),
       variant("ranges from A alone", [](auto& o) { o.fuse_frequencies = false; }),
+  };
+}
+
+/// One departure from the paper after the other, until it is `jump`.
+std::vector<Variant> departures() {
+  std::vector<Variant> steps{{"paper", {}, JumpMethod{}}};
+  const auto then = [&](const char* name, const std::function<void(JumpMethod&)>& depart) {
+    steps.push_back(steps.back());
+    steps.back().name = name;
+    depart(*steps.back().jumps);
+  };
+  then("+ σ of slopes", [](JumpMethod& m) { m.has_sigma_of_image = false; });
+  then("+ noise of pixels", [](JumpMethod& m) { m.has_noise_of_pixels = true; });
+  then("+ all counts", [](JumpMethod& m) { m.has_all_counts = true; });
+  then("+ sweeps together", [](JumpMethod& m) { m.schedule = MessageSchedule::together; });
+  then("+ anchors by the residual", [](JumpMethod& m) { m.regards_residual = true; });
+  steps.back().options.objection_share = 1e6;
+  then("+ objection = jump", [](JumpMethod&) {});
+  steps.back().options.objection_share = 1;
+  return steps;
+}
+
+/// `jump` with one of its departures from the paper taken back.
+std::vector<Variant> returns() {
+  const auto variant = [](const char* name, const std::function<void(JumpMethod&)>& change) {
+    Variant made{name, {}, jump_method(UnwrapMethod::jump)};
+    change(*made.jumps);
+    return made;
+  };
+  return {
+      variant("jump", [](JumpMethod&) {}),
+      variant("σ of the image, no noise",
+              [](JumpMethod& m) {
+                m.has_sigma_of_image = true;
+                m.has_noise_of_pixels = false;
+              }),
+      variant("no noise", [](JumpMethod& m) { m.has_noise_of_pixels = false; }),
+      variant("two counts", [](JumpMethod& m) { m.has_all_counts = false; }),
+      variant("sweeps one by one", [](JumpMethod& m) { m.schedule = MessageSchedule::one_by_one; }),
+      variant("residual unregarded", [](JumpMethod& m) { m.regards_residual = false; }),
   };
 }
 
@@ -263,15 +341,17 @@ std::vector<std::vector<Score>> score_all(const std::vector<Case>& cases,
   std::vector<std::vector<Score>> scores;
   for (const Variant& variant : variants) {
     scores.emplace_back();
-    for (const Case& data : cases) scores.back().push_back(score_case(data, variant.options));
+    for (const Case& data : cases) scores.back().push_back(score_case(data, variant));
   }
   return scores;
 }
 
+const Cell wrong = [](const Score& s) {
+  return formatted("%.2f / %.1f", s.wrong_percent, s.worst_percent);
+};
+const Cell converged = [](const Score& s) { return formatted("%.0f", s.converged_percent); };
+
 void print_all(const std::vector<Case>& cases) {
-  const Cell wrong = [](const Score& s) {
-    return formatted("%.2f / %.1f", s.wrong_percent, s.worst_percent);
-  };
   const Cell sure = [](const Score& s) { return formatted("%.3f", s.sure_wrong_percent); };
   const std::vector<Variant> all = methods();
   const auto of_methods = score_all(cases, all);
@@ -290,20 +370,32 @@ void print_all(const std::vector<Case>& cases) {
               wrong);
 }
 
+void print_departures(const std::vector<Case>& cases) {
+  for (const std::vector<Variant>& variants : {departures(), returns()}) {
+    const auto scores = score_all(cases, variants);
+    print_table("wrong wraps, %, mean / worst frame", cases, variants, scores, wrong);
+    print_table("frames that converge, %", cases, variants, scores, converged);
+  }
+}
+
 int run(int count, char** arguments) {
   int divisor = 1;
+  bool only_departures = false;
   std::vector<Case> cases;
   std::vector<std::filesystem::path> folders;
   for (int i = 1; i < count; ++i) {
     if (std::strcmp(arguments[i], "--divide") == 0 && i + 1 < count) {
       divisor = std::max(1, std::atoi(arguments[++i]));
+    } else if (std::strcmp(arguments[i], "--departures") == 0) {
+      only_departures = true;
     } else {
       folders.emplace_back(arguments[i]);
     }
   }
-  for (const Recording& recording : recordings) cases.push_back(simulate(recording, divisor));
+  for (const Recording& recording : only_departures ? scenes_of_paper : recordings)
+    cases.push_back(simulate(recording, divisor));
   for (const auto& folder : folders) cases.push_back(read_recording(folder, divisor));
-  print_all(cases);
+  only_departures ? print_departures(cases) : print_all(cases);
   return 0;
 }
 

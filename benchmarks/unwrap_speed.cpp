@@ -82,7 +82,7 @@ void pass_jump_messages(benchmark::State& state, const Size& size) {
   JumpEstimator estimator;
   const JumpEstimate& jumps =
       estimator.estimate(e.frame, PhaseSigma(e.frame, estimate_phase_noise(e.frame)),
-                         beat_limits(e.sensor, 0), options);
+                         beat_limits(e.sensor, 0), jump_method(UnwrapMethod::jump), options);
   JumpPropagation propagation;
   JumpBeliefs beliefs;
   for (auto _ : state) {
@@ -138,7 +138,7 @@ void register_all() {
   for (const Size& size : sizes) {
     const std::string name =
         "/" + std::to_string(size.width_px) + "x" + std::to_string(size.height_px);
-    for (const char* method : {"none", "pixel", "single", "jump", "joint"}) {
+    for (const char* method : {"none", "pixel", "single", "paper", "jump", "joint"}) {
       benchmark::RegisterBenchmark(
           ("unwrap/" + std::string(method) + name).c_str(),
           [=](benchmark::State& state) { unwrap_frames(state, method, size); })

@@ -11,7 +11,7 @@ namespace tofmap::app {
 
 /// What `evaluate` compares, group `evaluation`.
 struct EvaluationOptions {
-  std::string methods = "none pixel single jump joint";
+  std::string methods = "none pixel single paper jump joint";
   std::string down_to = "map";
 
   static std::vector<OptionField<EvaluationOptions>> fields();

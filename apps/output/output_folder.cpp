@@ -47,13 +47,13 @@ bool holds_recording(const fs::path& folder) {
 
 /// Everything that a command puts into a result folder, or a simulated recording.
 constexpr std::array result_names{
-    "amplitude_a",   "amplitude_b", "confidence",    "frames.txt",     "groundtruth.txt",
-    "joint",         "jump",        "keyframes.txt", "label_truth",    "map.pcd",
-    "map.ply",       "merged.ply",  "mesh.ply",      "none",           "options.yaml",
-    "phase_a",       "phase_b",     "pictures",      "pixel",          "range",
-    "range_truth",   "reason",      "report.html",   "report.json",    "scene.ply",
-    "sequence.yaml", "single",      "state.bin",     "trajectory.txt", "transforms.json",
-    "wraps"};
+    "amplitude_a",     "amplitude_b",   "confidence",    "frames.txt",  "groundtruth.txt",
+    "joint",           "jump",          "keyframes.txt", "label_truth", "map.pcd",
+    "map.ply",         "merged.ply",    "mesh.ply",      "none",        "options.yaml",
+    "paper",           "phase_a",       "phase_b",       "pictures",    "pixel",
+    "range",           "range_truth",   "reason",        "report.html", "report.json",
+    "scene.ply",       "sequence.yaml", "single",        "state.bin",   "trajectory.txt",
+    "transforms.json", "wraps"};
 
 /// The first thing in a folder that no command puts there; empty if there is none.
 std::string foreign_name(const fs::path& folder) {

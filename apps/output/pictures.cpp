@@ -21,34 +21,29 @@
 namespace tofmap::app {
 namespace {
 
-bool finds_jumps(const UnwrapOptions& options) {
-  const UnwrapMethod method = unwrap_method(options);
-  return method == UnwrapMethod::jump || method == UnwrapMethod::single;
-}
-
 /// Each term by itself, fused, and after propagation; probabilities sum to one in all of them.
 Picture jump_stages_picture(const DualFrequencyFrame& frame, const SensorModel& sensor,
                             const UnwrapOptions& options) {
-  const PhaseSigma sigma(frame, estimate_phase_noise(frame));
+  const JumpMethod method = jump_method(unwrap_method(options));
   JumpEstimator estimator;
   const JumpEstimate& jumps =
-      estimator.estimate(frame, sigma, beat_limits(sensor, options.max_range_m), options);
-  const bool has_frequency = unwrap_method(options) == UnwrapMethod::jump;
-  const ImageF reconstruction_cycles =
-      has_frequency ? reconstruct_cycles(frame.phase_a, jumps.nearest) : ImageF();
+      estimator.estimate(frame, PhaseSigma(frame, estimate_phase_noise(frame)),
+                         beat_limits(sensor, options.max_range_m), method, options);
+  const JumpInputs& inputs = jumps.inputs;
   const auto evidence = [&](double trust_discontinuity, double trust_frequency) {
-    JumpTerms terms = jump_terms(options);
+    JumpTerms terms = inputs.terms;
     terms.trust_discontinuity = trust_discontinuity;
     terms.trust_frequency = trust_frequency;
     JumpProbabilities out;
-    find_jump_evidence(frame.phase_a, sigma.a_cycles, reconstruction_cycles, terms, out);
+    find_jump_evidence(frame.phase_a, inputs.noise_cycles, inputs.reconstruction_cycles, terms,
+                       out);
     return out;
   };
   const JumpProbabilities by_discontinuity = evidence(1, 0);
   std::vector<JumpStage> stages{
       {"discontinuity term f_d", &by_discontinuity.x, &by_discontinuity.y}};
   JumpProbabilities by_frequency;
-  if (has_frequency) {
+  if (method.has_frequency_term) {
     by_frequency = evidence(0, 1);
     stages.push_back({"frequency term f_f", &by_frequency.x, &by_frequency.y});
     stages.push_back({"fused", &jumps.evidence.x, &jumps.evidence.y});
@@ -69,7 +64,8 @@ void write_pictures_of(const DualFrequencyFrame& frame, const SensorModel& senso
   write("range", range_picture(wrapped_m, unwrapped.range_m));
   write("wraps", wrap_count_picture(unwrapped.wrap_count));
   write("confidence", confidence_picture(unwrapped));
-  if (finds_jumps(options)) write("jumps", jump_stages_picture(frame, sensor, options));
+  if (finds_jumps(unwrap_method(options)))
+    write("jumps", jump_stages_picture(frame, sensor, options));
   write("cloud", cloud_picture(unwrapped, wrapped_m, rays));
 }
 

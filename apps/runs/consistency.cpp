@@ -18,7 +18,8 @@ namespace {
 /// NaN of methods that go by no jumps.
 double curl_violations_per_frame(const RoomMap& map, const std::string& method) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  if (method != "jump" && method != "single") return nan;
+  const auto known = find_unwrap_method(method);
+  if (!known || !finds_jumps(*known)) return nan;
   double sum = 0;
   int frames = 0;
   for (const FrameRecord& frame : map.frames) {

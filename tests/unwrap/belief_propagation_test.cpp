@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "exact_enumeration.hpp"
+#include "plain_jump_propagation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,22 +51,53 @@ struct Size {
   Eigen::Index cols;
 };
 
+constexpr std::array schedules{MessageSchedule::one_by_one, MessageSchedule::together};
+
 class TreeOfCurls : public testing::TestWithParam<Size> {};
 
 TEST_P(TreeOfCurls, HasTheMarginalsOfExactEnumeration) {
   const auto [rows, cols] = GetParam();
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const JumpProbabilities evidence = random_evidence(rows, cols, seed);
-    // On a tree two iterations carry every message; more change nothing.
-    const JumpBeliefs beliefs = propagate_jump_beliefs(evidence, 4, 4);
     const test::ExactMarginals exact(evidence);
-    EXPECT_LT(largest_difference(beliefs.marginals, exact.marginals()), 1e-6F) << "seed " << seed;
+    for (const MessageSchedule schedule : schedules) {
+      // On a tree two iterations carry every message; more change nothing.
+      const JumpBeliefs beliefs = propagate_jump_beliefs(evidence, 4, 4, schedule);
+      EXPECT_LT(largest_difference(beliefs.marginals, exact.marginals()), 1e-6F) << "seed " << seed;
+    }
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Chains, TreeOfCurls,
                          testing::Values(Size{2, 2}, Size{2, 3}, Size{3, 2}, Size{2, 4},
                                          Size{4, 2}));
+
+TEST(PrintedSchedule, SendsForwardBackwardUpAndDown) {
+  for (const auto& [rows, cols] : {Size{2, 2}, {3, 5}, {7, 4}, {20, 35}}) {
+    const JumpProbabilities evidence = random_evidence(rows, cols, 3);
+    test::PlainJumpPropagation plain(evidence);
+    JumpPropagation kept;  // with the messages of the run before, which must not matter
+    for (int iterations = 1; iterations <= 3; ++iterations) {
+      plain.iterate();
+      JumpBeliefs beliefs;
+      kept.run(evidence, iterations, beliefs, iterations, MessageSchedule::one_by_one);
+      EXPECT_LT(largest_difference(beliefs.marginals, plain.marginals()), 1e-5F)
+          << rows << " x " << cols << ", " << iterations;
+      EXPECT_EQ(beliefs.curl_violations,
+                count_curl_violations(most_likely_configurations(beliefs.marginals)));
+    }
+  }
+}
+
+TEST(PrintedSchedule, IsNoOtherThanTheSweepsTogetherOnceMessagesSettle) {
+  const JumpProbabilities evidence = random_evidence(6, 9, 5);
+  const JumpBeliefs one_by_one =
+      propagate_jump_beliefs(evidence, 500, 500, MessageSchedule::one_by_one);
+  const JumpBeliefs together =
+      propagate_jump_beliefs(evidence, 500, 500, MessageSchedule::together);
+  EXPECT_LT(one_by_one.largest_message_change, 1e-5);
+  EXPECT_LT(largest_difference(one_by_one.marginals, together.marginals), 1e-4F);
+}
 
 /// Evidence that favours the jumps of a field of counts, and is misleading at one node.
 JumpProbabilities evidence_of_field(const Image<int>& count, unsigned seed) {
@@ -102,14 +134,16 @@ TEST(SmallLoopyGrid, FindsTheConsistentConfigurationAgainstOneMisleadingNode) {
     evidence.x[0](0, 1) = 0.4F;
     evidence.x[1](0, 1) = 0.5F;
     evidence.x[2](0, 1) = 0.1F;
-    const JumpBeliefs beliefs = propagate_jump_beliefs(evidence, 20);
-    EXPECT_TRUE(beliefs.converged) << "seed " << seed;
-    const JumpConfigurations found = most_likely_configurations(beliefs.marginals);
-    EXPECT_EQ(count_curl_violations(found), 0);
-    for (Eigen::Index v = 0; v < 3; ++v) {
-      for (Eigen::Index u = 0; u < 2; ++u) {
-        EXPECT_EQ(found.x(v, u), count(v, u) - count(v, u + 1)) << "seed " << seed;
-        EXPECT_EQ(found.y(u, v), count(u, v) - count(u + 1, v)) << "seed " << seed;
+    for (const MessageSchedule schedule : schedules) {
+      const JumpBeliefs beliefs = propagate_jump_beliefs(evidence, 20, 1, schedule);
+      EXPECT_TRUE(beliefs.converged) << "seed " << seed;
+      const JumpConfigurations found = most_likely_configurations(beliefs.marginals);
+      EXPECT_EQ(count_curl_violations(found), 0);
+      for (Eigen::Index v = 0; v < 3; ++v) {
+        for (Eigen::Index u = 0; u < 2; ++u) {
+          EXPECT_EQ(found.x(v, u), count(v, u) - count(v, u + 1)) << "seed " << seed;
+          EXPECT_EQ(found.y(u, v), count(u, v) - count(u + 1, v)) << "seed " << seed;
+        }
       }
     }
   }
@@ -126,10 +160,12 @@ TEST(SmallLoopyGrid, KeepsContradictoryBeliefsFinite) {
       (*group)[configuration(random)].data()[i] = 1;
     }
   }
-  const JumpBeliefs beliefs = propagate_jump_beliefs(evidence, 200);
-  for (std::size_t c = 0; c < 3; ++c) {
-    EXPECT_TRUE(beliefs.marginals.x[c].isFinite().all());
-    EXPECT_TRUE(beliefs.marginals.y[c].isFinite().all());
+  for (const MessageSchedule schedule : schedules) {
+    const JumpBeliefs beliefs = propagate_jump_beliefs(evidence, 200, 1, schedule);
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_TRUE(beliefs.marginals.x[c].isFinite().all());
+      EXPECT_TRUE(beliefs.marginals.y[c].isFinite().all());
+    }
   }
 }
 

@@ -149,6 +149,41 @@ TEST(JumpMethod, TellsTheAbsoluteCountOfASceneBeyondOneWavelength) {
   EXPECT_EQ(result.image.wrap_count(0, 20), 2);
 }
 
+UnwrapOptions paper_options() {
+  UnwrapOptions options;
+  options.method = "paper";
+  return options;
+}
+
+TEST(PaperMethod, AddsOneWavelengthWhereRangesAreWrapped) {
+  TwoWalls walls = two_walls(3, 9);
+  const UnwrapResult result = unwrap(walls.frame, walls.sensor, paper_options());
+  EXPECT_LT(largest_error_m(walls, result.image), 0.1);
+  EXPECT_EQ(result.regions, 1);
+}
+
+TEST(PaperMethod, KnowsNoCountOfASceneBeyondOneWavelength) {
+  // Jumps tell differences of counts alone, and the least count is 0.
+  TwoWalls walls = two_walls(7, 11);
+  const UnwrapResult result = unwrap(walls.frame, walls.sensor, paper_options());
+  EXPECT_EQ(result.image.wrap_count(0, 0), 0);
+}
+
+TEST(PaperMethod, HasTwoCountsHoweverFarTheSceneReaches) {
+  TwoWalls walls = two_walls(3, 8);
+  // A third wall, one count farther still.
+  const TwoWalls far = two_walls(8, 13);
+  for (const auto image : {&DualFrequencyFrame::phase_a, &DualFrequencyFrame::phase_b}) {
+    (walls.frame.*image).rightCols(6) = (far.frame.*image).rightCols(6);
+  }
+  walls.sensor.max_range_m = 70;
+  EXPECT_EQ(
+      unwrap(walls.frame, walls.sensor, paper_options()).image.wrap_count.cast<int>().maxCoeff(),
+      1);
+  EXPECT_EQ(
+      unwrap(walls.frame, walls.sensor, jump_options()).image.wrap_count.cast<int>().maxCoeff(), 2);
+}
+
 TEST(JumpMethod, WorksWhenBHasTheLongerWavelength) {
   TwoWalls walls = two_walls(3, 9);
   std::swap(walls.frame.phase_a, walls.frame.phase_b);
@@ -175,7 +210,7 @@ TEST(Unwrapping, OfAFrameDoesNotDependOnTheFramesBefore) {
   for (ImageF* phase : {&small.frame.phase_a, &small.frame.phase_b}) {
     *phase = ImageF(phase->topLeftCorner(11, 7));
   }
-  for (const char* method : {"joint", "jump", "single"}) {
+  for (const char* method : {"joint", "jump", "paper", "single"}) {
     UnwrapOptions options;
     options.method = method;
     Unwrapper unwrapper(near.sensor, options);
@@ -217,12 +252,13 @@ TEST(Unwrapping, TakesImagesOfAnyShape) {
     for (ImageF* phase : {&walls.frame.phase_a, &walls.frame.phase_b}) {
       *phase = ImageF(phase->topLeftCorner(rows, cols));
     }
-    for (const char* method : {"none", "pixel", "single", "jump", "joint"}) {
+    for (const char* method : {"none", "pixel", "single", "paper", "jump", "joint"}) {
       UnwrapOptions options;
       options.method = method;
       const RangeImage image = unwrap(walls.frame, walls.sensor, options).image;
       EXPECT_EQ(image.count_valid(), rows * cols) << method;
-      const bool knows_count = std::string(method) != "none" && std::string(method) != "single";
+      const bool knows_count = method == std::string("pixel") || method == std::string("jump") ||
+                               method == std::string("joint");
       if (!knows_count) continue;
       EXPECT_LT((image.range_m - 7).abs().maxCoeff(), 0.1) << method;
     }
@@ -232,7 +268,7 @@ TEST(Unwrapping, TakesImagesOfAnyShape) {
 TEST(Unwrapping, OfAnImageWithoutAnyReturnIsEmpty) {
   TwoWalls walls = two_walls(3, 9);
   walls.frame.phase_a.setConstant(NAN);
-  for (const char* method : {"none", "pixel", "single", "jump", "joint"}) {
+  for (const char* method : {"none", "pixel", "single", "paper", "jump", "joint"}) {
     UnwrapOptions options;
     options.method = method;
     EXPECT_EQ(unwrap(walls.frame, walls.sensor, options).image.count_valid(), 0) << method;

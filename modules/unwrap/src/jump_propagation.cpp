@@ -208,6 +208,78 @@ TOFMAP_VECTOR_CLONES int send_first_backward_and_up(int rows, const Diagonal& he
   return send_back<true>(rows, Diagonal(here), Diagonal(next), Findings(findings));
 }
 
+/// Where a curl node sends: to its right, left, upper or lower jump node.
+enum class Towards { right, left, top, bottom };
+
+/// The jump node of curl node i that a sweep sends to: its pixel's diagonal and row, and where it
+/// keeps the message.
+struct Place {
+  const Diagonal& diagonal;
+  Plane plane;
+  int row;
+};
+
+template <Towards to>
+[[gnu::always_inline]] inline Place place_of(const Diagonal& here, const Diagonal& next, int i) {
+  if constexpr (to == Towards::right) return {next, from_left, i};
+  if constexpr (to == Towards::left) return {here, from_right, i};
+  if constexpr (to == Towards::top) return {here, from_below, i};
+  if constexpr (to == Towards::bottom) return {next, from_above, i + 1};
+}
+
+template <Towards to>
+[[gnu::always_inline]] inline Odds message(const CurlInputs& in) {
+  if constexpr (to == Towards::right) return curl_message(in.bottom, in.left, in.top);
+  if constexpr (to == Towards::left) return curl_message(in.top, in.right, in.bottom);
+  if constexpr (to == Towards::top) return curl_message(in.bottom, in.left, in.right);
+  if constexpr (to == Towards::bottom) return curl_message(in.top, in.right, in.left);
+}
+
+template <Towards to>
+[[gnu::always_inline]] inline void send_one_way(int rows, const Diagonal& here,
+                                                const Diagonal& next, float* changes) {
+#pragma GCC ivdep
+  for (int i = 0; i < rows; ++i) {
+    const CurlInputs in(here, next, i, false);
+    const Odds sent = if_curl(in.has_curl(), message<to>(in));
+    const Place place = place_of<to>(here, next, i);
+    const float change = change_of(place.diagonal.odds(place.plane, place.row), sent);
+    changes[i] = change > changes[i] ? change : changes[i];
+    place.diagonal.set(place.plane, place.row, sent);
+  }
+}
+
+TOFMAP_VECTOR_CLONES void send(Towards to, int rows, const Diagonal& here_, const Diagonal& next_,
+                               float* changes) {
+  const Diagonal here = here_;
+  const Diagonal next = next_;
+  switch (to) {
+    case Towards::right:
+      return send_one_way<Towards::right>(rows, here, next, changes);
+    case Towards::left:
+      return send_one_way<Towards::left>(rows, here, next, changes);
+    case Towards::top:
+      return send_one_way<Towards::top>(rows, here, next, changes);
+    case Towards::bottom:
+      return send_one_way<Towards::bottom>(rows, here, next, changes);
+  }
+}
+
+/// Sends one message from every curl node, diagonal by diagonal in the direction of the messages.
+/// `changes`, the largest so far, has a number for every row of the image.
+void sweep(Towards to, const DiagonalLayout& layout, std::vector<float>& planes,
+           std::vector<float>& changes) {
+  const bool is_onward = to == Towards::right || to == Towards::bottom;
+  const int last = layout.diagonals() - 1;
+  for (int k = 0; k <= last; ++k) {
+    const int d = is_onward ? k : last - k;
+    const int begin = layout.begin(d);
+    send(to, DiagonalLayout::whole_vectors(layout.end(d) - begin),
+         diagonal_at(planes, layout, d, begin), diagonal_at(planes, layout, d + 1, begin),
+         &changes[static_cast<std::size_t>(begin)]);
+  }
+}
+
 /// Rows whose nodes are brought from images to diagonals, or back, before those of the next rows:
 /// few enough for their lines to stay in the first-level cache.
 constexpr int band_rows = 32;
@@ -388,16 +460,43 @@ void JumpPropagation::read(JumpProbabilities& out) {
   read_nodes(evidence_y, from_left, from_right, out.y);
 }
 
+void JumpPropagation::iterate_together(bool is_first, JumpBeliefs& beliefs) {
+  sweep_forward_and_down(is_first);
+  sweep_backward_and_up(is_first, beliefs);
+}
+
+/// Even messages everywhere.
+void JumpPropagation::forget_messages() {
+  for (int d = -1; d <= layout_.diagonals(); ++d) {
+    const Diagonal here = diagonal_at(planes_, layout_, d, layout_.begin(d) - 1);
+    std::fill(here.plane(from_above), here.plane(plane_count), 1.0F);
+  }
+}
+
+void JumpPropagation::iterate_one_by_one(bool is_first, JumpBeliefs& beliefs) {
+  if (is_first) forget_messages();
+  std::fill(change_.begin(), change_.end(), 0.0F);
+  for (const Towards to : {Towards::right, Towards::left, Towards::top, Towards::bottom}) {
+    sweep(to, layout_, planes_, change_);
+  }
+  beliefs.largest_message_change = *std::max_element(change_.begin(), change_.end());
+  read(beliefs.marginals);
+  beliefs.curl_violations = count_curl_violations(most_likely_configurations(beliefs.marginals));
+}
+
 void JumpPropagation::run(const JumpProbabilities& evidence, int max_iterations,
-                          JumpBeliefs& beliefs, int min_iterations) {
+                          JumpBeliefs& beliefs, int min_iterations, MessageSchedule schedule) {
   load(evidence);
   beliefs.iterations = 0;
   beliefs.converged = false;
   while (beliefs.iterations < max_iterations &&
          (beliefs.iterations < min_iterations || !beliefs.converged)) {
     const bool is_first = beliefs.iterations == 0;
-    sweep_forward_and_down(is_first);
-    sweep_backward_and_up(is_first, beliefs);
+    if (schedule == MessageSchedule::together) {
+      iterate_together(is_first, beliefs);
+    } else {
+      iterate_one_by_one(is_first, beliefs);
+    }
     ++beliefs.iterations;
     beliefs.converged = beliefs.curl_violations == 0;
   }
@@ -405,9 +504,9 @@ void JumpPropagation::run(const JumpProbabilities& evidence, int max_iterations,
 }
 
 JumpBeliefs propagate_jump_beliefs(const JumpProbabilities& evidence, int max_iterations,
-                                   int min_iterations) {
+                                   int min_iterations, MessageSchedule schedule) {
   JumpBeliefs beliefs;
-  JumpPropagation().run(evidence, max_iterations, beliefs, min_iterations);
+  JumpPropagation().run(evidence, max_iterations, beliefs, min_iterations, schedule);
   return beliefs;
 }
 

@@ -3,57 +3,14 @@
 
 #include "tofmap/unwrap/unwrap.hpp"
 
-#include "confidence.hpp"
 #include "counted_ranges.hpp"
 #include "joint.hpp"
+#include "jump.hpp"
 #include "measured_frame.hpp"
 #include "tofmap/unwrap/beat.hpp"
-#include "tofmap/unwrap/jump_integration.hpp"
-
-#include <algorithm>
 
 namespace tofmap {
 namespace {
-
-/// Counts as anchored, kept within what the scene can hold; invalid where there is no region.
-ImageU8 absolute_counts(const RelativeCounts& relative, int count_a) {
-  ImageU8 counts =
-      ImageU8::Constant(relative.count.rows(), relative.count.cols(), invalid_wrap_count);
-  for (Eigen::Index i = 0; i < counts.size(); ++i) {
-    const int region = relative.region.data()[i];
-    if (region == RelativeCounts::no_region) continue;
-    const int n = relative.count.data()[i] + relative.anchor[static_cast<std::size_t>(region)];
-    counts.data()[i] = static_cast<std::uint8_t>(std::clamp(n, 0, count_a - 1));
-  }
-  return counts;
-}
-
-/// The paper: evidence, propagation, integration, anchors.
-UnwrapResult unwrap_by_jumps(JumpEstimator& estimator, const MeasuredFrame& frame,
-                             const BeatLimits& limits, const UnwrapOptions& options) {
-  const bool two_frequencies = unwrap_method(options) == UnwrapMethod::jump;
-  const JumpEstimate& jumps = estimator.estimate(frame.returns, frame.sigma, limits, options);
-  const JumpBeliefs& beliefs = jumps.beliefs;
-  const BeatCost beat = two_frequencies ? BeatCost(frame.returns, limits, frame.sigma) : BeatCost();
-  const RelativeCounts relative =
-      two_frequencies ? integrate_jumps_with_beat(beliefs.marginals, jumps.evidence, frame.valid,
-                                                  beat, jumps.nearest, options.objection_share)
-                      : integrate_jumps(beliefs.marginals, jumps.evidence, frame.valid);
-  const ImageU8 counts = absolute_counts(relative, limits.count_a);
-  const ImageF confidence = two_frequencies
-                                ? jump_and_beat_confidence(counts, beliefs.marginals, beat)
-                                : jump_confidence(counts, beliefs.marginals);
-
-  UnwrapResult result;
-  result.image =
-      make_range_image(frame.returns.phase_a, frame.sigma.a_cycles, counts, confidence, limits);
-  result.iterations = beliefs.iterations;
-  result.curl_violations = beliefs.curl_violations;
-  result.converged = beliefs.converged;
-  result.largest_message_change = beliefs.largest_message_change;
-  result.regions = relative.region_count;
-  return result;
-}
 
 /// Every pixel by itself: its counts, as confident as the beat is of them.
 UnwrapResult unwrap_by_pixel(const MeasuredFrame& frame, const ImageU8& counts,
@@ -88,8 +45,9 @@ UnwrapResult Unwrapper::unwrap(const DualFrequencyFrame& frame) {
       case UnwrapMethod::joint:
         return unwrap_jointly(count_estimator_, measured, limits_, rays_, options_);
       case UnwrapMethod::jump:
+      case UnwrapMethod::paper:
       case UnwrapMethod::single:
-        return unwrap_by_jumps(jump_estimator_, measured, limits_, options_);
+        return unwrap_by_jumps(jump_estimator_, measured, limits_, jump_method(method_), options_);
       case UnwrapMethod::pixel:
         return unwrap_by_pixel(measured, nearest_pair_counts(measured.returns, limits_), limits_);
       case UnwrapMethod::none:

@@ -16,8 +16,9 @@ struct NamedMethod {
   UnwrapMethod method;
 };
 
-constexpr std::array<NamedMethod, 5> methods{{{"joint", UnwrapMethod::joint},
+constexpr std::array<NamedMethod, 6> methods{{{"joint", UnwrapMethod::joint},
                                               {"jump", UnwrapMethod::jump},
+                                              {"paper", UnwrapMethod::paper},
                                               {"single", UnwrapMethod::single},
                                               {"pixel", UnwrapMethod::pixel},
                                               {"none", UnwrapMethod::none}}};
@@ -31,7 +32,7 @@ std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
       {"method", &O::method, 0, 0, "", "how wraps are found", method_choices},
       {"max_range_m", &O::max_range_m, 0, 100000, "m",
        "farthest range that the scene can hold; 0: the recording's, else what the pair can tell "
-       "apart"},
+       "apart; paper has two counts, whatever it is"},
       {"count_iterations", &O::count_iterations, 1, 1000, "",
        "joint: iterations of belief propagation over counts"},
       {"scales", &O::scales, 1, 6, "",
@@ -51,13 +52,13 @@ std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
       {"correct_exposure", &O::correct_exposure, 0, 1, "",
        "joint: allow for the camera's motion from A's exposure to B's when ranges are fused"},
       {"iterations", &O::iterations, 1, 1000, "",
-       "jump, single: most iterations of belief propagation"},
+       "jump, paper, single: most iterations of belief propagation"},
       {"trust_discontinuity", &O::trust_discontinuity, 0, 1, "",
-       "jump, single: c_d, trust in phases of neighbours being close"},
+       "jump, paper, single: c_d, trust in phases of neighbours being close"},
       {"trust_frequency", &O::trust_frequency, 0, 1, "",
-       "jump: c_f, trust in the difference of the two frequencies"},
+       "jump, paper: c_f, trust in the difference of the two frequencies"},
       {"window_px", &O::window_px, 1, 99, "px",
-       "jump: k, pixels on each side of a jump in the medians"},
+       "jump, paper: k, pixels on each side of a jump in the medians"},
       {"sigma_cycles", &O::sigma_cycles, 0.001, 10, "cycles",
        "jump, single: sigma of f_d and f_f: of true differences between neighbours; noise comes on "
        "top"},
@@ -75,6 +76,11 @@ std::vector<std::string> unwrap_methods() {
 
 std::string unwrap_method_names(const std::string& separator) {
   return joined(unwrap_methods(), separator);
+}
+
+bool finds_jumps(UnwrapMethod method) {
+  return method == UnwrapMethod::paper || method == UnwrapMethod::jump ||
+         method == UnwrapMethod::single;
 }
 
 std::optional<UnwrapMethod> find_unwrap_method(std::string_view name) {

@@ -15,8 +15,9 @@ enum class UnwrapMethod {
   joint,   ///< beliefs over wrap counts, from both frequencies and all pixels together
   none,    ///< wrapped: count 0 everywhere
   pixel,   ///< equation 2 for any number of wraps: each pixel by itself
-  single,  ///< the paper without its frequency term; needs no second frequency
-  jump,    ///< the paper
+  single,  ///< phase jumps from one frequency: `jump` without its frequency term and the residual
+  jump,    ///< the paper's phase jumps, integrated with regard to the inter-frequency residual
+  paper,   ///< the paper to the letter
 };
 
 /// The names of all methods, the best first.
@@ -24,6 +25,9 @@ std::vector<std::string> unwrap_methods();
 
 /// The same as a text, with `separator` between them.
 std::string unwrap_method_names(const std::string& separator);
+
+/// Whether the method goes by phase jumps: `paper`, `jump` and `single` do.
+bool finds_jumps(UnwrapMethod method);
 
 /// The options of unwrapping, group `unwrap`. docs/unwrapping.md has the effect of each.
 struct UnwrapOptions {
@@ -38,12 +42,12 @@ struct UnwrapOptions {
   bool mixed_pixels = true;
   bool fuse_frequencies = true;
   bool correct_exposure = true;
-  // Of jump and single.
+  // Of jump, paper and single.
   int iterations = 5;
   double trust_discontinuity = 0.9;  ///< c_d of the paper
   double trust_frequency = 0.5;      ///< c_f
   int window_px = 5;                 ///< k
-  double sigma_cycles = 0.07;        ///< σ of f_d and f_f
+  double sigma_cycles = 0.07;        ///< σ of f_d and f_f; `paper` takes it from the image
   double objection_share = 1;
 
   static std::vector<OptionField<UnwrapOptions>> fields();
