@@ -284,7 +284,7 @@ std::vector<Variant> departures() {
   then("+ sweeps together", [](JumpMethod& m) { m.schedule = MessageSchedule::together; });
   then("+ anchors by the residual", [](JumpMethod& m) { m.regards_residual = true; });
   steps.back().options.objection_share = 1e6;
-  then("+ objection = jump", [](JumpMethod&) {});
+  then("+ objection: `jump`", [](JumpMethod&) {});
   steps.back().options.objection_share = 1;
   return steps;
 }

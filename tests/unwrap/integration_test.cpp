@@ -169,19 +169,24 @@ TEST(PaperMethod, KnowsNoCountOfASceneBeyondOneWavelength) {
   EXPECT_EQ(result.image.wrap_count(0, 0), 0);
 }
 
-TEST(PaperMethod, HasTwoCountsHoweverFarTheSceneReaches) {
-  TwoWalls walls = two_walls(3, 8);
-  // A third wall, one count farther still.
-  const TwoWalls far = two_walls(8, 13);
-  for (const auto image : {&DualFrequencyFrame::phase_a, &DualFrequencyFrame::phase_b}) {
-    (walls.frame.*image).rightCols(6) = (far.frame.*image).rightCols(6);
+TEST(PaperMethod, HasTwoCountsHoweverFarASurfaceReaches) {
+  // A wall that recedes from 4 to 12 m, and so crosses both 5.2 and 10.3 m.
+  TwoWalls walls = two_walls(4, 4);
+  const Modulation modulation = walls.sensor.modulation;
+  for (Eigen::Index u = 0; u < 24; ++u) {
+    const double range_m = 4 + 8.0 * static_cast<double>(u) / 23;
+    walls.frame.phase_a.col(u) =
+        static_cast<float>(std::fmod(range_m / modulation.wavelength_a_m(), 1));
+    walls.frame.phase_b.col(u) =
+        static_cast<float>(std::fmod(range_m / modulation.wavelength_b_m(), 1));
   }
-  walls.sensor.max_range_m = 70;
-  EXPECT_EQ(
-      unwrap(walls.frame, walls.sensor, paper_options()).image.wrap_count.cast<int>().maxCoeff(),
-      1);
-  EXPECT_EQ(
-      unwrap(walls.frame, walls.sensor, jump_options()).image.wrap_count.cast<int>().maxCoeff(), 2);
+  const auto counts = [&](const UnwrapOptions& options) {
+    return unwrap(walls.frame, walls.sensor, options).image.wrap_count;
+  };
+  EXPECT_EQ(counts(paper_options())(8, 12), 1);
+  EXPECT_EQ(counts(paper_options())(8, 23), 1);
+  EXPECT_EQ(counts(jump_options())(8, 12), 1);
+  EXPECT_EQ(counts(jump_options())(8, 23), 2);
 }
 
 TEST(JumpMethod, WorksWhenBHasTheLongerWavelength) {

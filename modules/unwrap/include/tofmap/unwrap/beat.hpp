@@ -40,7 +40,7 @@ bool can_tell_apart(const BeatLimits& limits, int n_a, int other_n_a);
 
 /// Equation 2 for any number of wraps: per pixel the n_A of the nearest pair, i.e. the least
 /// |beat residual|; invalid_wrap_count where either phase is NaN. Equal residuals: the smaller.
-/// For two counts it is the paper's threshold at τ = |λ_A − λ_B| / 2.
+/// For two counts it is a threshold at |λ_A − λ_B| / 2; the paper's own is threshold_counts.
 ImageU8 nearest_pair_counts(const DualFrequencyFrame& frame, const BeatLimits& limits);
 
 /// R̂ of equation 2: phase_a + n_A, cycles; NaN where the count is invalid.
