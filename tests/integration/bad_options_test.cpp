@@ -53,7 +53,7 @@ TEST_F(BadOptions, ValueThatIsNoNumberIsRefused) {
 }
 
 TEST_F(BadOptions, UnknownMethodTellsWhichThereAre) {
-  expect_bad_use({"--method", "magic"}, {"'magic'", "jump", "single", "pixel", "none"});
+  expect_bad_use({"--method", "magic"}, {"'magic'", "jump", "paper", "single", "pixel", "none"});
 }
 
 TEST_F(BadOptions, AssignmentWithoutValueIsRefused) {

@@ -314,12 +314,14 @@ TEST_F(Commands, EvaluateComparesTheMethods) {
   const Finished finished = run("evaluate");
   ASSERT_EQ(finished.status, 0) << finished.err;
   const auto report = read_json(out_ / "report.json");
-  for (const char* method : {"none", "pixel", "single", "jump", "joint"}) {
+  for (const char* method : {"none", "pixel", "single", "paper", "jump", "joint"}) {
     EXPECT_THAT(finished.out, HasSubstr(method));
     const auto& unwrapping = report["unwrapping"][method];
     for (const char* key : {"wrong_wrap_percent", "coverage_percent", "range_rmse_m"}) {
       EXPECT_TRUE(unwrapping[key].is_number()) << method << " " << key;
     }
+    // Two counts are too few for this room: with `paper` hardly a frame is registered.
+    if (method == std::string("paper")) continue;
     EXPECT_TRUE(report["trajectory"][method]["ate_rmse_m"].is_number()) << method;
   }
   EXPECT_LT(report["unwrapping"]["jump"]["wrong_wrap_percent"],

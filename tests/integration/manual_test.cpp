@@ -87,7 +87,8 @@ TEST(Completion, OffersTheValuesThatAreAllowed) {
   EXPECT_EQ(completions({"view", "map", "--from", "=", "i"}), "inside\n");
   EXPECT_EQ(completions({"view", "map", "--color", "c"}), "confidence count\n");
   EXPECT_EQ(completions({"manual", "b"}), "bash\n");
-  EXPECT_EQ(completions({"map", "--set", "unwrap.method", "="}), "joint jump single pixel none\n");
+  EXPECT_EQ(completions({"map", "--set", "unwrap.method", "="}),
+            "joint jump paper single pixel none\n");
   EXPECT_EQ(completions({"map", "--set", "loops.close", "=", "t"}), "true\n");
   EXPECT_THAT(completions({"map", "--set", "unwrap.max_range_m", "="}), Not(HasSubstr("threads=")));
   EXPECT_THAT(completions({"info", "--set", "loops.close", "="}), Not(HasSubstr("true")))

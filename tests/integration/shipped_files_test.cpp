@@ -32,6 +32,11 @@ void expect_values(const YAML::Node& options, const YAML::Node& file, const fs::
 }
 
 TEST_F(ShippedFiles, EveryConfigurationIsTakenByItsCommand) {
+  // Within two wavelengths, as far as the paper unwraps.
+  const Finished simulated =
+      run_program({"simulate", "flat", "--out", sequence_.string(), "--frames", "4", "--set",
+                   "simulator.width_px=88", "--set", "simulator.height_px=72"});
+  ASSERT_EQ(simulated.status, 0) << simulated.err;
   int files = 0;
   for (const auto& entry : fs::recursive_directory_iterator(source_dir / "configs")) {
     if (entry.path().extension() != ".yaml") continue;
