@@ -165,6 +165,23 @@ TEST_F(BadSequence, LineHasTooFewOrTooManyColumns) {
   expect_refusal({"frames.txt:1", "6 column"});
 }
 
+TEST_F(BadSequence, ALineThatIsNotUnderstoodDamagesOneFrame) {
+  const std::string good = "5 phase_a/000001.png phase_b/000001.png\n";
+  for (const std::string bad :
+       {"0 phase_a/000000.png", "noon phase_a/000000.png phase_b/000000.png",
+        "0 - phase_b/000000.png", "0 ../000000.png phase_b/000000.png", "\xff\xfe"}) {
+    std::ofstream(folder_ / "frames.txt") << bad << '\n' << good;
+    expect_damage("frames.txt:1");
+    EXPECT_FALSE(SequenceReader(folder_).range_truth(0));
+    EXPECT_EQ(SequenceReader(folder_).files()[0].timestamp_s, 5) << "of the first that is known";
+  }
+}
+
+TEST_F(BadSequence, AListMostlyNotUnderstoodIsNone) {
+  std::ofstream(folder_ / "frames.txt") << "no\nlist\n5 phase_a/000001.png phase_b/000001.png\n";
+  expect_refusal({"frames.txt:1", "2 of 3 lines are damaged"});
+}
+
 TEST_F(BadSequence, TimestampIsNoNumber) {
   for (const char* time : {"noon", "1.5x", "nan", "inf", "-"}) {
     std::ofstream(folder_ / "frames.txt") << time << " phase_a/000000.png phase_b/000000.png\n";

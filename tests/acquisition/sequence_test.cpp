@@ -189,12 +189,32 @@ TEST(SequenceWriter, RefusesWhatDoesNotFit) {
   };
   refused([](DualFrequencyFrame& frame) { frame.phase_a(2, 2) = 1.0F; });
   refused([](DualFrequencyFrame& frame) { frame.phase_b(2, 2) = -0.1F; });
-  refused([](DualFrequencyFrame& frame) { frame.amplitude_a(2, 2) = 65536.0F; });
   refused([](DualFrequencyFrame& frame) { frame.amplitude_b(2, 2) = -1.0F; });
   refused([](DualFrequencyFrame& frame) { frame.phase_a.resize(5, 6); });
-  EXPECT_THROW(writer.add(test::sample_frame(0), {}, ImageF(ImageF::Constant(5, 7, 65.6F))),
-               UsageError);
   EXPECT_EQ(writer.count(), 0);
+}
+
+TEST(SequenceWriter, WritesATrueRangeThatDoesNotFitAsUnknown) {
+  const test::TemporaryFolder folder;
+  SequenceWriter writer(folder.path() / "seq", test::sample_sensor());
+  ImageF truth_m = test::sample_range_truth();
+  truth_m.row(0) << 65.6F, 1e9F, -1.0F, 0.0004F, 65.535F, 0.0006F, 3.0F;
+  writer.add(test::sample_frame(0), {}, truth_m);
+  const ImageF back_m = *SequenceReader(folder.path() / "seq").range_truth(0);
+  for (const int column : {0, 1, 2, 3}) EXPECT_TRUE(std::isnan(back_m(0, column))) << column;
+  for (const int column : {4, 5, 6}) {
+    EXPECT_NEAR(back_m(0, column), truth_m(0, column), 0.000501) << column;
+  }
+}
+
+TEST(SequenceWriter, WritesAnAmplitudeBeyondTheScaleAsItsEnd) {
+  const test::TemporaryFolder folder;
+  SequenceWriter writer(folder.path() / "seq", test::sample_sensor());
+  DualFrequencyFrame frame = test::sample_frame(0);
+  frame.amplitude_a(2, 2) = 1e6F;
+  writer.add(frame);
+  const SequenceReader reader(folder.path() / "seq");
+  EXPECT_EQ(reader.read(0).frame->amplitude_a(2, 2), reader.sensor().saturation_amplitude);
 }
 
 TEST(SequenceWriter, RefusesTimesThatDoNotAdvance) {

@@ -183,8 +183,10 @@ TEST_F(TumFolder, NamesWhatCannotBeRead) {
   EXPECT_THAT(complaint(), HasSubstr("depth/2.png"));
   std::filesystem::remove(path("depth/2.png"));
   EXPECT_THAT(complaint(), HasSubstr("depth/2.png"));
-  write("depth.txt", "10 depth/1.png\n10 depth/2.png\n");
-  EXPECT_THAT(complaint(), HasSubstr("depth.txt:2"));
+  write("depth.txt", "10 depth/1.png\n10 depth/2.png\n11 depth/1.png\n");
+  EXPECT_EQ(open().frame_count(), 2);
+  ASSERT_EQ(open().left_out().size(), 1U);
+  EXPECT_THAT(open().left_out()[0], HasSubstr("depth.txt:2"));
   write("depth.txt", "10\n");
   EXPECT_THAT(complaint(), HasSubstr("depth.txt:1"));
   write("depth.txt", "# nothing\n");

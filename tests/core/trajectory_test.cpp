@@ -87,6 +87,18 @@ TEST_F(TrajectoryFile, WithABadLineIsRefusedWithItsNumber) {
   expect_refusal(good + "1 0 0 0 0 0 0 1 5\n", 2);
 }
 
+TEST_F(TrajectoryFile, IsReadWithoutItsBadLines) {
+  const UsableTrajectory usable = read_usable_trajectory(
+      write("0 1 2 3 0 0 0 1\nno pose\n1 1e39 0 0 0 0 0 1\n2 nan 0 0 0 0 0 1\n3 0 0 0 0 0 0 0\n"
+            "4 5000000 5000000 0 0 0 0 1\n"));
+  ASSERT_EQ(usable.poses.size(), 2U);
+  EXPECT_EQ(usable.poses[1].timestamp_s, 4);
+  ASSERT_EQ(usable.damages.size(), 4U);
+  EXPECT_NE(usable.damages[0].find(":2: expected"), std::string::npos) << usable.damages[0];
+  EXPECT_NE(usable.damages[3].find(":5: expected"), std::string::npos) << usable.damages[3];
+  EXPECT_THROW(read_usable_trajectory(folder_.path() / "none.txt"), InputError);
+}
+
 TEST_F(TrajectoryFile, ThatIsMissingIsNamed) {
   EXPECT_THROW(read_trajectory(folder_.path() / "none.txt"), InputError);
 }

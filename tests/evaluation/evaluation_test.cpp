@@ -121,7 +121,8 @@ MapCloud plane_map(double z, double step_m) {
   return map;
 }
 
-ReferenceSurface plane_reference() {
+/// Seen from `at`.
+ReferenceSurface plane_reference(const Vector3d& at = Vector3d::Zero()) {
   CameraModel camera{.width_px = 200,
                      .height_px = 200,
                      .fx_px = 200,
@@ -130,8 +131,9 @@ ReferenceSurface plane_reference() {
                      .cy_px = 99.5,
                      .distortion = {}};
   const PixelRays rays = pixel_rays(camera);
-  ReferenceSurface reference;
-  reference.add(ImageF(1.0F / rays.z), rays, Pose::Identity());
+  const Pose pose(Eigen::Translation3d{at});
+  ReferenceSurface reference(origin_near({{0, pose}}));
+  reference.add(ImageF(1.0F / rays.z), rays, pose);
   return reference;
 }
 
@@ -140,6 +142,26 @@ TEST(MapScore, MeasuresAMapThatIsTwoCentimetresOff) {
   EXPECT_NEAR(score.accuracy_m, 0.02, 1e-4);
   EXPECT_DOUBLE_EQ(score.far_percent, 0);
   EXPECT_DOUBLE_EQ(score.completeness_percent, 100);
+}
+
+TEST(MapScore, IsTheSameInANationalGrid) {
+  const Vector3d at(5e6, -5e6, 300);
+  const MapCloud map = plane_map(1.02, 0.03);
+  const MapScore here = score_map(map, Pose::Identity(), plane_reference());
+  const MapScore there = score_map(map, Pose(Eigen::Translation3d(at)), plane_reference(at));
+  // Doubles step by 1e-9 m there, floats near the origin by 1e-7 m.
+  EXPECT_NEAR(there.accuracy_m, here.accuracy_m, 1e-6);
+  EXPECT_DOUBLE_EQ(there.completeness_percent, here.completeness_percent);
+}
+
+TEST(OriginNear, IsTheMedianInWholeMetres) {
+  const auto at = [](double x, double y, double z) {
+    return StampedPose{0, Pose(Eigen::Translation3d(x, y, z))};
+  };
+  EXPECT_EQ(origin_near({}), Vector3d::Zero());
+  EXPECT_EQ(origin_near({at(5e6 + 0.2, 2.6, -1), at(0, 0, 0), at(5e6 + 0.3, 2.7, -1)}),
+            Vector3d(5e6, 3, -1))
+      << "one pose at zero does not count";
 }
 
 TEST(MapScore, CountsWhatIsMissingAndWhatIsFar) {

@@ -3,6 +3,7 @@
 
 #include "sequence_header.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -63,6 +64,7 @@ void mark_times_that_stand_still(std::vector<SequenceFrameFiles>& frames,
                                  const std::filesystem::path& file) {
   double latest_s = -std::numeric_limits<double>::infinity();
   for (SequenceFrameFiles& frame : frames) {
+    if (!frame.damage.empty()) continue;
     if (frame.timestamp_s > latest_s) {
       latest_s = frame.timestamp_s;
     } else {
@@ -70,6 +72,31 @@ void mark_times_that_stand_still(std::vector<SequenceFrameFiles>& frames,
       text << file.string() << ": the timestamp " << std::fixed << frame.timestamp_s << " of "
            << frame.phase_a.string() << " is not later than " << latest_s << " before it";
       frame.damage = text.str();
+    }
+  }
+}
+
+/// A list of which more than half cannot be understood is none.
+void refuse_mostly_damaged(const std::vector<SequenceFrameFiles>& frames) {
+  const auto is_damaged = [](const SequenceFrameFiles& frame) { return !frame.damage.empty(); };
+  const auto damaged = static_cast<std::size_t>(std::ranges::count_if(frames, is_damaged));
+  if (2 * damaged <= frames.size()) return;
+  const std::string& first = std::ranges::find_if(frames, is_damaged)->damage;
+  throw InputError(frames.size() == 1 ? first
+                                      : first + " (" + std::to_string(damaged) + " of " +
+                                            std::to_string(frames.size()) + " lines are damaged)");
+}
+
+/// Lines that are not understood have no time of their own: that of the line before counts, at the
+/// beginning of the list that of the first line that is understood.
+void fill_times(std::vector<SequenceFrameFiles>& frames) {
+  const auto is_whole = [](const SequenceFrameFiles& frame) { return frame.damage.empty(); };
+  double time_s = std::ranges::find_if(frames, is_whole)->timestamp_s;
+  for (SequenceFrameFiles& frame : frames) {
+    if (is_whole(frame)) {
+      time_s = frame.timestamp_s;
+    } else {
+      frame.timestamp_s = time_s;
     }
   }
 }
@@ -86,10 +113,18 @@ std::vector<SequenceFrameFiles> read_frame_list(const std::filesystem::path& fil
   for (int number = 1; std::getline(in, line); ++number) {
     const std::vector<std::string> words = words_of(line);
     if (words.empty() || words.front().starts_with('#')) continue;
-    frames.push_back(parse_line(words, file.string() + ":" + std::to_string(number)));
+    try {
+      frames.push_back(parse_line(words, file.string() + ":" + std::to_string(number)));
+    } catch (const InputError& error) {
+      SequenceFrameFiles damaged;
+      damaged.damage = error.what();
+      frames.push_back(std::move(damaged));
+    }
   }
   if (in.bad()) throw InputError(file.string() + ": cannot be read to its end");
   if (frames.empty()) throw InputError(file.string() + ": lists no frames; record at least one");
+  refuse_mostly_damaged(frames);
+  fill_times(frames);
   mark_times_that_stand_still(frames, file);
   return frames;
 }
@@ -177,13 +212,17 @@ DualFrequencyFrame SequenceReader::read_frame(int index) const {
 
 Trajectory SequenceReader::ground_truth() const {
   const std::filesystem::path file = folder_ / "groundtruth.txt";
-  if (!std::filesystem::exists(file)) return {};
-  return read_trajectory(file);
+  std::error_code unknown;
+  const bool is_missing = !std::filesystem::exists(file, unknown) && !unknown;
+  return is_missing ? Trajectory{} : read_trajectory(file);
 }
 
 std::optional<ImageF> SequenceReader::range_truth(int index) const {
-  const std::filesystem::path file = folder_ / "range_truth" / files_at(index).phase_a.filename();
-  if (!std::filesystem::exists(file)) return std::nullopt;
+  const std::filesystem::path name = files_at(index).phase_a.filename();
+  const std::filesystem::path file = folder_ / "range_truth" / name;
+  std::error_code unknown;
+  const bool is_missing = !std::filesystem::exists(file, unknown) && !unknown;
+  if (name.empty() || is_missing) return std::nullopt;
   const ImageU16 range_mm = read_sized(file, sensor_.camera);
   return (range_mm == 0).select(nan, range_mm.cast<float>() / 1000.0F);
 }

@@ -3,6 +3,7 @@
 
 #include "sequence_header.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iomanip>
@@ -69,13 +70,15 @@ ImageU16 phase_pixels(const ImageF& phase) {
 
 ImageU16 amplitude_pixels(const ImageF& amplitude, double scale) {
   return encoded(amplitude, "the amplitude", [&](double value) {
-    return value > 0 ? std::max(1.0, std::round(value * scale)) : value;
+    return value > 0 ? std::clamp(std::round(value * scale), 1.0, full_scale) : value;
   });
 }
 
 ImageU16 range_pixels(const ImageF& range_m) {
-  return encoded(range_m, "the range in millimetres of",
-                 [](double range) { return std::isnan(range) ? 0.0 : std::round(range * 1000); });
+  return encoded(range_m, "the range", [](double range) {
+    const double millimetres = std::round(range * 1000);
+    return millimetres >= 1 && millimetres <= full_scale ? millimetres : 0.0;  // 0: not known
+  });
 }
 
 std::string image_name(int index) {

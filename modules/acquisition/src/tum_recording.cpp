@@ -32,7 +32,25 @@ struct Line {
   std::string file;
 };
 
-std::vector<Line> read_list(const std::filesystem::path& file) {
+/// Nothing wrong with a line that comes after `last_time_s`; else what it is.
+std::string complaint_about(const std::string& text, double last_time_s, Line& line) {
+  std::istringstream words(text);
+  if (!(words >> line.timestamp_s >> line.file)) return "'" + text + "' is no time and file";
+  // Recordings are written in microseconds; nearer times would be one instant.
+  constexpr double least_step_s = 1e-6;
+  if (line.timestamp_s - last_time_s < least_step_s) {
+    return "its time is not later than that of the line before";
+  }
+  return "";
+}
+
+struct ImageList {
+  std::vector<Line> lines;
+  std::vector<std::string> damages;  ///< of lines that cannot be used
+};
+
+/// Throws InputError if there is no line that can be used.
+ImageList read_list(const std::filesystem::path& file) {
   refuse_no_file(file);
   std::ifstream in(file);
   if (!in) {
@@ -40,25 +58,24 @@ std::vector<Line> read_list(const std::filesystem::path& file) {
                      ": cannot be read; a recording of the TUM RGB-D benchmark has depth.txt with "
                      "lines 'timestamp file'");
   }
-  std::vector<Line> lines;
+  ImageList list;
+  double last_time_s = -std::numeric_limits<double>::infinity();
   std::string text;
   for (int number = 1; std::getline(in, text); ++number) {
     const std::size_t first = text.find_first_not_of(" \t\r");
     if (first == std::string::npos || text[first] == '#') continue;
-    std::istringstream words(text);
     Line line;
-    if (!(words >> line.timestamp_s >> line.file)) {
-      throw InputError(file.string() + ":" + std::to_string(number) + ": '" + text +
-                       "' is no time and file");
+    const std::string complaint = complaint_about(text, last_time_s, line);
+    if (!complaint.empty()) {
+      list.damages.push_back(file.string() + ":" + std::to_string(number) + ": " + complaint);
+      continue;
     }
-    if (!lines.empty() && line.timestamp_s <= lines.back().timestamp_s) {
-      throw InputError(file.string() + ":" + std::to_string(number) +
-                       ": its time is not later than that of the line before");
-    }
-    lines.push_back(std::move(line));
+    last_time_s = line.timestamp_s;
+    list.lines.push_back(std::move(line));
   }
-  if (lines.empty()) throw InputError(file.string() + ": lists no image");
-  return lines;
+  if (!list.lines.empty()) return list;
+  throw InputError(list.damages.empty() ? file.string() + ": lists no image"
+                                        : list.damages.front());
 }
 
 /// Every n-th pixel of an image, n - 1 of them left out on either side of it.
@@ -115,16 +132,24 @@ void refuse_unused(const SimulatorOptions& options) {
   }
 }
 
-/// Throws InputError if there is none.
-ImageU16 first_readable(const std::vector<TumRecording::DepthImage>& images) {
+/// The first image of the size that two images have, so that a single odd one does not stand for
+/// all; of several sizes that one image has each, the first. Throws InputError if none can be read.
+ImageU16 typical_image(const std::vector<TumRecording::DepthImage>& images) {
+  std::vector<ImageU16> seen;
+  std::string damage;
   for (const TumRecording::DepthImage& image : images) {
     try {
-      return read_png_16(image.file);
-    } catch (const InputError&) {
-      if (&image == &images.back()) throw;
+      ImageU16 read = read_png_16(image.file);
+      if (std::ranges::any_of(seen, [&](const ImageU16& one) { return same_size(one, read); })) {
+        return read;
+      }
+      seen.push_back(std::move(read));
+    } catch (const InputError& error) {
+      if (damage.empty()) damage = error.what();
     }
   }
-  return {};
+  if (seen.empty()) throw InputError(damage);
+  return seen.front();
 }
 
 /// Of a surface at that range, without noise and errors of ranges.
@@ -156,12 +181,17 @@ TumRecording::TumRecording(std::filesystem::path folder, const TumOptions& optio
     : folder_(std::move(folder)), options_(options), simulator_(simulator) {
   refuse_unused(simulator_);
   check_systematic_errors(simulator_);
-  for (Line& line : read_list(folder_ / "depth.txt")) {
-    images_.push_back({line.timestamp_s, folder_ / line.file});
-  }
+  ImageList list = read_list(folder_ / "depth.txt");
+  for (const Line& line : list.lines) images_.push_back({line.timestamp_s, folder_ / line.file});
+  left_out_ = std::move(list.damages);
   const std::filesystem::path poses = folder_ / "groundtruth.txt";
-  if (std::filesystem::exists(poses)) poses_ = read_trajectory(poses);
-  sensor_.camera = thinned_camera(options_, thinned(first_readable(images_), options_.every_pixel));
+  std::error_code unknown;
+  if (std::filesystem::exists(poses, unknown)) {
+    UsableTrajectory usable = read_usable_trajectory(poses);
+    poses_ = std::move(usable.poses);
+    damaged_poses_ = std::move(usable.damages);
+  }
+  sensor_.camera = thinned_camera(options_, thinned(typical_image(images_), options_.every_pixel));
   sensor_.modulation = {simulator.frequency_a_hz, simulator.frequency_b_hz};
   sensor_.max_range_m = simulator.max_range_m;
   validate(sensor_.camera);
@@ -175,7 +205,7 @@ TumRecording::Frame TumRecording::read(int index) const {
   const DepthImage& image = images_.at(static_cast<std::size_t>(index));
   const ImageU16 depth = thinned(read_png_16(image.file), options_.every_pixel);
   if (!same_size(depth, rays_.z)) {
-    throw InputError(image.file.string() + ": is of another size than the first image");
+    throw InputError(image.file.string() + ": is of another size than other images");
   }
   Frame out;
   out.world_from_camera = pose_at(poses_, image.timestamp_s, options_.max_pose_gap_s);

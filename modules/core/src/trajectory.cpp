@@ -55,35 +55,58 @@ std::optional<Pose> pose_at(const Trajectory& trajectory, double timestamp_s, do
   return interpolate(before->world_from_camera, after->world_from_camera, share);
 }
 
-Trajectory read_trajectory(const std::filesystem::path& file) {
+namespace {
+
+/// No place on Earth is farther from any origin in use; a number that is, is none of metres.
+constexpr double farthest_m = 1e8;
+
+/// Nothing if a line is no pose.
+std::optional<StampedPose> parse_pose(const std::string& line) {
+  std::istringstream fields(line);
+  StampedPose pose;
+  Eigen::Vector3d t;
+  double x = 0;
+  double y = 0;
+  double z = 0;
+  double w = 0;
+  fields >> pose.timestamp_s >> t.x() >> t.y() >> t.z() >> x >> y >> z >> w;
+  const Eigen::Quaterniond q(w, x, y, z);
+  const bool has_eight = !fields.fail() && (fields >> std::ws).eof();
+  const bool is_near = t.cwiseAbs().maxCoeff() <= farthest_m;  // false for NaN, too
+  // A quaternion off unit length by rounding is mended; a zero one is no rotation.
+  if (!has_eight || !is_near || !std::isfinite(q.norm()) || q.norm() < 1e-3) return std::nullopt;
+  pose.world_from_camera.linear() = q.normalized().toRotationMatrix();
+  pose.world_from_camera.translation() = t;
+  return pose;
+}
+
+}  // namespace
+
+UsableTrajectory read_usable_trajectory(const std::filesystem::path& file) {
   refuse_no_file(file);
   std::ifstream in(file);
   if (!in) throw InputError(file.string() + ": cannot be read; is it there?");
-  Trajectory trajectory;
+  UsableTrajectory usable;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
     const std::size_t first = line.find_first_not_of(" \t\r");
     if (first == std::string::npos || line[first] == '#') continue;
-    std::istringstream fields(line);
-    StampedPose pose;
-    Eigen::Vector3d t;
-    double x = 0;
-    double y = 0;
-    double z = 0;
-    double w = 0;
-    fields >> pose.timestamp_s >> t.x() >> t.y() >> t.z() >> x >> y >> z >> w;
-    const Eigen::Quaterniond q(w, x, y, z);
-    const bool has_eight = !fields.fail() && (fields >> std::ws).eof();
-    // A quaternion off unit length by rounding is mended; a zero one is no rotation.
-    if (!has_eight || !t.allFinite() || !std::isfinite(q.norm()) || q.norm() < 1e-3) {
-      throw InputError(file.string() + ":" + std::to_string(number) +
-                       ": expected 'timestamp tx ty tz qx qy qz qw', got '" + line + "'");
+    if (const auto pose = parse_pose(line)) {
+      usable.poses.push_back(*pose);
+      continue;
     }
-    pose.world_from_camera.linear() = q.normalized().toRotationMatrix();
-    pose.world_from_camera.translation() = t;
-    trajectory.push_back(pose);
+    constexpr std::size_t most_shown = 200;
+    usable.damages.push_back(file.string() + ":" + std::to_string(number) +
+                             ": expected 'timestamp tx ty tz qx qy qz qw', got '" +
+                             line.substr(0, most_shown) + "'");
   }
-  return trajectory;
+  return usable;
+}
+
+Trajectory read_trajectory(const std::filesystem::path& file) {
+  UsableTrajectory usable = read_usable_trajectory(file);
+  if (!usable.damages.empty()) throw InputError(usable.damages.front());
+  return std::move(usable.poses);
 }
 
 void write_pose(std::ostream& out, const StampedPose& pose) {

@@ -12,6 +12,7 @@
 #include <pcl/kdtree/kdtree_flann.h>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/median.hpp>
 
 namespace tofmap {
 namespace {
@@ -74,14 +75,15 @@ Nearest nearest(const Tree& tree, const pcl::PointXYZ& point, double most_m) {
   return found > 0 ? Nearest{index[0], std::sqrt(square[0])} : Nearest{-1, most_m};
 }
 
-/// A map in the frame of the reference, and the reference.
+/// A map and the reference, both relative to the reference's origin.
 struct Clouds {
   Clouds(const MapCloud& map, const Pose& truth_from_map, const ReferenceSurface& reference) {
     if (reference.points().empty()) throw UsageError("map score: the reference surface is empty");
     for (const Eigen::Vector3f& p : reference.points()) truth->push_back({p.x(), p.y(), p.z()});
+    const Pose origin_from_map = Eigen::Translation3d(-reference.origin_m()) * truth_from_map;
     for (const MapPoint& point : map.points) {
       const Eigen::Vector3f p =
-          (truth_from_map * point.getVector3fMap().cast<double>()).cast<float>();
+          (origin_from_map * point.getVector3fMap().cast<double>()).cast<float>();
       placed->push_back({p.x(), p.y(), p.z()});
     }
   }
@@ -113,17 +115,30 @@ std::vector<float> errors_m(const Clouds& clouds, double most_m) {
 void ReferenceSurface::add(const ImageF& range_truth_m, const PixelRays& rays,
                            const Pose& world_from_camera) {
   constexpr int stride = 2;
+  const Pose origin_from_camera = Eigen::Translation3d(-origin_m_) * world_from_camera;
   for (Eigen::Index v = 0; v < range_truth_m.rows(); v += stride) {
     for (Eigen::Index u = 0; u < range_truth_m.cols(); u += stride) {
       const double range = range_truth_m(v, u);
       if (!std::isfinite(range)) continue;
       const Eigen::Vector3d point =
-          world_from_camera * (range * Eigen::Vector3d(rays.x(v, u), rays.y(v, u), rays.z(v, u)));
+          origin_from_camera * (range * Eigen::Vector3d(rays.x(v, u), rays.y(v, u), rays.z(v, u)));
       if (voxels_.emplace(voxel_key(point), points_.size()).second) {
         points_.push_back(point.cast<float>());
       }
     }
   }
+}
+
+Eigen::Vector3d origin_near(const Trajectory& poses) {
+  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
+  if (poses.empty()) return origin_m;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const StampedPose& pose : poses)
+      values.push_back(pose.world_from_camera.translation()[axis]);
+    origin_m[axis] = std::round(median(values));
+  }
+  return origin_m;
 }
 
 std::vector<float> map_errors_m(const MapCloud& map, const Pose& truth_from_map,

@@ -100,7 +100,9 @@ std::string scene_json(const PageScene& scene) {
                {"paths", Json::array()}};
   for (const SceneCloud& cloud : scene.clouds) json["clouds"].push_back(json_of(cloud, box));
   for (const ScenePath& path : scene.paths) json["paths"].push_back(json_of(path, box));
-  return json.dump();
+  constexpr int one_line = -1;
+  constexpr bool ascii_only = false;
+  return json.dump(one_line, ' ', ascii_only, Json::error_handler_t::replace);
 }
 
 }  // namespace tofmap

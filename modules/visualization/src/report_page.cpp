@@ -9,12 +9,14 @@
 
 #include <string_view>
 
+#include <tofmap/core/text.hpp>
+
 namespace tofmap {
 namespace {
 
 std::string escaped(std::string_view text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : valid_utf8(text)) {
     switch (c) {
       case '&':
         out += "&amp;";

@@ -14,22 +14,24 @@
 
 namespace tofmap {
 
-/// One line of frames.txt; paths are relative to the sequence, empty for '-'.
+/// One line of frames.txt; paths are relative to the sequence, empty for '-'. Of a line that is not
+/// understood paths are empty; its time is that of the line before, or of the first that is.
 struct SequenceFrameFiles {
   double timestamp_s = 0;
   std::filesystem::path phase_a;
   std::filesystem::path phase_b;
   std::filesystem::path amplitude_a;
   std::filesystem::path amplitude_b;
-  std::string damage;  ///< why the line cannot be used (time does not advance); empty if it can
+  std::string damage;  ///< why the line cannot be used; empty if it can
 };
 
 /// Reads a sequence folder (docs/sequence-format.md) frame by frame, in any order.
 ///
 /// What makes the whole recording unreadable throws InputError when it is opened: a missing or
-/// wrong sequence.yaml, a line of frames.txt that cannot be understood or that leads out of
-/// the folder. What spoils one frame makes that frame damaged: an image that is missing,
-/// truncated, of another size or depth, and a timestamp not later than the frame before.
+/// wrong sequence.yaml, a frames.txt of which more than half cannot be understood. What spoils one
+/// frame makes that frame damaged: a line that is not understood or leads out of the folder, an
+/// image that is missing, truncated, of another size or depth, and a timestamp not later than the
+/// frame before.
 class SequenceReader final : public FrameSource {
  public:
   /// Opens the folder: reads sequence.yaml and frames.txt and checks them. Throws InputError
@@ -82,9 +84,10 @@ class SequenceWriter {
 
   /// Adds one frame, with what is known of the truth. The frame's timestamp must be later than
   /// the last one's and its images of the camera's size; phases must lie in [0, 1) or be
-  /// NaN, and scaled amplitudes and ranges (millimetres) must fit into 16 bits: all else is a
-  /// UsageError, not a clamp. Amplitudes above zero are written as at least 1, since zero
-  /// means no return. Throws InputError that names the file if it cannot be written.
+  /// NaN, and amplitudes must not be negative: all else is a UsageError. Amplitudes above zero are
+  /// written as at least 1, since zero means no return, and at most 65535, which means that there
+  /// may have been more. True ranges below 0.5 mm or beyond 65.535 m are written as unknown. Throws
+  /// InputError that names the file if it cannot be written.
   void add(const DualFrequencyFrame& frame, const std::optional<Pose>& world_from_camera = {},
            const std::optional<ImageF>& range_truth_m = {},
            const std::optional<ImageU8>& label_truth = {});

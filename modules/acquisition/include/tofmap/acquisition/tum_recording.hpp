@@ -32,14 +32,21 @@ struct TumOptions {
 /// simulator need a scene.
 class TumRecording {
  public:
-  /// Reads depth.txt and, if it is there, groundtruth.txt. Throws InputError that names the file
-  /// and the remedy if the folder is no such recording, or none of its images can be read;
-  /// UsageError if an option is not allowed, or would have no effect.
+  /// Reads depth.txt and, if it is there, groundtruth.txt, without the lines that cannot be used.
+  /// Throws InputError that names the file and the remedy if the folder is no such recording, or
+  /// none of its images can be read; UsageError if an option is not allowed, or would have no
+  /// effect.
   TumRecording(std::filesystem::path folder, const TumOptions& options,
                const SimulatorOptions& simulator);
 
   const SensorModel& sensor() const { return sensor_; }
   int frame_count() const { return static_cast<int>(images_.size()); }
+
+  /// What is wrong with the lines of depth.txt that are no frame.
+  const std::vector<std::string>& left_out() const { return left_out_; }
+
+  /// What is wrong with the lines of groundtruth.txt that are no pose.
+  const std::vector<std::string>& damaged_poses() const { return damaged_poses_; }
 
   /// The frame of an index with its true ranges; its pose is that of groundtruth.txt.
   struct Frame {
@@ -48,7 +55,7 @@ class TumRecording {
     std::optional<Pose> world_from_camera;  ///< nothing if no pose is near in time
   };
 
-  /// Throws InputError if its image cannot be read or is of another size than the first that can.
+  /// Throws InputError if its image cannot be read or is of another size than others.
   Frame read(int index) const;
 
   struct DepthImage {
@@ -64,6 +71,8 @@ class TumRecording {
   SimulatorOptions simulator_;
   double noise_sigma_ = 0;
   std::vector<DepthImage> images_;
+  std::vector<std::string> left_out_;
+  std::vector<std::string> damaged_poses_;
   Trajectory poses_;
 };
 

@@ -27,6 +27,10 @@ std::string formatted(const char* format, Values... values) {
   return buffer;
 }
 
+/// The same text where it is valid UTF-8; each byte that is not, as in names of files of old
+/// systems, becomes U+FFFD. What goes into JSON or HTML must be valid.
+std::string valid_utf8(std::string_view text);
+
 /// "1 frame", "2 frames".
 inline std::string counted(std::size_t count, std::string_view what) {
   return std::to_string(count) + " " + std::string(what) + (count == 1 ? "" : "s");

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <iosfwd>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -44,8 +45,19 @@ std::optional<Pose> pose_at(const Trajectory& trajectory, double timestamp_s,
 
 /// Reads a trajectory in the form of the TUM RGB-D benchmark: a line a pose, `timestamp tx ty tz
 /// qx qy qz qw`, # starts a comment. Throws InputError that names file and line if a line
-/// does not hold eight numbers, or its quaternion is zero.
+/// does not hold eight numbers, its quaternion is zero, or it is farther than 1e8 m from the
+/// origin.
 Trajectory read_trajectory(const std::filesystem::path& file);
+
+/// What of a trajectory file can be used.
+struct UsableTrajectory {
+  Trajectory poses;
+  std::vector<std::string> damages;  ///< of each line that is left out: file, number, what is wrong
+};
+
+/// Reads the same form, and leaves out the lines that read_trajectory would refuse. Throws
+/// InputError if the file cannot be read at all.
+UsableTrajectory read_usable_trajectory(const std::filesystem::path& file);
 
 /// Writes one line of that form; the caller checks the stream.
 void write_pose(std::ostream& out, const StampedPose& pose);

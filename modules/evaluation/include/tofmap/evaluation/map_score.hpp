@@ -15,18 +15,32 @@
 namespace tofmap {
 
 /// The true surface as the camera could see it: true ranges, put where the camera truly was, one
-/// point a voxel of 4 cm (the first), in the world frame of the true poses.
+/// point a voxel of 4 cm (the first), in the world frame of the true poses. Points are kept
+/// relative to an origin near them, so that a national grid costs them no digits.
 class ReferenceSurface {
  public:
-  /// Adds every second pixel, in both axes, of a frame's true radial ranges.
+  ReferenceSurface() = default;
+  explicit ReferenceSurface(const Eigen::Vector3d& origin_m) : origin_m_(origin_m) {}
+
+  /// Adds every second pixel, in both axes, of a frame's true radial ranges. The pose is one of the
+  /// world, not relative to the origin.
   void add(const ImageF& range_truth_m, const PixelRays& rays, const Pose& world_from_camera);
 
+  /// In the world frame.
+  const Eigen::Vector3d& origin_m() const { return origin_m_; }
+
+  /// Relative to the origin.
   const std::vector<Eigen::Vector3f>& points() const { return points_; }
 
  private:
+  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
   std::unordered_map<std::int64_t, std::size_t> voxels_;
   std::vector<Eigen::Vector3f> points_;
 };
+
+/// An origin near most of the positions of a trajectory: their median by coordinate, in whole
+/// metres, so that voxels lie alike wherever the world's origin is. Zero of an empty one.
+Eigen::Vector3d origin_near(const Trajectory& poses);
 
 /// From here on points of a map are not only inexact, but wrong.
 inline constexpr double far_error_m = 0.2;
