@@ -4,6 +4,7 @@
 #include "command.hpp"
 #include "console/interruption.hpp"
 #include "console/progress.hpp"
+#include "input/recorded_truth.hpp"
 #include "input/recording.hpp"
 #include "options/options.hpp"
 #include "output/frame_report.hpp"
@@ -36,13 +37,14 @@ struct CalibrateArguments {
 /// Where the ranges come from that measured ones are compared with.
 enum class Reference : std::uint8_t { truth, wall, beat };
 
-Reference reference_of(const CalibrationOptions& options, const SequenceReader& source) {
+Reference reference_of(const CalibrationOptions& options, const SequenceReader& source,
+                       const RecordedTruth& truth) {
   const std::string& wanted = options.reference;
   if (wanted == "wall" && options.wall_file.empty()) {
     throw UsageError("calibration.reference=wall needs calibration.wall_file");
   }
   if (wanted == "wall" || (wanted == "auto" && !options.wall_file.empty())) return Reference::wall;
-  const bool has_truth = source.range_truth(0).has_value();
+  const bool has_truth = truth.has_ranges();
   if (wanted == "truth" && !has_truth) {
     throw InputError(source.folder().string() +
                      ": has no range_truth; calibration.reference=beat needs none");
@@ -83,9 +85,11 @@ WallDistances wall_distances(const std::filesystem::path& file, const SequenceRe
 /// The ranges of a reference, frame by frame.
 class ReferenceRanges {
  public:
-  ReferenceRanges(Reference reference, const SequenceReader& source, const ProgramOptions& options)
+  ReferenceRanges(Reference reference, const SequenceReader& source, const RecordedTruth& truth,
+                  const ProgramOptions& options)
       : reference_(reference),
         source_(source),
+        truth_(truth),
         unwrapper_(source.sensor(), options.pipeline.unwrap) {
     if (reference_ == Reference::wall) {
       wall_distances_m_ = wall_distances(options.calibration.wall_file, source);
@@ -94,7 +98,7 @@ class ReferenceRanges {
 
   /// Nothing if there is none for the frame.
   std::optional<ImageF> of(const DualFrequencyFrame& frame) {
-    if (reference_ == Reference::truth) return source_.range_truth(frame.index);
+    if (reference_ == Reference::truth) return truth_.range_m(frame.index);
     if (reference_ == Reference::beat) return unwrapper_.unwrap(frame).image.range_m;
     const auto distance = wall_distances_m_.find(frame.index);
     if (distance == wall_distances_m_.end()) return std::nullopt;
@@ -106,6 +110,7 @@ class ReferenceRanges {
  private:
   Reference reference_;
   const SequenceReader& source_;
+  const RecordedTruth& truth_;
   Unwrapper unwrapper_;
   WallDistances wall_distances_m_;
 };
@@ -213,15 +218,17 @@ int run_calibrate(const CalibrateArguments& arguments) {
   arguments.common.resolve("calibrate", options);
   const bool quiet = arguments.common.quiet;
   const SequenceReader source(arguments.sequence);
-  const Reference reference = reference_of(options.calibration, source);
+  const RecordedTruth truth(source);
+  const Reference reference = reference_of(options.calibration, source, truth);
   OutputFile out(arguments.out, is_calibration);
   const PhaseErrorFitOptions fit_options{
       .orders = harmonic_orders(options.calibration, reference != Reference::beat),
       .max_error_m = options.calibration.max_error_m};
-  ReferenceRanges ranges(reference, source, options);
+  ReferenceRanges ranges(reference, source, truth, options);
   const CollectedSamples collected =
       collect_samples(source, ranges, options.calibration.every_frame, quiet);
   if (is_interrupted()) return exit_status::interrupted;
+  if (reference == Reference::truth) print_remarks(truth);
   refuse_mostly_damaged(collected.damaged, collected.read, collected.first_damage);
   const PhaseErrorFit fit = fit_samples(collected.samples, reference, source, fit_options);
   CameraCalibration calibration;

@@ -2,17 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "command.hpp"
+#include "console/failure.hpp"
 #include "console/interruption.hpp"
 #include "input/recording.hpp"
 #include "input/watched_source.hpp"
 #include "options/options.hpp"
+#include "output/json_text.hpp"
 #include "output/output_folder.hpp"
 #include "output/pictures.hpp"
+#include "output/result_addition.hpp"
 #include "reports/evaluation_page.hpp"
 #include "reports/evaluation_report.hpp"
 #include "runs/method_run.hpp"
 
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -46,21 +50,21 @@ void write_comparison(const std::filesystem::path& folder, const std::vector<Met
   }
 }
 
-void say_what_is_missing(const SequenceReader& source, const Truth& truth, bool down_to_map) {
-  if (down_to_map && truth.poses.empty()) {
-    std::fprintf(stderr, "tofmap: %s has no groundtruth.txt: no trajectory or map error\n",
+void say_what_is_missing(const SequenceReader& source, const RecordedTruth& truth,
+                         bool down_to_map) {
+  if (down_to_map && truth.poses().empty()) {
+    std::fprintf(stderr, "tofmap: %s has no poses in groundtruth.txt: no trajectory or map error\n",
                  source.folder().c_str());
   }
-  if (!source.range_truth(0)) {
+  if (!truth.has_ranges()) {
     std::fprintf(stderr, "tofmap: %s has no range_truth: no wrap or map error\n",
                  source.folder().c_str());
   }
 }
 
-std::string what_is_missing(const std::vector<std::string>& methods,
-                            const std::vector<MethodResult>& results) {
-  const std::vector<std::string> missing(
-      methods.begin() + static_cast<std::ptrdiff_t>(results.size()), methods.end());
+std::string what_is_missing(const std::vector<std::string>& methods, std::size_t done) {
+  const std::vector<std::string> missing(methods.begin() + static_cast<std::ptrdiff_t>(done),
+                                         methods.end());
   return "the run was interrupted; these methods are missing: " + joined(missing, ", ");
 }
 
@@ -70,24 +74,82 @@ void write_method(const OutputFolder& out, const MethodResult& result) {
   write_trajectory(out.path() / result.name / "trajectory.txt", result.map->trajectory);
 }
 
-/// Adds pictures and page of the methods that were asked for, as far as they have results.
-void add_report(const std::filesystem::path& result, const std::vector<std::string>& methods,
-                EvaluationPageSubject subject, bool quiet) {
-  const ProgramOptions& options = subject.options;
-  const bool interrupted = subject.results.size() < methods.size();
-  const bool down_to_map = options.evaluation.down_to == "map";
-  if (!interrupted && (down_to_map || options.pictures.frames > 0)) {
-    add_pictures(result, [&](const std::filesystem::path& folder) {
-      write_method_pictures(folder, subject.recording, methods, options.pipeline.unwrap,
-                            options.pipeline.filters, options.pictures, quiet);
-      if (down_to_map) write_comparison(folder, subject.results, options.pictures);
+/// What became of the methods that were asked for.
+struct Evaluated {
+  Json report;
+  std::vector<MethodResult> results;  ///< of the methods that could be run
+  Failures failures;                  ///< of the others
+  std::size_t done = 0;               ///< methods that ended, one way or the other
+  bool interrupted = false;
+};
+
+/// Runs one method after the other. One that fails does not end the others; if all do, throws what
+/// the first did.
+Evaluated evaluate_methods(const std::vector<std::string>& methods, const OutputFolder& out,
+                           const std::function<MethodResult(const std::string& method)>& run) {
+  Evaluated evaluated;
+  for (const std::string& method : methods) {
+    evaluated.failures.attempt("method " + method, [&] {
+      MethodResult result = run(method);
+      evaluated.interrupted = result.interrupted;
+      if (result.interrupted) return;
+      write_method(out, result);
+      add_to_report(evaluated.report, result);
+      evaluated.results.push_back(std::move(result));
     });
+    if (evaluated.interrupted) break;
+    ++evaluated.done;
   }
-  if (interrupted) subject.warnings.push_back(what_is_missing(methods, subject.results));
-  write_evaluation_page(result, subject, quiet);
-  if (!quiet) {
-    std::printf("report: %s, figures: report.json beside it\n", (result / "report.html").c_str());
+  if (evaluated.results.empty() && !evaluated.failures.empty()) evaluated.failures.rethrow_first();
+  return evaluated;
+}
+
+void write_report(const OutputFolder& out, Evaluated& evaluated, const RecordedTruth& truth) {
+  Json& report = evaluated.report;
+  report["interrupted"] = evaluated.interrupted;
+  if (!evaluated.failures.empty()) report["failed"] = evaluated.failures.texts();
+  if (!truth.remarks().empty()) report["truth_left_out"] = truth.remarks();
+  out.write_text("report.json", json_text(report));
+}
+
+/// Pictures and page of the methods that were asked for, as far as they have results.
+std::vector<OptionalPart> report_parts(const std::filesystem::path& result,
+                                       const std::vector<std::string>& methods,
+                                       const EvaluationPageSubject& subject, bool interrupted,
+                                       bool quiet) {
+  const ProgramOptions& options = subject.options;
+  const bool down_to_map = options.evaluation.down_to == "map";
+  std::vector<OptionalPart> parts;
+  if (!interrupted && (down_to_map || options.pictures.frames > 0)) {
+    parts.push_back({"pictures", [=, &subject, &options] {
+                       add_pictures(result, [&](const std::filesystem::path& folder) {
+                         write_method_pictures(folder, subject.recording, subject.recorded_truth,
+                                               methods, options.pipeline.unwrap,
+                                               options.pipeline.filters, options.pictures, quiet);
+                         if (down_to_map) {
+                           write_comparison(folder, subject.results, options.pictures);
+                         }
+                       });
+                     }});
   }
+  parts.push_back({"report.html", [=, &subject] {
+                     write_evaluation_page(result, subject, quiet);
+                     if (quiet) return;
+                     std::printf("report: %s, figures: report.json beside it\n",
+                                 (result / "report.html").c_str());
+                   }});
+  return parts;
+}
+
+/// What the page warns of.
+std::vector<std::string> warnings_of(const SequenceReader& source, const Evaluated& evaluated,
+                                     const std::vector<std::string>& methods) {
+  std::vector<std::string> warnings = doubts_about(source);
+  if (evaluated.interrupted) warnings.push_back(what_is_missing(methods, evaluated.done));
+  for (const std::string& text : evaluated.failures.texts()) {
+    warnings.push_back("it failed and is missing: " + text);
+  }
+  return warnings;
 }
 
 int run_evaluate(const EvaluateArguments& arguments) {
@@ -99,39 +161,41 @@ int run_evaluate(const EvaluateArguments& arguments) {
   const bool quiet = arguments.common.quiet;
 
   const SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
-  const Truth truth = down_to_map ? read_truth(source, quiet) : Truth{};
-  if (!quiet) say_what_is_missing(source, truth, down_to_map);
   OutputFolder out(arguments.out);
-  Json report;
-  std::vector<MethodResult> results;
-  bool interrupted = false;
-  for (const std::string& method : methods) {
-    MethodResult result = down_to_map
-                              ? run_down_to_map(method, source, options.pipeline, truth, quiet)
-                              : run_unwrapping(method, source, options.pipeline.unwrap, quiet);
-    interrupted = result.interrupted;
-    if (interrupted) break;
-    add_to_report(report, result);
-    write_method(out, result);
-    results.push_back(std::move(result));
-  }
-  report["interrupted"] = interrupted;
-  out.write_text("report.json", report.dump(1) + "\n");
+  const RecordedTruth recorded(source);
+  const Truth truth = down_to_map ? read_truth(source, recorded, quiet) : Truth{};
+  if (!quiet) say_what_is_missing(source, recorded, down_to_map);
+  Evaluated evaluated = evaluate_methods(methods, out, [&](const std::string& method) {
+    return down_to_map ? run_down_to_map(method, source, options.pipeline, recorded, truth, quiet)
+                       : run_unwrapping(method, source, options.pipeline.unwrap, recorded, quiet);
+  });
+  write_report(out, evaluated, recorded);
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit();
-  if (!results.empty()) print_table(report);
-  return add_to_result(
-      out.final_path(), interrupted ? exit_status::interrupted : exit_status::done, [&] {
-        if (results.empty()) {
-          std::fprintf(stderr, "tofmap: interrupted before any method was done: %s\n",
-                       out.final_path().c_str());
-          return;
-        }
-        add_report(
-            out.final_path(), methods,
-            {source, truth, results, report, doubts_about(source), options, table.to_yaml(false)},
-            quiet);
-      });
+  for (const std::string& text : evaluated.failures.texts()) {
+    std::fprintf(stderr, "tofmap: %s; the other methods are there\n", text.c_str());
+  }
+  if (!evaluated.results.empty()) print_table(evaluated.report);
+  const int status = evaluated.interrupted ? exit_status::interrupted
+                                           : evaluated.failures.status_or(exit_status::done);
+  if (evaluated.results.empty()) {
+    std::fprintf(stderr, "tofmap: interrupted before any method was done: %s\n",
+                 out.final_path().c_str());
+    return status;
+  }
+  const EvaluationPageSubject subject{source,
+                                      recorded,
+                                      truth,
+                                      evaluated.results,
+                                      evaluated.report,
+                                      warnings_of(source, evaluated, methods),
+                                      options,
+                                      table.to_yaml(false)};
+  const int end =
+      add_to_result(out.final_path(), status,
+                    report_parts(out.final_path(), methods, subject, evaluated.interrupted, quiet));
+  print_remarks(recorded);
+  return end;
 }
 
 }  // namespace

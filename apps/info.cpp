@@ -4,6 +4,7 @@
 #include "command.hpp"
 #include "console/interruption.hpp"
 #include "console/progress.hpp"
+#include "input/recorded_truth.hpp"
 #include "input/recording.hpp"
 #include "options/options.hpp"
 
@@ -37,15 +38,25 @@ void print_sensor(const SensorModel& sensor) {
   if (sensor.max_range_m > 0) std::printf("the scene reaches to: %.2f m\n", sensor.max_range_m);
 }
 
+/// What of the truth can be used; reads all of it.
+void print_truth(const SequenceReader& source) {
+  const RecordedTruth truth(source);
+  bool has_ranges = false;
+  for (int i = 0; i < *source.frame_count() && !is_interrupted(); ++i) {
+    has_ranges = truth.range_m(i).has_value() || has_ranges;
+  }
+  std::printf("ground truth: poses %s, ranges %s\n", truth.poses().empty() ? "no" : "yes",
+              has_ranges ? "yes" : "no");
+  for (const std::string& remark : truth.remarks()) std::printf("  %s\n", remark.c_str());
+}
+
 void print_frames(const SequenceReader& source, const RecordingSurvey& survey) {
   const auto& files = source.files();
   std::printf("frames: %zu over %.2f s\n", files.size(),
               files.back().timestamp_s - files.front().timestamp_s);
   std::printf("pixels without a return: %.2f %%, saturated: %.2f %%\n",
               100 * survey.no_return_share, 100 * survey.saturated_share);
-  const bool has_poses = !source.ground_truth().empty();
-  std::printf("ground truth: poses %s, ranges %s\n", has_poses ? "yes" : "no",
-              source.range_truth(0) ? "yes" : "no");
+  print_truth(source);
   if (survey.without_amplitude > 0) {
     std::printf("frames without amplitudes: %d (noise is taken as uniform)\n",
                 survey.without_amplitude);

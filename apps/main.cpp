@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "command.hpp"
+#include "console/failure.hpp"
 #include "console/interruption.hpp"
 
 #include <cstdio>
@@ -11,7 +12,6 @@
 #include <CLI/CLI.hpp>
 
 #include <tofmap/core/error.hpp>
-#include <tofmap/visualization/drawing.hpp>
 
 namespace {
 
@@ -66,13 +66,8 @@ int main(int argc, char** argv) {
     return status;
   } catch (const tofmap::app::Interrupted&) {
     return fail(exit_status::interrupted, "interrupted before there was a result");
-  } catch (const tofmap::UsageError& error) {
-    return fail(exit_status::bad_use, error.what());
-  } catch (const tofmap::InputError& error) {
-    return fail(exit_status::bad_input, error.what());
-  } catch (const tofmap::DrawingError& error) {
-    return fail(exit_status::own_fault, error.what());
-  } catch (const std::exception& error) {
-    return fail(exit_status::own_fault, std::string("internal error: ") + error.what());
+  } catch (const std::exception&) {
+    const tofmap::app::Failure failure = tofmap::app::failure_of(std::current_exception());
+    return fail(failure.status, failure.message);
   }
 }

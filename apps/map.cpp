@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "command.hpp"
+#include "console/failure.hpp"
 #include "console/interruption.hpp"
 #include "console/progress.hpp"
 #include "input/live_input.hpp"
@@ -10,8 +11,10 @@
 #include "input/watched_source.hpp"
 #include "options/options.hpp"
 #include "output/frame_report.hpp"
+#include "output/json_text.hpp"
 #include "output/output_folder.hpp"
 #include "output/pictures.hpp"
+#include "output/result_addition.hpp"
 #include "reports/consistency_report.hpp"
 #include "reports/map_page.hpp"
 #include "runs/map_state.hpp"
@@ -70,6 +73,7 @@ struct MapOutput {
   nlohmann::ordered_json acquisition;  ///< of a device; else null
   const SensorModel& sensor;
   std::vector<DualFrequencyFrame> frames;  ///< some, spread over all
+  Failures failures = {};                  ///< of what the map can do without
 };
 
 /// A map, and what tells whether it is right.
@@ -78,22 +82,37 @@ struct FinishedMap {
   Consistency consistency;
 };
 
-void write_result(const OutputFolder& out, const FinishedMap& finished, const MapOutput& output) {
-  const RoomMap& map = finished.map;
+/// What a run is for comes first: if what follows fails, this is kept.
+void write_map_and_path(OutputFolder& out, const RoomMap& map) {
   write_map(out.path() / "map.ply", map.surface);
-  if (output.arguments.pcd) write_map(out.path() / "map.pcd", map.surface);
-  const double voxel_m = output.options.pipeline.map.voxel_m;
-  write_mesh(out.path() / "mesh.ply", extract_mesh(map.surface, voxel_m));
   write_trajectory(out.path() / "trajectory.txt", map.trajectory);
   write_trajectory(out.path() / "keyframes.txt", map.keyframes);
+  out.keep();
+}
+
+void write_report(const OutputFolder& out, const FinishedMap& finished, const MapOutput& output) {
   nlohmann::ordered_json report;
-  report["summary"] = summary_json(map);
+  report["summary"] = summary_json(finished.map);
   report["consistency"] = consistency_json(finished.consistency);
   report["doubts"] = output.doubts;
+  if (!output.failures.empty()) report["failed"] = output.failures.texts();
   if (!output.acquisition.is_null()) report["acquisition"] = output.acquisition;
-  for (const FrameRecord& record : map.frames) report["frames"].push_back(frame_json(record));
-  out.write_text("report.json", report.dump(1) + "\n");
+  for (const FrameRecord& record : finished.map.frames) {
+    report["frames"].push_back(frame_json(record));
+  }
+  out.write_text("report.json", json_text(report));
   out.write_text("options.yaml", output.options_yaml);
+}
+
+/// Runs a step after map and path were written. If it fails, says where these are.
+template <class Step>
+void keeping_map(const OutputFolder& out, const Step& step) {
+  try {
+    step();
+  } catch (const std::exception&) {
+    const Failure failure = failure_of(std::current_exception());
+    throw InputError(failure.message + "; map and path are kept in " + out.path().string());
+  }
 }
 
 void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
@@ -103,16 +122,41 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
   std::printf("map: %s, mesh beside it\n", (folder / "map.ply").c_str());
 }
 
+/// What tells whether a map is right, and its mesh: a map without them is one, too.
+void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput& output) {
+  output.failures.attempt("consistency", [&] {
+    finished.consistency =
+        consistency_of(finished.map, output.frames, output.sensor, output.options.pipeline);
+    std::ranges::move(doubts_about(finished.consistency), std::back_inserter(output.doubts));
+  });
+  const auto add_file = [&](const char* name, const auto& write) {
+    const std::filesystem::path file = out.path() / name;
+    std::error_code ignored;
+    if (!output.failures.attempt(name, [&] { write(file); })) {
+      std::filesystem::remove(file, ignored);
+    }
+  };
+  const double voxel_m = output.options.pipeline.map.voxel_m;
+  const MapCloud& surface = finished.map.surface;
+  add_file("mesh.ply", [&](const auto& file) { write_mesh(file, extract_mesh(surface, voxel_m)); });
+  if (output.arguments.pcd) {
+    add_file("map.pcd", [&](const auto& file) { write_map(file, surface); });
+  }
+}
+
 /// Puts the map in place; what it is doubted for comes to the doubts.
 FinishedMap finish_map(MapRun& run, OutputFolder& out, MapOutput& output) {
-  FinishedMap finished{run.finish(), {}};
+  FinishedMap finished{run.finish(), unknown_consistency()};
   check_result(finished.map);
-  finished.consistency =
-      consistency_of(finished.map, output.frames, output.sensor, output.options.pipeline);
+  write_map_and_path(out, finished.map);
   if (const auto doubt = repetition_doubt(finished.map.repeated())) output.doubts.push_back(*doubt);
-  std::ranges::move(doubts_about(finished.consistency), std::back_inserter(output.doubts));
-  write_result(out, finished, output);
+  add_what_follows(out, finished, output);
+  keeping_map(out, [&] { write_report(out, finished, output); });
   out.commit();
+  for (const std::string& text : output.failures.texts()) {
+    std::fprintf(stderr, "tofmap: %s holds the map, but without %s\n", out.final_path().c_str(),
+                 text.c_str());
+  }
   if (!output.arguments.common.quiet) {
     print_summary(finished.map, out.final_path());
     print_doubts(output.doubts);
@@ -123,20 +167,25 @@ FinishedMap finish_map(MapRun& run, OutputFolder& out, MapOutput& output) {
 /// Adds report.html to a map that is in place; its truth is that of the recording, if there is one.
 void add_page(const OutputFolder& out, const FinishedMap& finished, const MapOutput& output,
               const SequenceReader* recording, const std::vector<std::string>& warnings) {
-  write_map_page(
-      out.final_path(),
-      {output.arguments.recording.sequence.string(), finished.map, output.sensor, output.frames,
-       recording, warnings, finished.consistency, output.options, output.options_yaml},
-      output.arguments.common.quiet);
+  std::optional<RecordedTruth> truth;
+  if (recording) truth.emplace(*recording);
+  write_map_page(out.final_path(),
+                 {output.arguments.recording.sequence.string(), finished.map, output.sensor,
+                  output.frames, recording, truth ? &*truth : nullptr, warnings,
+                  finished.consistency, output.options, output.options_yaml},
+                 output.arguments.common.quiet);
+  if (truth) print_remarks(*truth);
   if (!output.arguments.common.quiet) {
     std::printf("report: %s, pictures beside it\n", (out.final_path() / "report.html").c_str());
   }
 }
 
-/// The command's status, after `add` has added to the map that is in place.
-int status_with(const OutputFolder& out, const RoomMap& map, const std::function<void()>& add) {
-  return add_to_result(out.final_path(),
-                       map.interrupted ? exit_status::interrupted : exit_status::done, add);
+/// The command's status, after parts were added to the map that is in place.
+int status_with(const OutputFolder& out, const RoomMap& map, const MapOutput& output,
+                const std::vector<OptionalPart>& parts) {
+  const int status =
+      map.interrupted ? exit_status::interrupted : output.failures.status_or(exit_status::done);
+  return add_to_result(out.final_path(), status, parts);
 }
 
 /// A window for the map, if it is wanted.
@@ -169,12 +218,12 @@ void follow_camera(MapRun& run, FrameSource& source, bool quiet, LiveView* view,
 int map_recording(const MapArguments& arguments, const ProgramOptions& options,
                   const OptionTable& table) {
   SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
-  OutputFolder out(arguments.out);
-  const std::unique_ptr<LiveView> view = open_view(arguments);
   MapRun run(source.sensor(), options.pipeline);
   if (arguments.resume) take_up_map(arguments.out, run, source, options.pipeline);
-  MapOutput output{arguments,       options, table.to_yaml(false), doubts_about(source), {},
-                   source.sensor(), {}};
+  OutputFolder out(arguments.out);
+  const std::unique_ptr<LiveView> view = open_view(arguments);
+  MapOutput output{
+      arguments, options, table.to_yaml(false), doubts_about(source), {}, source.sensor(), {}, {}};
   FinishedMap finished;
   accompany(view.get(), [&] {
     follow_camera(run, source, arguments.common.quiet, view.get(),
@@ -188,15 +237,17 @@ int map_recording(const MapArguments& arguments, const ProgramOptions& options,
   if (map.interrupted && !arguments.common.quiet) {
     std::printf("interrupted; --resume goes on from %s\n", out.final_path().c_str());
   }
-  const int status = status_with(out, map, [&] {
-    add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
-      write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
-      if (map.interrupted) return;
-      write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures,
-                           arguments.common.quiet);
-    });
-    add_page(out, finished, output, map.interrupted ? nullptr : &source, output.doubts);
-  });
+  const auto draw = [&](const std::filesystem::path& folder) {
+    write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
+    if (map.interrupted) return;
+    write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures,
+                         arguments.common.quiet);
+  };
+  const SequenceReader* recording = map.interrupted ? nullptr : &source;
+  const int status = status_with(
+      out, map, output,
+      {{"pictures", [&] { add_pictures(out.final_path(), draw); }},
+       {"report.html", [&] { add_page(out, finished, output, recording, output.doubts); }}});
   if (view && status == exit_status::done) view->show_result(map);
   return status;
 }
@@ -220,7 +271,7 @@ int map_device(const MapArguments& arguments, const ProgramOptions& options,
     const std::string losses = input->losses();
     return status_line(run) + (losses.empty() ? "" : ", " + losses);
   };
-  MapOutput output{arguments, options, table.to_yaml(false), {}, {}, sensor, {}};
+  MapOutput output{arguments, options, table.to_yaml(false), {}, {}, sensor, {}, {}};
   FinishedMap finished;
   accompany(view.get(), [&] {
     follow_camera(run, frames, arguments.common.quiet, view.get(), remark);
@@ -236,14 +287,15 @@ int map_device(const MapArguments& arguments, const ProgramOptions& options,
   if (!losses.empty() && !arguments.common.quiet) {
     std::printf("not mapped: %s; see report.json\n", losses.c_str());
   }
-  const int status = status_with(out, map, [&] {
-    add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
-      write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
-    });
-    std::vector<std::string> warnings = output.doubts;
-    if (!losses.empty()) warnings.push_back("not mapped: " + losses);
-    add_page(out, finished, output, nullptr, warnings);
-  });
+  const auto draw = [&](const std::filesystem::path& folder) {
+    write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
+  };
+  std::vector<std::string> warnings = output.doubts;
+  if (!losses.empty()) warnings.push_back("not mapped: " + losses);
+  const int status =
+      status_with(out, map, output,
+                  {{"pictures", [&] { add_pictures(out.final_path(), draw); }},
+                   {"report.html", [&] { add_page(out, finished, output, nullptr, warnings); }}});
   if (view && status == exit_status::done) view->show_result(map);
   if (!silence.empty()) throw InputError(silence);
   return status;

@@ -7,6 +7,7 @@
 #include "input/live_input.hpp"
 #include "input/recording.hpp"
 #include "options/options.hpp"
+#include "output/json_text.hpp"
 #include "output/output_file.hpp"
 #include "output/output_folder.hpp"
 
@@ -33,22 +34,35 @@ struct RecordArguments {
   CommonArguments common;
 };
 
-/// Writes frames until the device ends, the user ends it, or there are enough. Returns how many.
-int write_frames(LiveInput& input, SequenceWriter& writer, const RecordArguments& arguments) {
+/// What became of the frames of a device.
+struct RecordedFrames {
+  int written = 0;
+  std::vector<std::string> left_out;  ///< what was wrong with frames that no recording can hold
+};
+
+/// Writes frames until the device ends, the user ends it, or there are enough.
+RecordedFrames write_frames(LiveInput& input, SequenceWriter& writer,
+                            const RecordArguments& arguments) {
+  RecordedFrames frames;
   Progress progress("recording frame",
                     arguments.frames > 0 ? std::optional(arguments.frames) : std::nullopt,
                     arguments.common.quiet);
   while (const std::optional<SourcedFrame> sourced = input.frames().next()) {
-    if (sourced->frame) writer.add(*sourced->frame);
+    try {
+      if (sourced->frame) writer.add(*sourced->frame);
+    } catch (const UsageError& error) {
+      frames.left_out.emplace_back(error.what());
+    }
     progress.show(writer.count(), input.losses());
   }
-  return writer.count();
+  frames.written = writer.count();
+  return frames;
 }
 
 /// The folder is replaced as a whole at the end.
 void refuse_inside(const std::filesystem::path& oni, const OutputFolder& out) {
   if (oni.empty()) return;
-  const auto file = std::filesystem::absolute(oni).lexically_normal();
+  const auto file = std::filesystem::weakly_canonical(std::filesystem::absolute(oni));
   const auto inside = file.lexically_relative(out.final_path());
   if (inside.empty() || *inside.begin() == "..") return;
   throw UsageError("--oni " + oni.string() + " lies in the folder of --out; put it elsewhere");
@@ -77,11 +91,12 @@ int run_record(const RecordArguments& arguments) {
   std::optional<LiveInput> input;
   input.emplace(arguments.uri, options,
                 LiveInput::Wanted{oni ? oni->path() : "", arguments.frames});
-  int written = 0;
+  RecordedFrames frames;
   if (!is_interrupted()) {
     SequenceWriter writer(out.path(), input->sensor());
-    written = write_frames(*input, writer, arguments);
+    frames = write_frames(*input, writer, arguments);
   }
+  const int written = frames.written;
   if (written == 0) {
     if (is_interrupted()) {
       std::fputs("tofmap: interrupted before the first frame; nothing was written\n", stderr);
@@ -95,12 +110,17 @@ int run_record(const RecordArguments& arguments) {
   }
   const nlohmann::ordered_json report = {{"frames", written},
                                          {"interrupted", is_interrupted()},
+                                         {"left_out", frames.left_out},
                                          {"doubts", input->doubts()},
                                          {"acquisition", input->report()}};
-  out.write_text("report.json", report.dump(1) + "\n");
+  out.write_text("report.json", json_text(report));
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit();
   const std::string losses = input->losses();
+  if (!frames.left_out.empty()) {
+    std::fprintf(stderr, "tofmap: %s left out; the first: %s\n",
+                 counted(frames.left_out.size(), "frame").c_str(), frames.left_out.front().c_str());
+  }
   if (!arguments.common.quiet) {
     std::printf("%s of '%s' recorded: %s\n",
                 counted(static_cast<std::size_t>(written), "frame").c_str(), arguments.uri.c_str(),

@@ -5,10 +5,12 @@
 #include "console/interruption.hpp"
 #include "console/progress.hpp"
 #include "options/options.hpp"
+#include "output/json_text.hpp"
 #include "output/output_folder.hpp"
 
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -29,23 +31,45 @@ struct RegisterArguments {
   CommonArguments common;
 };
 
-/// The clouds with what they are called.
+/// The clouds that could be read with what they are called, and the files that could not.
 struct Input {
   std::vector<PointSet> clouds;
   std::vector<std::string> names;
+  std::vector<std::size_t> places;  ///< of the clouds among all files
+  std::vector<std::pair<std::size_t, std::string>>
+      damages;                     ///< place among all files, what is wrong
+  std::vector<std::string> files;  ///< all, in the order given
 };
 
+void read_cloud(const std::filesystem::path& file, Input& input) {
+  const std::size_t place = input.files.size();
+  input.files.push_back(file.string());
+  try {
+    input.clouds.push_back(read_points(file));
+  } catch (const InputError& error) {
+    input.damages.emplace_back(place, error.what());
+    return;
+  }
+  const std::size_t strays = remove_strays(input.clouds.back().points);
+  if (strays > 0) {
+    std::fprintf(stderr, "tofmap: %s: %zu points far off all others are left out\n", file.c_str(),
+                 strays);
+  }
+  input.names.push_back(file.string());
+  input.places.push_back(place);
+}
+
+/// Files that cannot be read are left out; if they are more than half, or fewer than two are left,
+/// throws what is wrong with the first.
 Input read_clouds(const std::vector<std::filesystem::path>& files) {
   if (files.size() < 2) throw UsageError("register: takes two clouds at least");
   Input input;
-  for (const std::filesystem::path& file : files) {
-    input.clouds.push_back(read_points(file));
-    const std::size_t strays = remove_strays(input.clouds.back().points);
-    if (strays > 0) {
-      std::fprintf(stderr, "tofmap: %s: %zu points far off all others are left out\n", file.c_str(),
-                   strays);
-    }
-    input.names.push_back(file.string());
+  for (const std::filesystem::path& file : files) read_cloud(file, input);
+  if (2 * input.damages.size() > files.size() || input.clouds.size() < 2) {
+    throw InputError(input.damages.front().second);
+  }
+  for (const auto& [place, damage] : input.damages) {
+    std::fprintf(stderr, "tofmap: left out: %s\n", damage.c_str());
   }
   return input;
 }
@@ -66,26 +90,39 @@ Eigen::Matrix4d scaled_transform(const PlacedCloud& cloud) {
   return matrix;
 }
 
-ordered_json transforms_json(const Input& input, const CloudRegistration& registration) {
-  ordered_json clouds = ordered_json::array();
-  for (std::size_t i = 0; i < input.names.size(); ++i) {
-    const PlacedCloud& cloud = registration.clouds[i];
-    ordered_json one;
-    one["path"] = input.names[i];
-    one["transform"] =
-        cloud.is_placed ? matrix_json(scaled_transform(cloud)) : ordered_json(nullptr);
-    one["inlier_share"] = cloud.inlier_share;
-    one["rmse_m"] = cloud.is_placed ? ordered_json(cloud.rmse_m) : ordered_json(nullptr);
-    one["converged"] = cloud.is_placed;
-    one["tied_to"] = ordered_json::array();
-    for (const int other : cloud.tied_to) {
-      one["tied_to"].push_back(input.names[static_cast<std::size_t>(other)]);
-    }
-    if (cloud.unit_m != 1) one["scale"] = cloud.unit_m;
-    if (!cloud.remark.empty()) one["remark"] = cloud.remark;
-    clouds.push_back(one);
+ordered_json placed_json(const Input& input, std::size_t i, const PlacedCloud& cloud) {
+  ordered_json one;
+  one["path"] = input.names[i];
+  one["transform"] = cloud.is_placed ? matrix_json(scaled_transform(cloud)) : ordered_json(nullptr);
+  one["inlier_share"] = cloud.inlier_share;
+  one["rmse_m"] = cloud.is_placed ? ordered_json(cloud.rmse_m) : ordered_json(nullptr);
+  one["converged"] = cloud.is_placed;
+  one["tied_to"] = ordered_json::array();
+  for (const int other : cloud.tied_to) {
+    one["tied_to"].push_back(input.names[static_cast<std::size_t>(other)]);
   }
-  return {{"clouds", clouds}};
+  if (cloud.unit_m != 1) one["scale"] = cloud.unit_m;
+  if (!cloud.remark.empty()) one["remark"] = cloud.remark;
+  return one;
+}
+
+/// Of a file that could not be read, in the form of one that could not be placed.
+ordered_json damaged_json(const std::string& file, const std::string& damage) {
+  return {{"path", file},      {"transform", nullptr}, {"inlier_share", 0.0},
+          {"rmse_m", nullptr}, {"converged", false},   {"tied_to", ordered_json::array()},
+          {"damage", damage}};
+}
+
+/// One entry a file, in the order given.
+ordered_json transforms_json(const Input& input, const CloudRegistration& registration) {
+  std::vector<ordered_json> by_place(input.files.size());
+  for (std::size_t i = 0; i < input.names.size(); ++i) {
+    by_place[input.places[i]] = placed_json(input, i, registration.clouds[i]);
+  }
+  for (const auto& [place, damage] : input.damages) {
+    by_place[place] = damaged_json(input.files[place], damage);
+  }
+  return {{"clouds", by_place}};
 }
 
 ordered_json pair_json(const Input& input, const CloudPair& pair) {
@@ -108,11 +145,10 @@ ordered_json pair_json(const Input& input, const CloudPair& pair) {
 
 ordered_json report_json(const Input& input, const CloudRegistration& registration) {
   ordered_json report;
-  report["summary"] = {{"clouds", input.names.size()},
-                       {"placed", registration.placed()},
-                       {"pairs", registration.pairs.size()},
-                       {"voxel_m", registration.voxel_m},
-                       {"interrupted", registration.interrupted}};
+  report["summary"] = {
+      {"clouds", input.files.size()},    {"damaged", input.damages.size()},
+      {"placed", registration.placed()}, {"pairs", registration.pairs.size()},
+      {"voxel_m", registration.voxel_m}, {"interrupted", registration.interrupted}};
   report["pairs"] = ordered_json::array();
   for (const CloudPair& pair : registration.pairs) {
     report["pairs"].push_back(pair_json(input, pair));
@@ -120,15 +156,16 @@ ordered_json report_json(const Input& input, const CloudRegistration& registrati
   return report;
 }
 
-/// The points of placed clouds in the common frame; none of the others.
+/// The points of placed clouds in the common frame, by their place among all files; none of the
+/// others.
 std::vector<std::vector<Eigen::Vector3d>> merged(const Input& input,
                                                  const CloudRegistration& registration) {
-  std::vector<std::vector<Eigen::Vector3d>> out(input.clouds.size());
-  for (std::size_t i = 0; i < out.size(); ++i) {
+  std::vector<std::vector<Eigen::Vector3d>> out(input.files.size());
+  for (std::size_t i = 0; i < input.clouds.size(); ++i) {
     const PlacedCloud& cloud = registration.clouds[i];
     if (!cloud.is_placed) continue;
     for (const Eigen::Vector3d& point : input.clouds[i].points) {
-      out[i].push_back(cloud.common_from_cloud * (cloud.unit_m * point));
+      out[input.places[i]].push_back(cloud.common_from_cloud * (cloud.unit_m * point));
     }
   }
   return out;
@@ -147,8 +184,8 @@ void print_remarks(const Input& input, const CloudRegistration& registration) {
 int run_register(const RegisterArguments& arguments) {
   ProgramOptions options;
   const OptionTable table = arguments.common.resolve("register", options);
-  const Input input = read_clouds(arguments.clouds);
   OutputFolder out(arguments.out);
+  const Input input = read_clouds(arguments.clouds);
   CloudRegistration registration;
   {
     std::optional<Progress> progress;
@@ -160,15 +197,15 @@ int run_register(const RegisterArguments& arguments) {
         });
   }
   print_remarks(input, registration);
-  out.write_text("transforms.json", transforms_json(input, registration).dump(1) + "\n");
-  out.write_text("report.json", report_json(input, registration).dump(1) + "\n");
+  out.write_text("transforms.json", json_text(transforms_json(input, registration)));
+  out.write_text("report.json", json_text(report_json(input, registration)));
   out.write_text("options.yaml", table.to_yaml(false));
   if (registration.placed() > 0) {
     write_labelled_points(out.path() / "merged.ply", merged(input, registration));
   }
   out.commit();
   if (!arguments.common.quiet) {
-    std::printf("%d of %zu clouds placed\n", registration.placed(), input.names.size());
+    std::printf("%d of %zu clouds placed\n", registration.placed(), input.files.size());
     if (registration.placed() > 0) {
       std::printf("merged: %s, transforms beside it\n", (out.final_path() / "merged.ply").c_str());
     }

@@ -62,6 +62,7 @@ Written write_wrapped(const TumRecording& source, int count, const std::filesyst
                       const std::function<bool(int done)>& keep_going) {
   SequenceWriter writer(folder, source.sensor());
   Written written;
+  written.left_out = source.left_out();
   for (int i = 0; i < count && keep_going(i); ++i) {
     std::optional<TumRecording::Frame> frame;
     try {
@@ -80,7 +81,13 @@ Recording wrapped_again(const std::filesystem::path& folder, const ProgramOption
   auto source = std::make_shared<const TumRecording>(folder, options.tum, options.simulator);
   const int wanted = options.simulator.frames;
   const int count = wanted > 0 ? std::min(wanted, source->frame_count()) : source->frame_count();
-  return {count, folder.string(),
+  if (!source->damaged_poses().empty()) {
+    std::fprintf(stderr, "tofmap: %s left out; the first: %s\n",
+                 counted(source->damaged_poses().size(), "pose").c_str(),
+                 source->damaged_poses().front().c_str());
+  }
+  const int lost = static_cast<int>(source->left_out().size());
+  return {count + lost, folder.string(),
           [source, count](const std::filesystem::path& out, const auto& keep_going) {
             return write_wrapped(*source, count, out, keep_going);
           }};

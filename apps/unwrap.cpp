@@ -7,8 +7,10 @@
 #include "input/recording.hpp"
 #include "options/options.hpp"
 #include "output/frame_report.hpp"
+#include "output/json_text.hpp"
 #include "output/output_folder.hpp"
 #include "output/pictures.hpp"
+#include "output/result_addition.hpp"
 #include "runs/frame_fusion.hpp"
 #include "runs/unwrapped_frame.hpp"
 
@@ -21,6 +23,7 @@
 #include <omp.h>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
 #include <tofmap/pipeline/side_by_side.hpp>
 #include <tofmap/unwrap/beat.hpp>
 
@@ -51,7 +54,7 @@ void limit_to_image_format(UnwrapOptions& options, const SensorModel& sensor) {
 Trajectory poses_of(const SequenceReader& source, const std::filesystem::path& file) {
   Trajectory poses = read_trajectory(file);
   const bool fits = std::ranges::any_of(source.files(), [&](const SequenceFrameFiles& frame) {
-    return pose_at(poses, frame.timestamp_s).has_value();
+    return frame.damage.empty() && pose_at(poses, frame.timestamp_s).has_value();
   });
   if (fits) return poses;
   throw InputError(file.string() + ": has no pose within " + std::to_string(max_pose_gap_s) +
@@ -64,11 +67,15 @@ struct UnwrappedRecording {
   Json frames = Json::array();
   int damaged = 0;
   std::string first_damage;
+  int out_of_range = 0;         ///< pixels
+  int frames_out_of_range = 0;  ///< that have such pixels
 
   void add(const std::vector<UnwrappedFrame>& more) {
     for (const UnwrappedFrame& frame : more) {
       damaged += frame.damage.empty() ? 0 : 1;
       if (first_damage.empty()) first_damage = frame.damage;
+      out_of_range += frame.out_of_range;
+      frames_out_of_range += frame.out_of_range > 0 ? 1 : 0;
       frames.push_back(frame.report);
     }
   }
@@ -79,9 +86,10 @@ struct UnwrappedRecording {
   }
 };
 
-void write_frames(const OutputFolder& out, const std::vector<UnwrappedFrame>& ready) {
+void write_frames(const OutputFolder& out, std::vector<UnwrappedFrame>& ready) {
   side_by_side(static_cast<int>(ready.size()), [&](int i) {
-    const UnwrappedFrame& frame = ready[static_cast<std::size_t>(i)];
+    UnwrappedFrame& frame = ready[static_cast<std::size_t>(i)];
+    finish_frame(frame);
     if (frame.damage.empty()) write_images(out.path(), frame);
     return 0;
   });
@@ -97,8 +105,9 @@ UnwrappedRecording unwrap_recording(const SequenceReader& source, const Trajecto
   FrameFusion fusion(source.sensor().camera, rays, poses, options.fusion);
   auto unwrappers = one_a_thread(Unwrapper(source.sensor(), options.pipeline.unwrap));
   const int total = *source.frame_count();
+  const std::vector<std::filesystem::path> names = image_names(source);
   UnwrappedRecording result;
-  const auto finish = [&](const std::vector<UnwrappedFrame>& ready) {
+  const auto finish = [&](std::vector<UnwrappedFrame> ready) {
     write_frames(out, ready);
     result.add(ready);
   };
@@ -106,7 +115,13 @@ UnwrappedRecording unwrap_recording(const SequenceReader& source, const Trajecto
   for (int begin = 0; begin < total && !is_interrupted();) {
     const int end = std::min(total, begin + omp_get_max_threads());
     const auto unwrap_one = [&](Unwrapper& unwrapper, int i) {
-      return unwrap_frame(source, begin + i, unwrapper, rays, frame_options);
+      UnwrappedFrame frame = unwrap_frame(source, begin + i, unwrapper, rays, frame_options);
+      const auto index = static_cast<std::size_t>(begin + i);
+      frame.name = names[index];
+      if (frame.name != source.files()[index].phase_a.filename()) {
+        frame.report["image"] = frame.name.string();
+      }
+      return frame;
     };
     for (UnwrappedFrame& frame : side_by_side(end - begin, unwrappers, unwrap_one)) {
       fusion.add(std::move(frame));
@@ -116,6 +131,20 @@ UnwrappedRecording unwrap_recording(const SequenceReader& source, const Trajecto
   }
   finish(fusion.take(true));
   return result;
+}
+
+/// On stderr, what a user may not see in the images.
+void say_what_is_missing(const UnwrappedRecording& result) {
+  if (result.is_empty()) {
+    std::fprintf(stderr, "tofmap: no pixel has a range; 'tofmap info' tells what is wrong\n");
+  }
+  if (result.out_of_range == 0) return;
+  std::fprintf(
+      stderr,
+      "tofmap: %s in %s had ranges that images of 0.001 m to 65.535 m cannot hold; they are "
+      "invalid (out_of_range). unwrap.max_range_m limits how far the scene reaches\n",
+      counted(static_cast<std::size_t>(result.out_of_range), "pixel").c_str(),
+      counted(static_cast<std::size_t>(result.frames_out_of_range), "frame").c_str());
 }
 
 int run_unwrap(const UnwrapArguments& arguments) {
@@ -139,24 +168,22 @@ int run_unwrap(const UnwrapArguments& arguments) {
   const bool interrupted = done < total;
   const Json report = {{"frames", result.frames},
                        {"summary", unwrapping_summary(result.frames, result.damaged, interrupted)}};
-  out.write_text("report.json", report.dump(1) + "\n");
+  out.write_text("report.json", json_text(report));
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit();
-  if (result.is_empty()) {
-    std::fprintf(stderr, "tofmap: no pixel has a range; 'tofmap info' tells what is wrong\n");
-  }
+  say_what_is_missing(result);
   if (!arguments.common.quiet) {
     std::printf("%d of %d frames unwrapped, %d damaged: %s\n", done, total, result.damaged,
                 out.final_path().c_str());
   }
   if (interrupted) return exit_status::interrupted;
-  return add_to_result(out.final_path(), exit_status::done, [&] {
-    if (options.pictures.frames == 0) return;
-    add_pictures(out.final_path(), [&](const std::filesystem::path& folder) {
-      write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures,
-                           arguments.common.quiet);
-    });
-  });
+  if (options.pictures.frames == 0) return exit_status::done;
+  const auto draw = [&](const std::filesystem::path& folder) {
+    write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures,
+                         arguments.common.quiet);
+  };
+  return add_to_result(out.final_path(), exit_status::done,
+                       {{"pictures", [&] { add_pictures(out.final_path(), draw); }}});
 }
 
 }  // namespace

@@ -3,11 +3,8 @@
 
 #include "console/interruption.hpp"
 
-#include "command.hpp"
-
 #include <atomic>
 #include <csignal>
-#include <cstdio>
 
 namespace tofmap::app {
 namespace {
@@ -33,21 +30,9 @@ void stop_if_interrupted() {
   if (interrupted) throw Interrupted();
 }
 
-int add_to_result(const std::filesystem::path& result, int status,
-                  const std::function<void()>& add) {
-  if (status == exit_status::interrupted) {
-    interrupted = false;
-    watch_for_interruption();
-  }
-  try {
-    add();
-  } catch (const Interrupted&) {
-    std::fprintf(stderr,
-                 "tofmap: interrupted; %s is whole, but pictures or report.html are left out\n",
-                 result.c_str());
-    return exit_status::interrupted;
-  }
-  return status;
+void count_interruptions_anew() {
+  interrupted = false;
+  watch_for_interruption();
 }
 
 }  // namespace tofmap::app

@@ -4,6 +4,7 @@
 #include "input/recording.hpp"
 
 #include <cstdio>
+#include <set>
 
 #include <CLI/CLI.hpp>
 
@@ -21,6 +22,20 @@ void RecordingArguments::apply(OptionTable& table) const {
 CameraCalibration calibration_of(const CameraOptions& options) {
   if (options.calibration_file.empty()) return {};
   return read_calibration(options.calibration_file);
+}
+
+std::vector<std::filesystem::path> image_names(const SequenceReader& recording) {
+  std::vector<std::filesystem::path> names;
+  std::set<std::filesystem::path> taken;
+  for (const SequenceFrameFiles& files : recording.files()) {
+    std::filesystem::path name = files.phase_a.filename();
+    const std::string number = "_frame_" + std::to_string(names.size());
+    while (!name.empty() && !taken.insert(name).second) {
+      name = name.stem().string() + number + name.extension().string();
+    }
+    names.push_back(std::move(name));
+  }
+  return names;
 }
 
 void print_doubts(const std::vector<std::string>& doubts) {

@@ -32,6 +32,10 @@ struct RecordingArguments {
 /// What the options say of a camera; nothing if they name no file.
 CameraCalibration calibration_of(const CameraOptions& options);
 
+/// What a frame's images in a result are called, by frame: as its phase_a image; if an earlier
+/// frame has an image of that name in another folder, with the frame's number.
+std::vector<std::filesystem::path> image_names(const SequenceReader& recording);
+
 /// On stdout, a line each.
 void print_doubts(const std::vector<std::string>& doubts);
 

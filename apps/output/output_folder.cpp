@@ -3,12 +3,13 @@
 
 #include "output/output_folder.hpp"
 
-#include <algorithm>
-#include <array>
+#include "output/file_list.hpp"
+
 #include <cstdio>
 #include <fstream>
-#include <vector>
+#include <optional>
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -18,16 +19,34 @@ namespace tofmap::app {
 namespace fs = std::filesystem;
 namespace {
 
-/// "results/" and "results" are one folder, "." is where we stand.
-fs::path normalised(const fs::path& folder) {
+/// Where a result goes: links are followed, "results/" and "results" are one folder, "." is where
+/// we stand.
+fs::path resolved(const fs::path& folder) {
   if (folder.empty()) throw UsageError("the output folder has no name");
-  fs::path path = fs::absolute(folder).lexically_normal();
-  if (!path.has_filename()) path = path.parent_path();
+  std::error_code error;
+  fs::path path = fs::weakly_canonical(fs::absolute(folder), error);
+  if (error) path = fs::absolute(folder).lexically_normal();
+  if (!path.has_filename() && path.has_relative_path()) path = path.parent_path();
+  if (fs::is_symlink(path, error)) {
+    throw InputError(path.string() + ": is a link to " + fs::read_symlink(path, error).string() +
+                     ", which is not there; make that folder, or choose another output folder");
+  }
   return path;
 }
 
 fs::path sibling(const fs::path& folder, const std::string& suffix) {
   return folder.parent_path() / (folder.filename().string() + suffix + std::to_string(getpid()));
+}
+
+/// The same, of a name that is not taken yet.
+fs::path free_sibling(const fs::path& folder, const std::string& suffix) {
+  const fs::path first = sibling(folder, suffix);
+  fs::path path = first;
+  std::error_code error;
+  for (int i = 2; fs::exists(fs::symlink_status(path, error)); ++i) {
+    path = first.string() + "-" + std::to_string(i);
+  }
+  return path;
 }
 
 /// Tells what is at a path from what was there before or comes later; empty if there is nothing.
@@ -45,48 +64,83 @@ bool holds_recording(const fs::path& folder) {
   return false;
 }
 
-/// Everything that a command puts into a result folder, or a simulated recording.
-constexpr std::array result_names{
-    "amplitude_a",     "amplitude_b",   "confidence",    "frames.txt",  "groundtruth.txt",
-    "joint",           "jump",          "keyframes.txt", "label_truth", "map.pcd",
-    "map.ply",         "merged.ply",    "mesh.ply",      "none",        "options.yaml",
-    "paper",           "phase_a",       "phase_b",       "pictures",    "pixel",
-    "range",           "range_truth",   "reason",        "report.html", "report.json",
-    "scene.ply",       "sequence.yaml", "single",        "state.bin",   "trajectory.txt",
-    "transforms.json", "wraps"};
-
-/// The first thing in a folder that no command puts there; empty if there is none.
-std::string foreign_name(const fs::path& folder) {
-  std::vector<std::string> foreign;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("pictures.partial-")) continue;  // of a run that was killed
-    if (std::ranges::find(result_names, name) == result_names.end()) foreign.push_back(name);
+/// Whether another file system begins at a folder, which cannot be moved away then.
+bool is_mount_point(const fs::path& folder) {
+  struct statx status {};
+  if (statx(AT_FDCWD, folder.c_str(), 0, STATX_BASIC_STATS, &status) != 0) return false;
+  if ((status.stx_attributes_mask & STATX_ATTR_MOUNT_ROOT) != 0) {
+    return (status.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0;
   }
-  return foreign.empty() ? "" : *std::ranges::min_element(foreign);
+  struct statx parent {};
+  if (statx(AT_FDCWD, folder.parent_path().c_str(), 0, STATX_BASIC_STATS, &parent) != 0) {
+    return false;
+  }
+  return status.stx_dev_major != parent.stx_dev_major ||
+         status.stx_dev_minor != parent.stx_dev_minor;
 }
 
-void refuse_foreign(const fs::path& folder, Replaces replaces) {
-  if (!fs::exists(folder)) return;
+/// Throws InputError if the owner of a folder made it, or one in it, read-only.
+void refuse_read_only(const fs::path& folder) {
+  const auto check = [](const fs::path& path) {
+    if ((fs::status(path).permissions() & fs::perms::owner_write) != fs::perms::none) return;
+    throw InputError(path.string() +
+                     ": is read-only; make it writable, or choose another output folder");
+  };
+  check(folder);
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_directory() && !entry.is_symlink()) check(entry.path());
+  }
+}
+
+/// Throws InputError if a folder with something in it is no result, or holds more than that.
+void refuse_foreign_files(const fs::path& folder) {
+  const std::optional<FileList> list = FileList::read(folder);
+  if (!list) {
+    throw InputError(folder.string() +
+                     ": holds files that are no result of tofmap, or a result without its list of "
+                     "files (" +
+                     FileList::file_name + "); choose another output folder, or empty it");
+  }
+  const std::optional<ForeignFile> foreign = list->first_foreign(folder);
+  if (!foreign) return;
+  throw InputError(folder.string() + ": holds " + foreign->path.string() +
+                   (foreign->is_changed ? ", which was changed since tofmap wrote it"
+                                        : ", which tofmap did not write") +
+                   " and which would be lost; move it away, or choose another output folder");
+}
+
+void refuse_what_cannot_be_replaced(const fs::path& folder, Replaces replaces) {
   if (!fs::is_directory(folder)) {
     throw InputError(folder.string() + ": is a file; choose another output folder");
   }
-  if (!fs::is_empty(folder) && !fs::exists(folder / "options.yaml")) {
+  if (is_mount_point(folder)) {
     throw InputError(folder.string() +
-                     ": holds files that are no result of tofmap; choose another output folder, "
-                     "or empty it");
+                     ": is a mount point, which no result can take the place of; choose another "
+                     "output folder, for example " +
+                     (folder / "result").string());
   }
-  // A simulated recording has an options.yaml as well, and may be what the result is made from.
-  if (replaces == Replaces::results && holds_recording(folder)) {
+  if (fs::is_empty(folder)) {
+    refuse_read_only(folder);
+    return;
+  }
+  // A simulated recording lists its files as well, and may be what the result is made from.
+  const bool may_be_result =
+      fs::exists(folder / FileList::file_name) || fs::exists(folder / "options.yaml");
+  if (may_be_result && replaces == Replaces::results && holds_recording(folder)) {
     throw InputError(folder.string() +
                      ": is or holds a recording, which the result would replace; choose another "
                      "output folder");
   }
-  const std::string foreign = foreign_name(folder);
-  if (!foreign.empty()) {
-    throw InputError(folder.string() + ": holds " + foreign +
-                     ", which no result of tofmap has and which would be lost; move it away, or "
-                     "choose another output folder");
+  refuse_foreign_files(folder);
+  refuse_read_only(folder);
+}
+
+void refuse_foreign(const fs::path& folder, Replaces replaces) {
+  try {
+    if (fs::exists(folder)) refuse_what_cannot_be_replaced(folder, replaces);
+  } catch (const fs::filesystem_error& error) {
+    throw InputError(folder.string() + ": cannot be read (" + error.code().message() +
+                     "); choose another output folder");
   }
 }
 
@@ -102,15 +156,12 @@ bool may_be_replaced(const fs::path& folder, Replaces replaces) {
 }  // namespace
 
 OutputFolder::OutputFolder(const fs::path& folder, Replaces replaces)
-    : folder_(normalised(folder)), partial_(sibling(folder_, ".partial-")), replaces_(replaces) {
-  std::error_code error;
-  if (fs::exists(folder_, error)) refuse_foreign(folder_, replaces_);
+    : folder_(resolved(folder)), partial_(free_sibling(folder_, ".partial-")), replaces_(replaces) {
+  refuse_foreign(folder_, replaces_);
   earlier_ = identity(folder_);
+  std::error_code error;
   fs::create_directories(folder_.parent_path(), error);
-  if (!error) {
-    fs::remove_all(partial_, error);
-    fs::create_directory(partial_, error);
-  }
+  if (!error) fs::create_directory(partial_, error);
   if (error) {
     throw InputError(folder_.string() + ": cannot be made (" + error.message() +
                      "); choose an output folder that can be written");
@@ -150,22 +201,30 @@ void OutputFolder::make_way() {
 void OutputFolder::commit() {
   const fs::path wanted = folder_;
   make_way();
-  const fs::path replaced = sibling(folder_, ".replaced-");
+  is_committed_ = true;  // from here on what was made is kept at any rate
+  const fs::path replaced = free_sibling(folder_, ".replaced-");
   std::error_code error;
   const bool replaces = fs::exists(folder_, error);
+  const std::optional<FileList> earlier = replaces ? FileList::read(folder_) : std::nullopt;
+  naming("the result is whole, and in " + partial_.string(),
+         [&] { FileList::of(partial_).write(partial_ / FileList::file_name); });
   if (replaces) fs::rename(folder_, replaced, error);
   if (!error) fs::rename(partial_, folder_, error);
-  is_committed_ = true;  // what was made is kept at any rate
   if (error) {
     std::error_code ignored;
     if (replaces && !fs::exists(folder_, ignored)) fs::rename(replaced, folder_, ignored);
     throw InputError(folder_.string() + ": the result cannot be moved there (" + error.message() +
                      "); it is in " + partial_.string());
   }
-  if (replaces) fs::remove_all(replaced, error);
+  if (replaces && !earlier.value_or(FileList()).remove_from(replaced)) {
+    std::fprintf(stderr, "tofmap: %s held files that tofmap did not write; they are in %s\n",
+                 folder_.c_str(), replaced.c_str());
+  }
   if (folder_ == wanted) return;
   std::fprintf(stderr, "tofmap: something else came to %s meanwhile; the result is in %s\n",
                wanted.c_str(), folder_.c_str());
 }
+
+void OutputFolder::keep() { is_committed_ = true; }
 
 }  // namespace tofmap::app

@@ -16,10 +16,11 @@ enum class Replaces {
 /// A result folder that appears only when it is whole: files are written into a folder beside
 /// it, which `commit` moves into place. Without commit nothing is left.
 ///
-/// An existing folder is replaced if it is empty or holds an earlier result of this program
-/// (it has an options.yaml, and nothing that no result has); anything else is refused, so that no
-/// data of others is lost. So is a
-/// folder that is or holds a recording, unless the command makes recordings.
+/// An existing folder is replaced if it is empty or holds an earlier result of this program, and
+/// nothing that the program did not write (file_list.hpp). Anything else is refused, so that no
+/// data of others is lost. So is a folder that is or holds a recording, unless the command makes
+/// recordings, a mount point, and a read-only folder. A link to a folder stays, and the folder is
+/// replaced.
 class OutputFolder {
  public:
   /// Throws InputError that names the folder and the remedy if it cannot be made, or is in use.
@@ -42,7 +43,11 @@ class OutputFolder {
   /// Moves everything into place. If something has come there meanwhile, the result goes beside it
   /// instead, and a message says so: nothing of either is lost. If it cannot be moved it stays
   /// where it was written, and the InputError names that.
+  /// Files that came into the earlier result at the last moment are kept beside it, and named.
   void commit();
+
+  /// Leaves what was written so far where it is if there is no commit.
+  void keep();
 
  private:
   void make_way();

@@ -5,12 +5,14 @@
 
 #include "console/interruption.hpp"
 #include "console/progress.hpp"
+#include "input/recording.hpp"
 #include "input/sampled_frames.hpp"
-#include "output/output_folder.hpp"
+#include "output/result_addition.hpp"
 
 #include <algorithm>
 #include <cstdio>
 
+#include <tofmap/core/error.hpp>
 #include <tofmap/evaluation/range_score.hpp>
 #include <tofmap/unwrap/jump_estimate.hpp>
 #include <tofmap/visualization/cloud_pictures.hpp>
@@ -96,6 +98,7 @@ void write_frame_pictures(const std::filesystem::path& folder, const SequenceRea
                           const UnwrapOptions& unwrap, const PictureOptions& options, bool quiet) {
   const PixelRays rays = pixel_rays(source.sensor().camera);
   const std::vector<int> indices = spread_indices(*source.frame_count(), options.frames);
+  const std::vector<std::filesystem::path> names = image_names(source);
   Progress progress("drawing frame", static_cast<int>(indices.size()), quiet);
   int done = 0;
   for (const int index : indices) {
@@ -103,18 +106,19 @@ void write_frame_pictures(const std::filesystem::path& folder, const SequenceRea
     progress.show(done++);
     const SourcedFrame frame = source.read(index);
     if (!frame.frame) continue;
-    const auto& file = source.files()[static_cast<std::size_t>(index)];
-    write_pictures_of(*frame.frame, source.sensor(), rays, unwrap, folder / file.phase_a.stem());
+    const std::filesystem::path& name = names[static_cast<std::size_t>(index)];
+    write_pictures_of(*frame.frame, source.sensor(), rays, unwrap, folder / name.stem());
   }
 }
 
 void write_method_pictures(const std::filesystem::path& folder, const SequenceReader& source,
-                           const std::vector<std::string>& methods, UnwrapOptions unwrap,
-                           const FilterOptions& filters, const PictureOptions& options,
-                           bool quiet) {
+                           const RecordedTruth& recorded, const std::vector<std::string>& methods,
+                           UnwrapOptions unwrap, const FilterOptions& filters,
+                           const PictureOptions& options, bool quiet) {
   const PixelRays rays = pixel_rays(source.sensor().camera);
   const double wavelength_m = source.sensor().modulation.wavelength_a_m();
   const std::vector<int> indices = spread_indices(*source.frame_count(), options.frames);
+  const std::vector<std::filesystem::path> names = image_names(source);
   Progress progress("drawing methods, frame", static_cast<int>(indices.size()), quiet);
   int done = 0;
   for (const int index : indices) {
@@ -122,7 +126,7 @@ void write_method_pictures(const std::filesystem::path& folder, const SequenceRe
     progress.show(done++);
     const SourcedFrame frame = source.read(index);
     if (!frame.frame) continue;
-    const std::optional<ImageF> truth_m = source.range_truth(index);
+    const std::optional<ImageF> truth_m = recorded.range_m(index);
     const auto unwrapped_by = [&](const std::string& method) {
       unwrap.method = method;
       return tofmap::unwrap(*frame.frame, source.sensor(), unwrap).image;
@@ -138,13 +142,12 @@ void write_method_pictures(const std::filesystem::path& folder, const SequenceRe
       last = unwrapped_by(method);
       ranges.push_back({method_title(method, last, truth_m, wavelength_m), last.range_m});
     }
-    const auto& file = source.files()[static_cast<std::size_t>(index)];
-    write_picture(folder / (file.phase_a.stem().string() + "_methods.png"),
+    const std::string stem = names[static_cast<std::size_t>(index)].stem().string();
+    write_picture(folder / (stem + "_methods.png"),
                   method_picture(ranges, truth_m.value_or(ImageF()), wavelength_m));
     const std::vector<FilteredRanges> filtered{filtered_by("none", unwrapped_by("none")),
                                                filtered_by(methods.back(), last)};
-    write_picture(folder / (file.phase_a.stem().string() + "_filters.png"),
-                  filter_picture(filtered));
+    write_picture(folder / (stem + "_filters.png"), filter_picture(filtered));
   }
 }
 
@@ -160,7 +163,10 @@ void write_map_pictures(const std::filesystem::path& folder, const MapCloud& map
 void add_pictures(const std::filesystem::path& result,
                   const std::function<void(const std::filesystem::path& folder)>& draw) {
   try {
-    OutputFolder pictures(result / "pictures");
+    ResultAddition pictures(result, "pictures");
+    std::error_code error;
+    std::filesystem::create_directory(pictures.path(), error);
+    if (error) throw InputError(pictures.path().string() + ": cannot be made");
     draw(pictures.path());
     pictures.commit();
   } catch (const DrawingError& error) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "input/recorded_truth.hpp"
 #include "options/report_options.hpp"
 
 #include <filesystem>
@@ -26,8 +27,9 @@ void write_frame_pictures(const std::filesystem::path& folder, const SequenceRea
 /// remove of it without unwrapping and after it, by the last method, as `<frame>_filters.png`.
 /// Throws Interrupted.
 void write_method_pictures(const std::filesystem::path& folder, const SequenceReader& source,
-                           const std::vector<std::string>& methods, UnwrapOptions unwrap,
-                           const FilterOptions& filters, const PictureOptions& options, bool quiet);
+                           const RecordedTruth& recorded, const std::vector<std::string>& methods,
+                           UnwrapOptions unwrap, const FilterOptions& filters,
+                           const PictureOptions& options, bool quiet);
 
 /// Writes the map from above and from inside, as map_above.png and map_inside.png.
 void write_map_pictures(const std::filesystem::path& folder, const MapCloud& map,

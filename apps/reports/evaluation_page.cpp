@@ -166,7 +166,9 @@ void write_evaluation_page(const std::filesystem::path& result,
                   "tofmap " TOFMAP_VERSION);
   const Judgement judgement = judgement_of(subject);
   page.add_verdict(judgement.verdict, sentence_of(subject) + told_reasons(judgement));
-  page.add_warnings(warnings_of(subject));
+  std::vector<std::string> warnings = warnings_of(subject);
+  std::ranges::move(subject.recorded_truth.remarks(), std::back_inserter(warnings));
+  page.add_warnings(warnings);
   page.add_heading("Methods");
   page.add_table(methods_table(subject.report));
   if (with.map) add_maps(page, shown_maps(subject), subject.truth.poses, subject.options.report);
@@ -179,7 +181,7 @@ void write_evaluation_page(const std::filesystem::path& result,
       sampled_frames(subject.recording, *subject.recording.frame_count(),
                      subject.options.report.frames),
       subject.recording.sensor(), pipeline,
-      [&](int index) { return subject.recording.range_truth(index); }, subject.options.report,
+      [&](int index) { return subject.recorded_truth.range_m(index); }, subject.options.report,
       progress);
   add_runs(page, subject);
   add_options(page, subject.options_yaml);

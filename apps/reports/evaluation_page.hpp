@@ -16,6 +16,7 @@ namespace tofmap::app {
 /// What the page of an evaluation tells of.
 struct EvaluationPageSubject {
   const SequenceReader& recording;
+  const RecordedTruth& recorded_truth;
   const Truth& truth;
   const std::vector<MethodResult>& results;  ///< not empty
   const nlohmann::ordered_json& report;      ///< of them (evaluation_report.hpp)

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <tofmap/core/text.hpp>
 #include <tofmap/visualization/plot.hpp>
@@ -20,7 +21,7 @@ namespace tofmap::app {
 namespace {
 
 std::optional<ImageF> range_truth(const MapPageSubject& subject, int frame) {
-  return subject.recording ? subject.recording->range_truth(frame) : std::nullopt;
+  return subject.truth ? subject.truth->range_m(frame) : std::nullopt;
 }
 
 double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
@@ -99,6 +100,13 @@ std::string sentence_of(const MapPageSubject& subject, const MapScores& scores,
     text += "The truth is not known.";
   }
   return text;
+}
+
+/// What the recording and the map are doubted for, and what of the truth could not be read.
+std::vector<std::string> warnings_of(const MapPageSubject& subject) {
+  std::vector<std::string> warnings = subject.warnings;
+  if (subject.truth) std::ranges::move(subject.truth->remarks(), std::back_inserter(warnings));
+  return warnings;
 }
 
 PageTable summary_table(const RoomMap& map, const MapScores& scores) {
@@ -190,7 +198,8 @@ int frames_for_page(const CameraModel& camera, const ReportOptions& options) {
 void write_map_page(const std::filesystem::path& result, const MapPageSubject& subject,
                     bool quiet) {
   const RoomMap& map = subject.map;
-  const Truth truth = subject.recording ? read_truth(*subject.recording, quiet) : Truth{};
+  const Truth truth =
+      subject.truth ? read_truth(*subject.recording, *subject.truth, quiet) : Truth{};
   const MapScores scores = score_of(map, truth);
   const bool is_unwrapped = subject.options.pipeline.unwrap.method != "none";
   // Unwrapped; if that is not all that was done, as measured, and for the map of these; shown.
@@ -211,7 +220,7 @@ void write_map_page(const std::filesystem::path& result, const MapPageSubject& s
              .is_warned = !subject.warnings.empty()});
   page.add_verdict(judgement.verdict,
                    sentence_of(subject, scores, sample.moved_percent) + told_reasons(judgement));
-  page.add_warnings(subject.warnings);
+  page.add_warnings(warnings_of(subject));
   add_maps(page, shown_maps(subject, truth, scores, wrapped), truth.poses, subject.options.report);
   add_errors(page, subject, truth, scores, sample, progress);
   add_frames(

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "input/recorded_truth.hpp"
 #include "options/options.hpp"
 #include "runs/consistency.hpp"
 
@@ -20,6 +21,7 @@ struct MapPageSubject {
   const SensorModel& sensor;
   const std::vector<DualFrequencyFrame>& frames;  ///< some, spread over all
   const SequenceReader* recording;                ///< for its truth; none of a device
+  const RecordedTruth* truth;                     ///< of the recording, if there is one
   std::vector<std::string> warnings;
   Consistency consistency;
   const ProgramOptions& options;

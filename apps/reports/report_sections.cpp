@@ -5,7 +5,7 @@
 
 #include "input/sampled_frames.hpp"
 #include "output/frame_report.hpp"
-#include "output/output_file.hpp"
+#include "output/result_addition.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -117,7 +117,7 @@ void add_options(ReportPage& page, const std::string& options_yaml) {
 }
 
 void write_page(const std::filesystem::path& result, const ReportPage& page) {
-  OutputFile file(result / "report.html", [](const auto&) { return true; });
+  ResultAddition file(result, "report.html");
   std::ofstream out(file.path(), std::ios::binary);
   out << page.html();
   out.close();

@@ -32,6 +32,11 @@ double curl_violations_per_frame(const RoomMap& map, const std::string& method) 
 
 }  // namespace
 
+Consistency unknown_consistency() {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  return {nan, nan, nan, nan, nan, nan};
+}
+
 int consistency_frames(const CameraModel& camera) {
   constexpr double most_pixels = 6e6;
   return static_cast<int>(std::clamp(most_pixels / (camera.width_px * camera.height_px), 20., 60.));

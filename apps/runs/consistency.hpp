@@ -19,6 +19,9 @@ struct Consistency {
   double curl_violations_per_frame = 0;
 };
 
+/// Of which nothing is known.
+Consistency unknown_consistency();
+
 /// How many frames tell enough: 60; where images are large, since they are kept, fewer, but at
 /// least 20.
 int consistency_frames(const CameraModel& camera);

@@ -20,9 +20,10 @@ namespace tofmap::app {
 namespace {
 
 UnwrappingRecord record_of_index(const UnwrapResult& unwrapped, double milliseconds,
-                                 const SequenceReader& recording, int index) {
+                                 const SequenceReader& recording, const RecordedTruth& recorded,
+                                 int index) {
   return record_of(unwrapped, recording.files()[static_cast<std::size_t>(index)].timestamp_s,
-                   milliseconds, recording.range_truth(index),
+                   milliseconds, recorded.range_m(index),
                    recording.sensor().modulation.wavelength_a_m());
 }
 
@@ -32,28 +33,32 @@ struct UnwrappedFrame {
   std::string damage;
 };
 
-UnwrappedFrame unwrap_frame(const SequenceReader& recording, int index, Unwrapper& unwrapper) {
+UnwrappedFrame unwrap_frame(const SequenceReader& recording, const RecordedTruth& recorded,
+                            int index, Unwrapper& unwrapper) {
   const SourcedFrame sourced = recording.read(index);
   if (!sourced.frame) return {std::nullopt, sourced.damage};
   const auto start = std::chrono::steady_clock::now();
   const UnwrapResult unwrapped = unwrapper.unwrap(*sourced.frame);
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
-  return {record_of_index(unwrapped, spent.count(), recording, index), ""};
+  return {record_of_index(unwrapped, spent.count(), recording, recorded, index), ""};
 }
 
 }  // namespace
 
-Truth read_truth(const SequenceReader& source, bool quiet) {
+Truth read_truth(const SequenceReader& source, const RecordedTruth& recorded, bool quiet) {
   Truth truth;
-  truth.poses = source.ground_truth();
+  truth.poses = recorded.poses();
+  truth.surface = ReferenceSurface(origin_near(truth.poses));
   const PixelRays rays = pixel_rays(source.sensor().camera);
   constexpr int every = 3;  // neighbouring frames see the same surface
   Progress progress("reading truth, frame", source.frame_count(), quiet);
   for (int i = 0; i < *source.frame_count(); i += every) {
     stop_if_interrupted();
     progress.show(i);
-    const auto pose = pose_at(truth.poses, source.files()[static_cast<std::size_t>(i)].timestamp_s);
-    const auto ranges = source.range_truth(i);
+    const SequenceFrameFiles& files = source.files()[static_cast<std::size_t>(i)];
+    if (!files.damage.empty()) continue;
+    const auto pose = pose_at(truth.poses, files.timestamp_s);
+    const auto ranges = recorded.range_m(i);
     if (pose && ranges) truth.surface.add(*ranges, rays, *pose);
   }
   return truth;
@@ -89,7 +94,8 @@ ErrorsOverRange over_range(std::span<const UnwrappingRecord> frames) {
 }
 
 MethodResult run_down_to_map(const std::string& method, const SequenceReader& recording,
-                             PipelineOptions options, const Truth& truth, bool quiet) {
+                             PipelineOptions options, const RecordedTruth& recorded,
+                             const Truth& truth, bool quiet) {
   MethodResult result;
   result.name = method;
   options.unwrap.method = method;
@@ -102,7 +108,7 @@ MethodResult run_down_to_map(const std::string& method, const SequenceReader& re
   };
   hooks.on_frame = [&](const PreparedFrame& frame) {
     result.frames.push_back(
-        record_of_index(frame.unwrapped, frame.times.unwrap_ms, recording, frame.index));
+        record_of_index(frame.unwrapped, frame.times.unwrap_ms, recording, recorded, frame.index));
   };
   result.map = map_room(source, options, hooks);
   refuse_mostly_damaged(*result.map);
@@ -117,7 +123,7 @@ MethodResult run_down_to_map(const std::string& method, const SequenceReader& re
 }
 
 MethodResult run_unwrapping(const std::string& method, const SequenceReader& recording,
-                            UnwrapOptions options, bool quiet) {
+                            UnwrapOptions options, const RecordedTruth& recorded, bool quiet) {
   MethodResult result;
   result.name = method;
   options.method = method;
@@ -129,7 +135,7 @@ MethodResult run_unwrapping(const std::string& method, const SequenceReader& rec
   while (done < total && !is_interrupted()) {
     const int end = std::min(total, done + omp_get_max_threads());
     const auto unwrap_one = [&](Unwrapper& unwrapper, int i) {
-      return unwrap_frame(recording, done + i, unwrapper);
+      return unwrap_frame(recording, recorded, done + i, unwrapper);
     };
     for (const UnwrappedFrame& frame : side_by_side(end - done, unwrappers, unwrap_one)) {
       if (frame.record) result.frames.push_back(*frame.record);

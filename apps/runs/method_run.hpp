@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "input/recorded_truth.hpp"
 #include "runs/consistency.hpp"
 
 #include <optional>
@@ -23,8 +24,8 @@ struct Truth {
   ReferenceSurface surface;
 };
 
-/// Of a recording; tells its progress unless quiet. Throws Interrupted.
-Truth read_truth(const SequenceReader& source, bool quiet);
+/// Of a recording, as far as it can be read; tells its progress unless quiet. Throws Interrupted.
+Truth read_truth(const SequenceReader& source, const RecordedTruth& recorded, bool quiet);
 
 /// How right a map is, as far as the truth is known.
 struct MapScores {
@@ -62,10 +63,11 @@ ErrorsOverRange over_range(std::span<const UnwrappingRecord> frames);
 
 /// From phases to the map. Throws InputError if more than half of the frames are damaged.
 MethodResult run_down_to_map(const std::string& method, const SequenceReader& recording,
-                             PipelineOptions options, const Truth& truth, bool quiet);
+                             PipelineOptions options, const RecordedTruth& recorded,
+                             const Truth& truth, bool quiet);
 
 /// Unwrapping alone, frames side by side. Throws InputError as above.
 MethodResult run_unwrapping(const std::string& method, const SequenceReader& recording,
-                            UnwrapOptions options, bool quiet);
+                            UnwrapOptions options, const RecordedTruth& recorded, bool quiet);
 
 }  // namespace tofmap::app

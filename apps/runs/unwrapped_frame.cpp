@@ -10,7 +10,6 @@
 #include <cmath>
 
 #include <tofmap/acquisition/png_image.hpp>
-#include <tofmap/core/error.hpp>
 #include <tofmap/filters/gates.hpp>
 
 namespace tofmap::app {
@@ -18,18 +17,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// 16-bit millimetres, 0 = invalid.
-ImageU16 range_mm(const RangeImage& image, const std::string& name) {
+/// As images hold them: 16-bit millimetres.
+double millimetres(float range_m) { return std::round(1000.0 * range_m); }
+
+/// 0 = invalid; valid ranges must fit.
+ImageU16 range_mm(const RangeImage& image) {
   ImageU16 out = ImageU16::Zero(image.rows(), image.cols());
   for (Eigen::Index i = 0; i < out.size(); ++i) {
     if (image.reason.data()[i] != 0) continue;
-    const double mm = std::round(1000.0 * image.range_m.data()[i]);
-    if (mm > 65535) {
-      throw InputError(name + ": a range of " + std::to_string(mm / 1000) +
-                       " m does not fit the 65.535 m of a range image; set unwrap.max_range_m");
-    }
-    // A valid range is never written as 0, which would mean invalid.
-    out.data()[i] = static_cast<std::uint16_t>(std::max(1.0, mm));
+    out.data()[i] = static_cast<std::uint16_t>(millimetres(image.range_m.data()[i]));
   }
   return out;
 }
@@ -45,7 +41,6 @@ UnwrappedFrame unwrap_frame(const SequenceReader& source, int index, Unwrapper& 
   const SourcedFrame sourced = source.read(index);
   UnwrappedFrame out;
   out.timestamp_s = sourced.timestamp_s;
-  out.name = source.files()[static_cast<std::size_t>(index)].phase_a.filename();
   if (!sourced.frame) {
     out.damage = sourced.damage;
     out.report = damaged_json(sourced);
@@ -55,6 +50,7 @@ UnwrappedFrame unwrap_frame(const SequenceReader& source, int index, Unwrapper& 
   const UnwrapResult result = unwrapper.unwrap(*sourced.frame);
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
   out.image = drop_low_confidence(result.image, options.min_confidence);
+  out.out_of_range = drop_out_of_range(out.image);
   out.report = {{"index", index},
                 {"timestamp", sourced.timestamp_s},
                 {"milliseconds", spent.count()},
@@ -76,8 +72,30 @@ UnwrappedFrame unwrap_frame(const SequenceReader& source, int index, Unwrapper& 
   return out;
 }
 
+int drop_out_of_range(RangeImage& image) {
+  constexpr double least_mm = 1;
+  constexpr double most_mm = 65535;
+  int dropped = 0;
+  for (Eigen::Index v = 0; v < image.rows(); ++v) {
+    for (Eigen::Index u = 0; u < image.cols(); ++u) {
+      if (!image.valid(v, u)) continue;
+      const double mm = millimetres(image.range_m(v, u));
+      if (mm >= least_mm && mm <= most_mm) continue;  // NaN does not fit, either
+      image.invalidate(v, u, InvalidReason::out_of_range);
+      ++dropped;
+    }
+  }
+  return dropped;
+}
+
+void finish_frame(UnwrappedFrame& frame) {
+  if (!frame.damage.empty()) return;
+  frame.out_of_range += drop_out_of_range(frame.image);
+  frame.report["out_of_range_pixels"] = frame.out_of_range;
+}
+
 void write_images(const std::filesystem::path& out, const UnwrappedFrame& frame) {
-  write_png(out / "range" / frame.name, range_mm(frame.image, frame.name.string()));
+  write_png(out / "range" / frame.name, range_mm(frame.image));
   write_png(out / "wraps" / frame.name, frame.image.wrap_count);
   write_png(out / "confidence" / frame.name, confidence_u16(frame.image.confidence));
   write_png(out / "reason" / frame.name, frame.image.reason);
@@ -88,18 +106,21 @@ Json unwrapping_summary(const Json& frames, int damaged, bool interrupted) {
   double iterations = 0;
   int converged = 0;
   int read = 0;
+  int out_of_range = 0;
   for (const Json& frame : frames) {
     if (frame.contains("damage")) continue;
     ++read;
     milliseconds += frame["milliseconds"].get<double>();
     iterations += frame["iterations"].get<double>();
     converged += frame["converged"].get<bool>() ? 1 : 0;
+    out_of_range += frame.value("out_of_range_pixels", 0);
   }
   const double count = std::max(1, read);
   return {{"frames", frames.size()},
           {"damaged", damaged},
           {"interrupted", interrupted},
           {"converged", converged},
+          {"out_of_range_pixels", out_of_range},
           {"milliseconds_per_frame", milliseconds / count},
           {"iterations_per_frame", iterations / count}};
 }

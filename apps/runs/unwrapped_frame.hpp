@@ -26,15 +26,23 @@ struct UnwrappedFrame {
   std::filesystem::path name;     ///< of its images
   std::string damage;             ///< not empty: it could not be read, and there is no image
   RangeImage image;               ///< unwrapped, and filtered if asked for
+  int out_of_range = 0;           ///< pixels whose range does not fit the image format
   nlohmann::ordered_json report;  ///< what became of it
 };
 
-/// Reads and unwraps one frame of a recording.
+/// Reads and unwraps one frame of a recording; the name of its images is still to be given.
 UnwrappedFrame unwrap_frame(const SequenceReader& source, int index, Unwrapper& unwrapper,
                             const PixelRays& rays, const UnwrappedFrameOptions& options);
 
-/// Writes its images into the folders range, wraps, confidence and reason of `out`. Throws
-/// InputError if a range does not fit into them.
+/// Makes pixels invalid, with the reason out_of_range, whose range does not fit into 16 bits of
+/// millimetres: below 0.5 mm or beyond 65.535 m. Returns how many.
+int drop_out_of_range(RangeImage& image);
+
+/// Drops what does not fit of a frame that was fused since, and tells how much in its report.
+void finish_frame(UnwrappedFrame& frame);
+
+/// Writes the images of a finished frame into the folders range, wraps, confidence and reason of
+/// `out`. Throws InputError if they cannot be written.
 void write_images(const std::filesystem::path& out, const UnwrappedFrame& frame);
 
 /// Totals and means of the reports of frames.

@@ -4,6 +4,7 @@
 #include "views/viewed.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 #include <tofmap/cloud/cloud_file.hpp>
 #include <tofmap/core/error.hpp>
@@ -15,8 +16,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Of the path as much as can be read; lines that cannot are named on stderr.
 Trajectory read_if_there(const fs::path& file) {
-  return fs::exists(file) ? read_trajectory(file) : Trajectory{};
+  std::error_code unknown;
+  if (!fs::is_regular_file(file, unknown)) return {};
+  UsableTrajectory usable = read_usable_trajectory(file);
+  if (!usable.damages.empty()) {
+    std::fprintf(stderr, "tofmap: %s left out; the first: %s\n",
+                 counted(usable.damages.size(), "pose").c_str(), usable.damages.front().c_str());
+  }
+  return std::move(usable.poses);
 }
 
 /// The number of observations that all but a few points stay below.
@@ -46,17 +55,7 @@ class ViewedMaps final : public Viewed {
  public:
   ViewedMaps(const std::vector<MapFile>& files, bool with_cameras)
       : Viewed(color_names::map), with_cameras_(with_cameras) {
-    for (const MapFile& file : files) {
-      PathedMap read(file);
-      if (!read.map.empty()) {
-        most_observations_ = std::max(most_observations_, most_observations(read.map));
-        maps_.push_back(std::move(read));
-      } else if (maps_.empty()) {
-        throw InputError(file.file.string() + ": holds no point; nothing to view");
-      } else {
-        without_points_ += (without_points_.empty() ? "; without points: " : ", ") + file.method;
-      }
-    }
+    for (const MapFile& file : files) add(file);
     frame_ = level_frame(shown().map, shown().trajectory);
   }
 
@@ -114,6 +113,24 @@ class ViewedMaps final : public Viewed {
   static constexpr Rgb plain{190, 196, 204};
 
   const PathedMap& shown() const { return maps_[shown_]; }
+
+  /// The first map must be there; of the others one that cannot be read is named and left out.
+  void add(const MapFile& file) {
+    try {
+      PathedMap read(file);
+      if (!read.map.empty()) {
+        most_observations_ = std::max(most_observations_, most_observations(read.map));
+        maps_.push_back(std::move(read));
+      } else if (maps_.empty()) {
+        throw InputError(file.file.string() + ": holds no point; nothing to view");
+      } else {
+        without_points_ += (without_points_.empty() ? "; without points: " : ", ") + file.method;
+      }
+    } catch (const InputError& error) {
+      if (maps_.empty()) throw;
+      std::fprintf(stderr, "tofmap: left out: %s\n", error.what());
+    }
+  }
 
   MapColoring coloring() const {
     if (color() == "confidence") return colored_by(&MapPoint::confidence, {0, 1, "confidence"});

@@ -54,8 +54,8 @@ TEST_F(Commands, UnwrapWritesImagesOfTheFixedFormats) {
   const Finished finished = run("unwrap");
   ASSERT_EQ(finished.status, 0) << finished.err;
   EXPECT_EQ(finished.err, "") << "no progress bar where stderr is no terminal";
-  EXPECT_THAT(names_in(out_),
-              ElementsAre("confidence", "options.yaml", "range", "reason", "report.json", "wraps"));
+  EXPECT_THAT(names_in(out_), ElementsAre(".tofmap-files", "confidence", "options.yaml", "range",
+                                          "reason", "report.json", "wraps"));
   EXPECT_THAT(names_in(out_ / "range"),
               ElementsAre("000000.png", "000001.png", "000002.png", "000003.png"));
   const ImageU16 range_mm = read_png_16(out_ / "range" / "000002.png");
@@ -274,6 +274,11 @@ TEST_F(Commands, ViewShowsTheMapsOfAnEvaluation) {
   EXPECT_THAT(missing.err, HasSubstr("holds the maps of pixel, none"));
   EXPECT_EQ(view(out_, {"--frame", "1"}).status, 2);
 
+  fs::resize_file(out_ / "none" / "map.ply", 100);
+  const Finished damaged = view(out_, {});
+  EXPECT_EQ(damaged.status, 0) << "another can be read";
+  EXPECT_THAT(damaged.err, HasSubstr("left out"));
+
   write_map(out_ / "none" / "map.ply", MapCloud());
   EXPECT_EQ(view(out_, {}).status, 0) << "one of them has points";
   EXPECT_EQ(view(out_, {"--method", "none"}).status, 3) << "and no other in its place";
@@ -342,7 +347,8 @@ TEST_F(Commands, EvaluateComparesTheMethodsThatAreNamedAsFarAsAskedFor) {
   const auto& bins = report["over_range"]["none"];
   ASSERT_FALSE(bins.empty());
   EXPECT_EQ(bins.back()["wrong_wrap_percent"], 100) << "beyond one wavelength";
-  EXPECT_THAT(names_in(out_), ElementsAre("options.yaml", "report.html", "report.json"));
+  EXPECT_THAT(names_in(out_),
+              ElementsAre(".tofmap-files", "options.yaml", "report.html", "report.json"));
 }
 
 TEST_F(Commands, EvaluateDrawsFramesByEveryMethod) {

@@ -170,6 +170,7 @@ TEST_F(Interruption, OfDrawingLeavesUnwrappedRangesWhole) {
   EXPECT_EQ(finished.status, 130) << finished.err;
   EXPECT_EQ(names_in(out_ / "range").size(), few);
   EXPECT_THAT(names_in(out_), Not(Contains(HasSubstr("pictures"))));
+  EXPECT_EQ(names_in(folder_.path()), (std::vector<std::string>{"out", "seq"}));
 }
 
 TEST_F(Interruption, OfAnEvaluationsPicturesLeavesItsMapsWhole) {
@@ -196,11 +197,11 @@ TEST_F(Interruption, ByKillWhileDrawingHindersNoOtherRun) {
   RunningProgram program(drawing);
   ASSERT_TRUE(comes_true([&] {
     if (program.has_ended()) return true;
-    return fs::exists(out_) && testing::Matches(Contains(HasSubstr("partial")))(names_in(out_));
+    return testing::Matches(Contains(HasSubstr("pictures.partial-")))(names_in(folder_.path()));
   }));
   program.send(SIGKILL);
   program.wait();
-  ASSERT_THAT(names_in(out_), Contains(HasSubstr("pictures.partial-")));
+  ASSERT_THAT(names_in(folder_.path()), Contains(HasSubstr("pictures.partial-")));
   EXPECT_EQ(run("unwrap").status, 0);
   EXPECT_THAT(names_in(out_), Not(Contains(HasSubstr("partial"))));
 }

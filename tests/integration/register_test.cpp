@@ -54,8 +54,8 @@ TEST_F(Register, PlacesWhatBelongsTogetherAndNamesWhatDoesNot) {
   EXPECT_EQ(finished.status, 0) << finished.err;
   EXPECT_THAT(finished.out, HasSubstr("2 of 3 clouds placed"));
   EXPECT_THAT(finished.err, HasSubstr("elsewhere.ply: not placed: fits no other cloud"));
-  EXPECT_EQ(names_in(out_), (std::vector<std::string>{"merged.ply", "options.yaml", "report.json",
-                                                      "transforms.json"}));
+  EXPECT_EQ(names_in(out_), (std::vector<std::string>{".tofmap-files", "merged.ply", "options.yaml",
+                                                      "report.json", "transforms.json"}));
   const nlohmann::json clouds = read_json(out_ / "transforms.json")["clouds"];
   ASSERT_EQ(clouds.size(), 3U);
   EXPECT_EQ(clouds[0]["path"], path("a.ply").string());
@@ -90,6 +90,29 @@ TEST_F(Register, NamesFilesThatAreNoClouds) {
     EXPECT_THAT(finished.err, HasSubstr(name));
     EXPECT_FALSE(std::filesystem::exists(out_));
   }
+}
+
+TEST_F(Register, LeavesOutAFileThatIsNoCloudAndPlacesTheOthers) {
+  std::ofstream(path("text.ply")) << "no cloud\n";
+  const Finished finished = run({"a.ply", "text.ply", "b.ply"});
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_THAT(finished.err, HasSubstr("left out: " + path("text.ply").string()));
+  EXPECT_THAT(finished.out, HasSubstr("2 of 3 clouds placed"));
+  const nlohmann::json clouds = read_json(out_ / "transforms.json")["clouds"];
+  ASSERT_EQ(clouds.size(), 3U);
+  EXPECT_EQ(clouds[1]["path"], path("text.ply").string());
+  EXPECT_TRUE(clouds[1]["transform"].is_null());
+  EXPECT_THAT(clouds[1]["damage"], HasSubstr("text.ply"));
+  EXPECT_EQ(clouds[2]["converged"], true);
+  EXPECT_EQ(read_json(out_ / "report.json")["summary"]["damaged"], 1);
+}
+
+TEST_F(Register, TakesCloudsWhoseNamesAreNotUtf8) {
+  const std::string odd = "b\xff.ply";
+  std::filesystem::rename(path("b.ply"), path(odd));
+  const Finished finished = run({"a.ply", odd});
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_EQ(read_json(out_ / "transforms.json")["clouds"].size(), 2U);
 }
 
 TEST_F(Register, WantsTwoCloudsAndKnownMethods) {
