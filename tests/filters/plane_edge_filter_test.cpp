@@ -15,6 +15,8 @@ namespace tofmap {
 namespace {
 
 using test::camera;
+using test::frame_of;
+using test::modulation;
 using test::plane;
 using test::rad_per_deg;
 using test::slanted_plane;
@@ -22,8 +24,20 @@ using test::with_noise;
 
 constexpr int pixels = 20 * 16;
 
+/// The image with the wrap counts of its ranges.
+RangeImage counted(RangeImage image) {
+  const auto wavelength_m = static_cast<float>(modulation().wavelength_a_m());
+  image.wrap_count = (image.range_m / wavelength_m).floor().cast<std::uint8_t>();
+  return image;
+}
+
+RangeImage off_planes_dropped(const RangeImage& image, const DualFrequencyFrame& frame) {
+  return drop_off_planes(counted(image), frame, modulation(), pixel_rays(camera()), {});
+}
+
+/// With frequencies that agree.
 RangeImage off_planes_dropped(const RangeImage& image) {
-  return drop_off_planes(image, pixel_rays(camera()), {});
+  return off_planes_dropped(image, frame_of(image.range_m));
 }
 
 RangeImage steps_dropped(const RangeImage& image) {
@@ -96,6 +110,57 @@ TEST(PlaneEdgeFilter, DropsSinglePixelsOffTheirSurface) {
   }
 }
 
+TEST(PlaneEdgeFilter, DropsPixelsWhoseFrequenciesDisagree) {
+  const RangeImage image = plane(3);
+  DualFrequencyFrame frame = frame_of(image.range_m);
+  // Their mean is on the surface; A alone is off by 15 cm.
+  frame.phase_a(7, 9) += static_cast<float>(0.15 / modulation().wavelength_a_m());
+  frame.phase_b(7, 9) -= static_cast<float>(0.15 / modulation().wavelength_b_m());
+  const RangeImage out = off_planes_dropped(image, frame);
+  EXPECT_FALSE(out.valid(7, 9));
+  EXPECT_EQ(out.count_valid(), pixels - 1);
+}
+
+TEST(PlaneEdgeFilter, KeepsSurfacesOfFrequenciesThatAreOffAsAWhole) {
+  const RangeImage image = slanted_plane(3, 30 * rad_per_deg);
+  DualFrequencyFrame frame = frame_of(image.range_m);
+  frame.phase_b += static_cast<float>(0.2 / modulation().wavelength_b_m());
+  frame.phase_b -= frame.phase_b.floor();
+  EXPECT_EQ(off_planes_dropped(image, frame).count_valid(), pixels);
+}
+
+TEST(PlaneEdgeFilter, DropsABandOfFlyingPixels) {
+  RangeImage image = edge_with_flying_pixels();
+  for (int v = 0; v < 16; ++v) image.range_m(v, 10) *= 0.85F + 0.1F * static_cast<float>(v % 4);
+  for (int v = 0; v < 16; ++v) image.range_m(v, 11) *= 0.8F + 0.05F * static_cast<float>(v % 3);
+  const RangeImage out = off_planes_dropped(image);
+  EXPECT_EQ((out.reason.middleCols(10, 2) == 0).count(), 0);
+  EXPECT_EQ(out.count_valid(), pixels - 2 * 16);
+}
+
+TEST(PlaneEdgeFilter, KeepsTheCornersOfASurfaceBeforeAnother) {
+  RangeImage image = plane(6);
+  image.range_m.block(5, 6, 6, 7) = plane(3).range_m.block(5, 6, 6, 7);
+  EXPECT_EQ(off_planes_dropped(image).count_valid(), pixels);
+}
+
+TEST(PlaneEdgeFilter, FindsFlyingPixelsInNoiseAndKeepsTheSurfacesBesideThem) {
+  constexpr float sigma_m = 0.1F;
+  constexpr int seeds = 20;
+  int flying_left = 0;
+  int kept = 0;
+  for (unsigned seed = 0; seed < seeds; ++seed) {
+    const RangeImage image = with_noise(edge_with_flying_pixels(), sigma_m, seed);
+    const RangeImage out = off_planes_dropped(image);
+    flying_left += static_cast<int>((out.reason.col(10) == 0).count());
+    kept += out.count_valid();
+  }
+  // Flying pixels are twelve standard deviations from both surfaces, so that hardly any may stay.
+  EXPECT_LT(flying_left, 0.01 * seeds * 16);
+  // The borders of the image and of the edge, where predictions are few, are half of all pixels.
+  EXPECT_GT(kept - flying_left, 0.95 * seeds * (pixels - 16));
+}
+
 TEST(PlaneEdgeFilter, HearsNothingFromInvalidPixelsAndBorders) {
   RangeImage image = plane(3);
   for (int v = 0; v < 16; ++v) image.invalidate(v, 5, InvalidReason::low_amplitude);
@@ -110,14 +175,18 @@ TEST(PlaneEdgeFilter, TakesImagesOfAnyShape) {
     small.width_px = size;
     small.height_px = 1;
     const RangeImage image(1, size);
-    EXPECT_EQ(drop_off_planes(image, pixel_rays(small), {}).count_valid(), 0);
+    const RangeImage out =
+        drop_off_planes(image, frame_of(image.range_m), modulation(), pixel_rays(small), {});
+    EXPECT_EQ(out.count_valid(), 0);
   }
 }
 
 TEST(PlaneEdgeFilter, RefusesRaysOfAnotherCamera) {
   CameraModel other = camera();
   other.width_px = 19;
-  EXPECT_THROW(drop_off_planes(plane(3), pixel_rays(other), {}), UsageError);
+  const RangeImage image = plane(3);
+  EXPECT_THROW(drop_off_planes(image, frame_of(image.range_m), modulation(), pixel_rays(other), {}),
+               UsageError);
 }
 
 TEST(StepEdgeFilter, DropsFlyingPixelsAndNothingElse) {

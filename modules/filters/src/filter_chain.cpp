@@ -67,8 +67,9 @@ constexpr std::array<NamedFilter, 8> all_filters{
       }},
      {"plane_edge", InvalidReason::jump_edge,
       [](const RangeImage& image, const FilterInput& in) {
-        return drop_off_planes(image, in.rays,
+        return drop_off_planes(image, in.frame, in.modulation, in.rays,
                                {.max_sigmas = in.options.max_plane_sigmas,
+                                .max_edge_sigmas = in.options.max_edge_sigmas,
                                 .tolerance_m = in.options.plane_tolerance_m});
       }},
      {"outlier", InvalidReason::outlier,
@@ -117,6 +118,8 @@ std::vector<OptionField<FilterOptions>> FilterOptions::fields() {
        "step_edge: steps below this many standard deviations of the noise are none"},
       {"max_plane_sigmas", &O::max_plane_sigmas, 0, 100, "",
        "plane_edge: pixels off the planes around them by more standard deviations are dropped"},
+      {"max_edge_sigmas", &O::max_edge_sigmas, 0, 100, "",
+       "plane_edge: the same at a step between two surfaces"},
       {"plane_tolerance_m", &O::plane_tolerance_m, 0, 10, "m",
        "plane_edge: but not if they are no farther off than this"},
       {"max_smooth_sigmas", &O::max_smooth_sigmas, 0, 100, "",

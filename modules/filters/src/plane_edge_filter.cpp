@@ -3,132 +3,148 @@
 
 #include "tofmap/filters/plane_edge_filter.hpp"
 
-#include "inverse_depth.hpp"
+#include "surface_agreement.hpp"
 
-#include <array>
 #include <cstddef>
-#include <vector>
-
-#include <tofmap/core/vector_clones.hpp>
+#include <utility>
 
 namespace tofmap {
 namespace {
 
-/// The pixels before a row's pixels in one direction, averaged: the next one, and the one after it.
-struct Direction {
-  const float* next;
-  const float* next_variance;
-  const float* second;
-  const float* second_variance;
-};
+constexpr auto directions = static_cast<std::size_t>(Neighbourhood::directions);
 
-/// Sets a bit where the two pixels of a direction predict the pixel.
-TOFMAP_VECTOR_CLONES void predict(int pixels, const float* value, const float* variance,
-                                  const Direction& from_, float max_sigmas2, float tolerance2,
-                                  int bit, int* agrees) {
-  const Direction from = from_;
-#pragma GCC ivdep
-  for (int i = 0; i < pixels; ++i) {
-    const float predicted = 2 * from.next[i] - from.second[i];
-    const float off = value[i] - predicted;
-    const float noise = variance[i] + 4 * from.next_variance[i] + from.second_variance[i];
-    // Noise of depths is that of inverse depths by their fourth power.
-    const float square = predicted * predicted;
-    const float tolerated = (max_sigmas2 * noise + tolerance2) * square * square;
-    agrees[i] |= off * off <= tolerated ? bit : 0;
-  }
-}
-
-constexpr int directions = 8;
-constexpr int axes = directions / 2;
-
-/// From a pixel to its neighbours, counter-clockwise from the right; opposite ones are `axes`
-/// apart.
-std::array<int, directions> neighbour_offsets(int below) {
-  return {1, 1 - below, -below, -below - 1, -1, below - 1, below, below + 1};
-}
-
-/// For each pixel the directions whose next two pixels predict it, a bit each.
-class Predictions {
+/// Decides about the pixels of one image.
+class SurfaceKeeper {
  public:
-  Predictions(const InverseDepth& depth, const InverseDepth& smooth, const PlaneEdgeLimits& limits)
-      : stride_(depth.stride()),
-        agrees_(static_cast<std::size_t>((depth.rows() + 2 * margin) * stride_)) {
-    const auto step = neighbour_offsets(stride_);
-    const auto max_sigmas2 = static_cast<float>(limits.max_sigmas * limits.max_sigmas);
-    const auto tolerance2 = static_cast<float>(limits.tolerance_m * limits.tolerance_m);
-    for (int v = 0; v < depth.rows(); ++v) {
-      for (std::size_t d = 0; d < directions; ++d) {
-        predict(depth.cols(), depth.value(v), depth.variance(v),
-                {smooth.value(v) + step[d], smooth.variance(v) + step[d],
-                 smooth.value(v) + 2 * step[d], smooth.variance(v) + 2 * step[d]},
-                max_sigmas2, tolerance2, 1 << d, agrees_.data() + place(v, 0));
+  SurfaceKeeper(const RangeImage& image, Depths depths, const AgreementLimits& limits)
+      : depths_(std::move(depths)),
+        agreement_(depths_, limits),
+        noise2_(static_cast<float>(limits.edge_sigmas * limits.edge_sigmas)),
+        tolerance2_(static_cast<float>(limits.tolerance_m * limits.tolerance_m)),
+        kept_(Image<bool>::Constant(image.rows(), image.cols(), false)) {
+    for_each(image.reason == 0,
+             [&](int row, int col) { return lies_on_something(row, col, Neighbourhood::all); });
+  }
+
+  /// Gives up pixels at steps that agree only with pixels that are not kept.
+  void drop_what_flying_pixels_keep() {
+    const Image<bool> before = kept_;
+    for_each(before, [&](int row, int col) {
+      const unsigned among = kept_neighbours(before, row, col);
+      return among == Neighbourhood::all || !agreement_.is_at_step(row, col) ||
+             lies_on_something(row, col, among);
+    });
+  }
+
+  /// Takes back valid pixels that are as deep as two neighbours that are kept.
+  void take_back(const RangeImage& image) {
+    const Image<bool> before = kept_;
+    for_each(image.reason == 0, [&](int row, int col) {
+      return before(row, col) || is_as_deep_as_two(before, row, col);
+    });
+  }
+
+  const Image<bool>& kept() const { return kept_; }
+
+ private:
+  /// Keeps the pixels among those given for which it is said so.
+  template <class Candidates, class Says>
+  void for_each(const Candidates& candidates, const Says& says) {
+    for (int row = 0; row < depths_.own.rows(); ++row) {
+      for (int col = 0; col < depths_.own.cols(); ++col) {
+        if (candidates(row, col)) kept_(row, col) = says(row, col);
       }
     }
   }
 
-  /// Whether three adjacent directions agree.
-  bool agree_in_a_sector(int row, int col) const {
-    const unsigned bits = static_cast<unsigned>(agrees_[place(row, col)]);
-    const unsigned twice = bits | bits << directions;
-    return (bits & twice >> 1 & twice >> 2) != 0;
+  /// Neighbours that are kept, a bit each; what is outside the image counts as kept.
+  unsigned kept_neighbours(const Image<bool>& kept, int row, int col) const {
+    unsigned bits = Neighbourhood::all;
+    for (std::size_t d = 0; d < directions; ++d) {
+      const int v = row + Neighbourhood::rows[d];
+      const int u = col + Neighbourhood::cols[d];
+      if (is_inside(v, u) && !kept(v, u)) bits &= ~(1U << d);
+    }
+    return bits;
   }
 
-  /// The axes along which both directions agree, a bit each; none outside the image.
-  int lines(int row, int col) const {
-    const int bits = agrees_[place(row, col)];
-    return bits & bits >> axes;
+  bool is_inside(int row, int col) const {
+    return row >= 0 && col >= 0 && row < depths_.own.rows() && col < depths_.own.cols();
   }
 
- private:
-  static constexpr int margin = 1;
-
-  std::size_t place(int row, int col) const {
-    return static_cast<std::size_t>((row + margin) * stride_ + margin + col);
+  bool lies_on_something(int row, int col, unsigned among) const {
+    return agreement_.lies_on_surface(row, col, among) || lies_on_a_strip(row, col, among);
   }
 
-  int stride_;
-  std::vector<int> agrees_;
+  /// Whether a pixel and one beside it are parts of two parallel lines that are equally deep: a
+  /// strip two pixels wide.
+  bool lies_on_a_strip(int row, int col, unsigned among) const {
+    const unsigned lines = agreement_.lines(row, col) & among & among >> Neighbourhood::axes;
+    if (lines == 0) return false;
+    for (std::size_t d = 0; d < directions; ++d) {
+      const unsigned along = 1U << d % Neighbourhood::axes;  // both lie on this line anyhow
+      const unsigned beside =
+          agreement_.lines(row + Neighbourhood::rows[d], col + Neighbourhood::cols[d]);
+      if ((lines & beside & ~along) == 0 || (among >> d & 1U) == 0) continue;
+      if (is_as_deep(row, col, d)) return true;
+    }
+    return false;
+  }
+
+  bool is_as_deep_as_two(const Image<bool>& kept, int row, int col) const {
+    int count = 0;
+    for (std::size_t d = 0; d < directions; ++d) {
+      const int v = row + Neighbourhood::rows[d];
+      const int u = col + Neighbourhood::cols[d];
+      if (is_inside(v, u) && kept(v, u) && is_as_deep(row, col, d)) ++count;
+    }
+    return count >= 2;
+  }
+
+  /// Whether a pixel and its neighbour are equally deep, as both frequencies and as A alone tell.
+  bool is_as_deep(int row, int col, std::size_t direction) const {
+    const int to = col + Neighbourhood::offset(direction, depths_.own.stride());
+    const float depth_m = 1 / depths_.own.value(row)[col] - 1 / depths_.smooth.value(row)[to];
+    const float variance = depths_.own.variance(row)[col] + depths_.smooth.variance(row)[to];
+    const FrequencyDifference& difference = depths_.difference;
+    const float difference_m = difference.value(row)[col] - difference.value(row)[to];
+    const float difference_variance = difference.variance(row)[col] + difference.variance(row)[to];
+    const float a_m = depth_m + 0.5F * difference_m;
+    return depth_m * depth_m <= tolerance2_ + noise2_ * variance &&
+           a_m * a_m <= tolerance2_ + noise2_ * (variance + 0.25F * difference_variance);
+  }
+
+  Depths depths_;
+  SurfaceAgreement agreement_;
+  float noise2_;
+  float tolerance2_;
+  Image<bool> kept_;
 };
-
-/// Whether a pixel and one beside it are parts of two parallel lines that are equally deep: a strip
-/// two pixels wide.
-bool lies_on_a_strip(int row, int col, const InverseDepth& depth, const InverseDepth& smooth,
-                     const Predictions& predictions, float tolerance_m) {
-  constexpr float noise = 1.5F;  // tighter than for predictions, which need not be that near
-  const int lines = predictions.lines(row, col);
-  if (lines == 0) return false;
-  const auto step = neighbour_offsets(depth.stride());
-  constexpr std::array<int, directions> rows{0, -1, -1, -1, 0, 1, 1, 1};
-  constexpr std::array<int, directions> cols{1, 1, 0, -1, -1, -1, 0, 1};
-  for (std::size_t d = 0; d < directions; ++d) {
-    const int along = 1 << d % axes;  // both lie on this line anyhow
-    const int common = lines & predictions.lines(row + rows[d], col + cols[d]) & ~along;
-    if (common == 0) continue;
-    const float gap_m = 1 / depth.value(row)[col] - 1 / *(depth.value(row) + col + step[d]);
-    const float variance = depth.variance(row)[col] + *(smooth.variance(row) + col + step[d]);
-    if (gap_m * gap_m <= tolerance_m * tolerance_m + noise * noise * variance) return true;
-  }
-  return false;
-}
 
 }  // namespace
 
-RangeImage drop_off_planes(const RangeImage& image, const PixelRays& rays,
+RangeImage drop_off_planes(const RangeImage& image, const DualFrequencyFrame& frame,
+                           const Modulation& modulation, const PixelRays& rays,
                            const PlaneEdgeLimits& limits) {
   // Stricter than for smoothing: what is left out only adds noise, what is taken in wrongly moves
   // predictions.
   constexpr PairAverage average{.max_sigmas = 2.5, .tolerance_m = 0.005};
   const InverseDepth depth(image, rays);
-  const InverseDepth smooth = averaged_over_pairs(depth, average);
-  const Predictions predictions(depth, smooth, limits);
-  const auto tolerance_m = static_cast<float>(limits.tolerance_m);
+  SurfaceKeeper keeper(image,
+                       {depth, averaged_over_pairs(depth, average),
+                        FrequencyDifference(image, frame, modulation, rays)},
+                       {.plane_sigmas = limits.max_sigmas,
+                        .edge_sigmas = limits.max_edge_sigmas,
+                        .tolerance_m = limits.tolerance_m,
+                        .mixing_m = modulation.wavelength_a_m() / 4});
+  keeper.drop_what_flying_pixels_keep();
+  keeper.take_back(image);
   RangeImage out = image;
   for (int v = 0; v < depth.rows(); ++v) {
     for (int u = 0; u < depth.cols(); ++u) {
-      if (!image.valid(v, u) || predictions.agree_in_a_sector(v, u)) continue;
-      if (lies_on_a_strip(v, u, depth, smooth, predictions, tolerance_m)) continue;
-      out.invalidate(v, u, InvalidReason::jump_edge);
+      if (image.valid(v, u) && !keeper.kept()(v, u)) {
+        out.invalidate(v, u, InvalidReason::jump_edge);
+      }
     }
   }
   return out;

@@ -22,7 +22,8 @@ struct FilterOptions {
   double min_edge_gap_sigmas = 5;
   double max_step_incidence_deg = 80;
   double min_step_sigmas = 3;
-  double max_plane_sigmas = 2.3;
+  double max_plane_sigmas = 3.2;
+  double max_edge_sigmas = 1.5;
   double plane_tolerance_m = 0.03;
   double max_smooth_sigmas = 3;
   double smooth_tolerance_m = 0.005;

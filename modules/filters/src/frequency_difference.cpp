@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "frequency_difference.hpp"
+
+#include "size_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/core/median.hpp>
+#include <tofmap/core/vector_clones.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Rows of a frame, its wrap counts and its rays.
+struct FrameRow {
+  const float* phase_a;
+  const float* phase_b;
+  const float* amplitude_a;
+  const float* amplitude_b;
+  const float* range_m;
+  const float* ray_z;
+  const std::uint8_t* wrap_count;
+};
+
+TOFMAP_VECTOR_CLONES void fill_difference(int pixels, const FrameRow& from_, float wavelength_a_m,
+                                          float wavelength_b_m, float* value, float* variance) {
+  const FrameRow from = from_;
+  const float wavelengths_b = wavelength_a_m / wavelength_b_m;
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    const float cycles_a = from.phase_a[i] + static_cast<float>(from.wrap_count[i]);
+    const float cycles = cycles_a * wavelengths_b - from.phase_b[i];
+    const float wrapped = cycles - std::floor(cycles + 0.5F);
+    const float sigma_a = wavelength_a_m / from.amplitude_a[i];
+    const float sigma_b = wavelength_b_m / from.amplitude_b[i];
+    const float z = from.ray_z[i];
+    const float absent = 0 * from.range_m[i];
+    value[i] = wrapped * wavelength_b_m * z + absent;
+    variance[i] = (sigma_a * sigma_a + sigma_b * sigma_b) * z * z + absent;
+  }
+}
+
+void check_frame(const RangeImage& image, const DualFrequencyFrame& frame) {
+  const bool agree = same_size(image.range_m, frame.phase_a) &&
+                     same_size(image.range_m, frame.phase_b) &&
+                     (!frame.has_amplitude() || (same_size(image.range_m, frame.amplitude_a) &&
+                                                 same_size(image.range_m, frame.amplitude_b)));
+  if (!agree) throw UsageError("filter: image and frame differ in size");
+}
+
+}  // namespace
+
+FrequencyDifference::FrequencyDifference(const RangeImage& image, const DualFrequencyFrame& frame,
+                                         const Modulation& modulation, const PixelRays& rays)
+    : rows_(static_cast<int>(image.rows())),
+      cols_(static_cast<int>(image.cols())),
+      stride_(cols_ + 2 * InverseDepth::margin),
+      values_(static_cast<std::size_t>((rows_ + 2 * InverseDepth::margin) * stride_),
+              std::numeric_limits<float>::quiet_NaN()),
+      variances_(values_) {
+  check_size(image, rays, "filter");
+  check_frame(image, frame);
+  const std::vector<float> ones(static_cast<std::size_t>(cols_), 1.0F);
+  for (int v = 0; v < rows_; ++v) {
+    const Eigen::Index first = v * image.cols();
+    const bool is_lit = frame.has_amplitude();
+    fill_difference(
+        cols_,
+        {frame.phase_a.data() + first, frame.phase_b.data() + first,
+         is_lit ? frame.amplitude_a.data() + first : ones.data(),
+         is_lit ? frame.amplitude_b.data() + first : ones.data(), image.range_m.data() + first,
+         rays.z.data() + first, image.wrap_count.data() + first},
+        static_cast<float>(modulation.wavelength_a_m()),
+        static_cast<float>(modulation.wavelength_b_m()), values_.data() + place(v),
+        variances_.data() + place(v));
+  }
+  const double scale = noise_scale();
+  const auto scale2 = static_cast<float>(scale * scale);
+  for (float& variance : variances_) variance *= scale2;
+}
+
+double FrequencyDifference::noise_scale() const {
+  // About 16000 differences tell the noise to 1 %.
+  constexpr int enough = 16000;
+  const int step = std::max(1, rows_ * cols_ / enough);
+  std::vector<float> normalised;
+  for (int v = step / 2; v < rows_; v += step) {
+    for (int u = 0; u + 1 < cols_; ++u) {
+      const float variance = this->variance(v)[u] + this->variance(v)[u + 1];
+      const float size = std::abs(value(v)[u + 1] - value(v)[u]) / std::sqrt(variance);
+      if (std::isfinite(size)) normalised.push_back(size);
+    }
+  }
+  return normalised.empty() ? 0 : sigma_of_median_deviation * median(normalised);
+}
+
+}  // namespace tofmap
