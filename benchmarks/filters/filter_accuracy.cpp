@@ -3,12 +3,14 @@
 
 // What filters remove and what they lose, as tables in Markdown, and as plots if a folder is given:
 //
-//     bench_filter_accuracy [--divide N] [--plots DIR]
+//     bench_filter_accuracy [--divide N] [--plots DIR] [--only flying] [--mesh FILE]
 //
 // The recordings are simulated, so that it is known which pixels fly. N divides the number of
-// frames.
+// frames. `--only flying` prints the tables of flying pixels by recording, and no others; a mesh
+// adds a recording to the frozen ones.
 
 #include "pcl_filters.hpp"
+#include "recordings.hpp"
 #include "samples.hpp"
 #include "score.hpp"
 
@@ -203,10 +205,40 @@ void print_fusion(int divisor) {
   }
 }
 
+/// What the default chain finds and loses in each recording by itself.
+void print_flying(const std::string& title, const std::vector<Recording>& recordings, int divisor) {
+  std::printf(
+      "\n| %s | frames | labelled flying, a frame | of these found, %% | flying in range, too: "
+      "found, %% | right lost, %% | within 1 m |\n|---|---|---|---|---|---|---|\n",
+      title.c_str());
+  for (const Recording& recording : recordings) {
+    const Case example = make_case(recording, divisor);
+    const Score score = score_filter(chain("", {}), example);
+    const std::size_t frames = example.samples.size();
+    std::printf("| %s | %zu | %.0f | %s | %s | %s | %s |\n", recording.name.c_str(), frames,
+                score.found_by_label.all / static_cast<double>(frames),
+                percent(score.found_by_label, 1).c_str(), percent(score.found, 1).c_str(),
+                percent(score.lost(), 2).c_str(), percent(score.lost_within_a_metre(), 2).c_str());
+    std::fflush(stdout);
+  }
+}
+
 struct Arguments {
   int divisor = 1;
   std::filesystem::path plots;
+  bool only_flying = false;
+  std::string mesh;
 };
+
+void print_all_flying(const Arguments& arguments) {
+  std::vector<Recording> frozen = frozen_recordings();
+  if (!arguments.mesh.empty()) {
+    frozen.push_back(
+        {.name = std::filesystem::path(arguments.mesh).stem().string(), .scene = arguments.mesh});
+  }
+  print_flying("development", development_recordings(), arguments.divisor);
+  print_flying("frozen", frozen, arguments.divisor);
+}
 
 Arguments read_arguments(const std::vector<std::string>& words) {
   Arguments arguments;
@@ -215,14 +247,21 @@ Arguments read_arguments(const std::vector<std::string>& words) {
       arguments.divisor = std::max(1, std::stoi(words[i + 1]));
     } else if (words[i] == "--plots") {
       arguments.plots = words[i + 1];
+    } else if (words[i] == "--only" && words[i + 1] == "flying") {
+      arguments.only_flying = true;
+    } else if (words[i] == "--mesh") {
+      arguments.mesh = words[i + 1];
     } else {
-      throw std::invalid_argument(words[i] + ": only --divide and --plots are known");
+      throw std::invalid_argument(words[i] +
+                                  ": --divide, --plots, --only flying, --mesh are known");
     }
   }
   return arguments;
 }
 
 void run(const Arguments& arguments) {
+  print_all_flying(arguments);
+  if (arguments.only_flying) return;
   const std::vector<Filter> filters = all_filters();
   std::vector<std::vector<Score>> by_filter(filters.size());
   for (const Case& example : make_cases("joint", arguments.divisor)) {

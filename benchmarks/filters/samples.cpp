@@ -67,6 +67,10 @@ bool sees_several_surfaces(const Sample& sample, Eigen::Index row, Eigen::Index 
   return label == PixelLabel::mixed || label == PixelLabel::flying;
 }
 
+bool is_labelled_flying(const Sample& sample, Eigen::Index row, Eigen::Index col) {
+  return static_cast<PixelLabel>(sample.simulated.label(row, col)) == PixelLabel::flying;
+}
+
 bool is_flying(const Sample& sample, Eigen::Index row, Eigen::Index col) {
   constexpr float tolerance_m = 0.05F;
   constexpr float sigmas = 3;

@@ -33,6 +33,9 @@ Case make_run(const std::string& scene, int frames);
 /// Whether several surfaces were in the pixel's view.
 bool sees_several_surfaces(const Sample& sample, Eigen::Index row, Eigen::Index col);
 
+/// Whether A's range, before wraps, is none of those surfaces (PixelLabel::flying).
+bool is_labelled_flying(const Sample& sample, Eigen::Index row, Eigen::Index col);
+
 /// A pixel that sees several surfaces flies if its range is none of the surfaces around it, by more
 /// than 5 cm and three standard deviations of its noise. (The label itself is of A's range alone.)
 bool is_flying(const Sample& sample, Eigen::Index row, Eigen::Index col);

@@ -50,6 +50,7 @@ void tally(const Sample& sample, const RangeImage& kept, Score& score) {
       if (!sample.unwrapped.valid(v, u)) continue;
       const bool is_removed = !kept.valid(v, u);
       if (is_flying(sample, v, u)) score.found.add(is_removed);
+      if (is_labelled_flying(sample, v, u)) score.found_by_label.add(is_removed);
       if (is_removed) score.precise.add(sees_several_surfaces(sample, v, u));
       if (sees_several_surfaces(sample, v, u) || std::isnan(truth_m(v, u))) continue;
       if (std::abs(sample.unwrapped.range_m(v, u) - truth_m(v, u)) > wrong_m) continue;
@@ -94,6 +95,7 @@ Score joined(const std::vector<Score>& scores) {
   Score sum;
   for (const Score& score : scores) {
     sum.found.add(score.found);
+    sum.found_by_label.add(score.found_by_label);
     sum.precise.add(score.precise);
     for (std::size_t i = 0; i < Score::angles; ++i)
       sum.lost_by_angle[i].add(score.lost_by_angle[i]);

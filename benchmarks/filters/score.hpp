@@ -41,6 +41,7 @@ struct Score {
   static constexpr double far_m = 5;
 
   Share found;                              ///< of the flying pixels: removed
+  Share found_by_label;                     ///< of the pixels labelled as flying: removed
   Share precise;                            ///< of the removed pixels: flying or mixed
   std::array<Share, angles> lost_by_angle;  ///< of the right pixels: removed
   std::array<Share, ranges> lost_by_range;
@@ -55,6 +56,7 @@ struct Score {
 
   Share lost() const { return lost_between(0, angles); }
   Share lost_beyond_far() const;
+  Share lost_within_a_metre() const { return lost_by_range[0]; }
   Share lost_between(std::size_t from_deg, std::size_t to_deg) const;
   double rmse_m() const;
   double rms_share() const;     ///< of the error before the filter
