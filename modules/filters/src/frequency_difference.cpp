@@ -85,8 +85,8 @@ FrequencyDifference::FrequencyDifference(const RangeImage& image, const DualFreq
 }
 
 double FrequencyDifference::noise_scale() const {
-  // About 16000 differences tell the noise to 1 %.
-  constexpr int enough = 16000;
+  // About 4000 differences tell the noise to 2 %.
+  constexpr int enough = 4000;
   const int step = std::max(1, rows_ * cols_ / enough);
   std::vector<float> normalised;
   for (int v = step / 2; v < rows_; v += step) {

@@ -22,17 +22,18 @@ class SurfaceKeeper {
         noise2_(static_cast<float>(limits.edge_sigmas * limits.edge_sigmas)),
         tolerance2_(static_cast<float>(limits.tolerance_m * limits.tolerance_m)),
         kept_(Image<bool>::Constant(image.rows(), image.cols(), false)) {
-    for_each(image.reason == 0,
-             [&](int row, int col) { return lies_on_something(row, col, Neighbourhood::all); });
+    for_each(image.reason == 0, [&](int row, int col) {
+      return agreement_.lies_on_surface(row, col) || lies_on_a_strip(row, col, Neighbourhood::all);
+    });
   }
 
   /// Gives up pixels at steps that agree only with pixels that are not kept.
   void drop_what_flying_pixels_keep() {
     const Image<bool> before = kept_;
     for_each(before, [&](int row, int col) {
+      if (!agreement_.is_at_step(row, col)) return true;
       const unsigned among = kept_neighbours(before, row, col);
-      return among == Neighbourhood::all || !agreement_.is_at_step(row, col) ||
-             lies_on_something(row, col, among);
+      return agreement_.lies_on_surface(row, col, among) || lies_on_a_strip(row, col, among);
     });
   }
 
@@ -47,7 +48,7 @@ class SurfaceKeeper {
   const Image<bool>& kept() const { return kept_; }
 
  private:
-  /// Keeps the pixels among those given for which it is said so.
+  /// Decides about the pixels among those given by what is said of each.
   template <class Candidates, class Says>
   void for_each(const Candidates& candidates, const Says& says) {
     for (int row = 0; row < depths_.own.rows(); ++row) {
@@ -70,10 +71,6 @@ class SurfaceKeeper {
 
   bool is_inside(int row, int col) const {
     return row >= 0 && col >= 0 && row < depths_.own.rows() && col < depths_.own.cols();
-  }
-
-  bool lies_on_something(int row, int col, unsigned among) const {
-    return agreement_.lies_on_surface(row, col, among) || lies_on_a_strip(row, col, among);
   }
 
   /// Whether a pixel and one beside it are parts of two parallel lines that are equally deep: a

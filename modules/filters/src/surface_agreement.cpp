@@ -186,6 +186,27 @@ TOFMAP_VECTOR_CLONES void judge_sector(int pixels, const OwnRow& own_, const Sec
   }
 }
 
+/// The middle ones of three adjacent directions that lead to one surface.
+[[gnu::always_inline]] inline unsigned surfaces_of(unsigned agrees, unsigned sectors, bool at_step,
+                                                   unsigned among) {
+  const unsigned bits = (at_step ? agrees >> same_shift : agrees) & among;
+  const unsigned twice = bits | bits << Neighbourhood::directions;
+  const unsigned threes = twice << 1 & twice & twice >> 1;
+  const unsigned middles = (threes | threes >> Neighbourhood::directions) & Neighbourhood::all;
+  return at_step ? middles & sectors : middles;
+}
+
+/// Sets the bit where some surface is found.
+TOFMAP_VECTOR_CLONES void find_surfaces(int pixels, const unsigned* agrees, unsigned step_bit,
+                                        unsigned surface_bit, unsigned* sectors) {
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    const bool at_step = (sectors[i] & step_bit) != 0;
+    const unsigned found = surfaces_of(agrees[i], sectors[i], at_step, Neighbourhood::all);
+    sectors[i] |= found != 0 ? surface_bit : 0U;
+  }
+}
+
 float squared(double number) { return static_cast<float>(number * number); }
 
 SquaredLimits squared_limits(const AgreementLimits& limits) {
@@ -261,18 +282,13 @@ SurfaceAgreement::SurfaceAgreement(const Depths& depths, const AgreementLimits& 
                              offsets.get(d + axes)};
       judge_sector(cols, own, sector, squares, 1U << d, sectors);
     }
+    find_surfaces(cols, agrees, step_bit, surface_bit, sectors);
   }
 }
 
 bool SurfaceAgreement::lies_on_surface(int row, int col, unsigned among) const {
   const std::size_t at = place(row, col);
-  const bool at_step = is_at_step(row, col);
-  const unsigned bits = agrees_[at] >> (at_step ? same_shift : 0U) & among;
-  const unsigned twice = bits | bits << directions;
-  // By the middle one of three adjacent directions that agree.
-  const unsigned threes = twice << 1 & twice & twice >> 1;
-  const unsigned middles = (threes | threes >> directions) & Neighbourhood::all;
-  return (at_step ? middles & sectors_[at] : middles) != 0;
+  return surfaces_of(agrees_[at], sectors_[at], is_at_step(row, col), among) != 0;
 }
 
 unsigned SurfaceAgreement::lines(int row, int col) const {

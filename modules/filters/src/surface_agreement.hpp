@@ -48,8 +48,13 @@ class SurfaceAgreement {
   /// Whether a surface passes from one side of the pixel to the other only by a step.
   bool is_at_step(int row, int col) const { return (sectors_[place(row, col)] & step_bit) != 0; }
 
-  /// Whether three adjacent directions of those given lead to one surface that the pixel is on.
-  bool lies_on_surface(int row, int col, unsigned directions) const;
+  /// Whether three adjacent directions lead to one surface that the pixel is on.
+  bool lies_on_surface(int row, int col) const {
+    return (sectors_[place(row, col)] & surface_bit) != 0;
+  }
+
+  /// The same of the directions given, a bit each.
+  bool lies_on_surface(int row, int col, unsigned among) const;
 
   /// The axes along which both directions predict the pixel closely, a bit each; none outside the
   /// image.
@@ -58,6 +63,7 @@ class SurfaceAgreement {
  private:
   static constexpr int margin = 1;
   static constexpr unsigned step_bit = 1U << Neighbourhood::directions;
+  static constexpr unsigned surface_bit = step_bit << 1;
 
   std::size_t place(int row, int col) const {
     return static_cast<std::size_t>((row + margin) * stride_ + margin + col);
