@@ -39,11 +39,12 @@ TEST(FilterChain, CountsWhatEachFilterRemoves) {
   FilterOptions options;
   options.min_confidence = 0.5;
   const FilterResult result = filtered(image, options);
-  ASSERT_EQ(result.counts.size(), 4U);
+  ASSERT_EQ(result.counts.size(), 5U);
   EXPECT_EQ(result.counts[1].name, "confidence");
   EXPECT_EQ(result.counts[1].removed, 1);
   EXPECT_EQ(result.counts[2].removed, 0);
   EXPECT_EQ(result.counts[3].removed, 0);
+  EXPECT_EQ(result.counts[4].removed, 0);
 }
 
 TEST(FilterChain, CountsWhatAFilterCorrects) {
@@ -54,10 +55,10 @@ TEST(FilterChain, CountsWhatAFilterCorrects) {
   image.range_m(7, 9) -= static_cast<float>(test::modulation().wavelength_a_m());
   const FilterResult result =
       apply_filters(image, frame, test::modulation(), pixel_rays(camera()), {});
-  EXPECT_EQ(result.counts[2].name, "isolated_wrap");
-  EXPECT_EQ(result.counts[2].corrected, 1);
-  EXPECT_EQ(result.counts[2].removed, 0);
-  EXPECT_EQ(result.counts[3].corrected, 0);
+  EXPECT_EQ(result.counts[3].name, "isolated_wrap");
+  EXPECT_EQ(result.counts[3].corrected, 1);
+  EXPECT_EQ(result.counts[3].removed, 0);
+  EXPECT_EQ(result.counts[4].corrected, 0);
 }
 
 TEST(FilterChain, RefusesAFilterItDoesNotHave) {

@@ -126,6 +126,16 @@ TEST(SmoothFilter, HearsLittleOfPixelsThatAreNotSure) {
   EXPECT_LT(std::abs(doubted - truth), 0.3F * std::abs(believed - truth));
 }
 
+TEST(SmoothFilter, LeavesPixelsThatAreMeansAlready) {
+  RangeImage image = with_noise(plane(3), 0.02F, 1);
+  image.averaged_px = ImageF::Ones(image.rows(), image.cols());
+  image.averaged_px.leftCols(10).setConstant(30);
+  const RangeImage out = smoothed(image);
+  EXPECT_TRUE((out.range_m.leftCols(10) == image.range_m.leftCols(10)).all());
+  EXPECT_TRUE((out.sigma_m.leftCols(10) == image.sigma_m.leftCols(10)).all());
+  EXPECT_LT(out.sigma_m.rightCols(10).mean(), 0.6F * image.sigma_m.rightCols(10).mean());
+}
+
 TEST(SmoothFilter, RefusesRaysOfAnotherCamera) {
   CameraModel other = camera();
   other.width_px = 19;

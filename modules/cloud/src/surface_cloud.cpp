@@ -3,7 +3,7 @@
 
 #include "tofmap/cloud/surface_cloud.hpp"
 
-#include "plane_fit.hpp"
+#include "plane_windows.hpp"
 
 #include <limits>
 
@@ -50,8 +50,9 @@ float normal_sigma_rad(const PlaneRow& planes, std::size_t col, float incidence_
   return slope_sigma / planes.q0[col] * incidence_cos * incidence_cos;
 }
 
-SurfacePoint surface_point(const PlaneFits& fits, const PlaneRow& planes, const RangeImage& image,
-                           const PixelRays& rays, int row, int col, const CloudOptions& options) {
+SurfacePoint surface_point(const PlaneWindows& fits, const PlaneRow& planes,
+                           const RangeImage& image, const PixelRays& rays, int row, int col,
+                           const CloudOptions& options) {
   SurfacePoint raw = point_on_ray(rays, row, col, image.range_m(row, col));
   raw.sigma_m = image.sigma_m(row, col);
   raw.confidence = image.confidence(row, col);
@@ -83,6 +84,8 @@ std::vector<OptionField<CloudOptions>> CloudOptions::fields() {
   return {
       {"window_radius_px", &CloudOptions::window_radius_px, 1, 15, "px",
        "half width of the square window of the plane fit, without its centre"},
+      {"max_window_radius_px", &CloudOptions::max_window_radius_px, 1, 31, "px",
+       "half width up to which windows grow where noise alone would leave normals uncertain"},
       {"gate_sigmas", &CloudOptions::gate_sigmas, 1, 10, "",
        "a neighbour belongs to the surface within this many standard deviations"},
       {"min_neighbours", &CloudOptions::min_neighbours, 3, 961, "",
@@ -95,7 +98,7 @@ std::vector<OptionField<CloudOptions>> CloudOptions::fields() {
 SurfaceCloud surface_cloud(const RangeImage& image, const PixelRays& rays,
                            const CloudOptions& options) {
   check_sizes(image, rays);
-  const PlaneFits fits(image, rays, options);
+  const PlaneWindows fits(image, rays, options);
   SurfaceCloud cloud = empty_cloud(image);
   const int rows = static_cast<int>(image.rows());
   const int cols = static_cast<int>(image.cols());

@@ -7,6 +7,7 @@
 #include "tofmap/filters/isolated_wrap_filter.hpp"
 #include "tofmap/filters/jump_edge_filter.hpp"
 #include "tofmap/filters/outlier_filter.hpp"
+#include "tofmap/filters/phasor_mean_filter.hpp"
 #include "tofmap/filters/plane_edge_filter.hpp"
 #include "tofmap/filters/smooth_filter.hpp"
 #include "tofmap/filters/step_edge_filter.hpp"
@@ -40,7 +41,7 @@ struct NamedFilter {
   RangeImage (*apply)(const RangeImage&, const FilterInput&);
 };
 
-constexpr std::array<NamedFilter, 8> all_filters{
+constexpr std::array<NamedFilter, 9> all_filters{
     {{"amplitude", InvalidReason::low_amplitude,
       [](const RangeImage& image, const FilterInput& in) {
         return drop_low_amplitude(image, in.frame, in.options.min_amplitude);
@@ -48,6 +49,12 @@ constexpr std::array<NamedFilter, 8> all_filters{
      {"confidence", InvalidReason::low_confidence,
       [](const RangeImage& image, const FilterInput& in) {
         return drop_low_confidence(image, in.options.min_confidence);
+      }},
+     {"phasor_mean", InvalidReason::none,
+      [](const RangeImage& image, const FilterInput& in) {
+        return average_phasors(image, in.frame, in.modulation, in.rays,
+                               {.min_noise_cycles = in.options.min_phasor_noise_cycles,
+                                .max_radius_px = in.options.max_phasor_radius_px});
       }},
      {"isolated_wrap", InvalidReason::isolated_wrap,
       [](const RangeImage& image, const FilterInput& in) {
@@ -106,6 +113,10 @@ std::vector<OptionField<FilterOptions>> FilterOptions::fields() {
        "amplitude: pixels with a weaker signal are dropped; in the camera's units"},
       {"min_confidence", &O::min_confidence, 0, 1, "",
        "confidence: pixels less sure than this are dropped"},
+      {"min_phasor_noise_cycles", &O::min_phasor_noise_cycles, 0, 1, "",
+       "phasor_mean: pixels with less noise, as a share of A's wavelength, are left alone"},
+      {"max_phasor_radius_px", &O::max_phasor_radius_px, 0, 64, "px",
+       "phasor_mean: windows grow no farther; 0 turns it off"},
       {"max_isolated_share", &O::max_isolated_share, 0, 1, "",
        "isolated_wrap: regions of a larger share of the image are left alone"},
       {"max_edge_angle_deg", &O::max_edge_angle_deg, 90, 180, "deg",

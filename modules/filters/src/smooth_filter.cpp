@@ -17,7 +17,7 @@ RangeImage smooth_ranges(const RangeImage& image, const PixelRays& rays,
   RangeImage out = image;
   for (int v = 0; v < smooth.rows(); ++v) {
     for (int u = 0; u < smooth.cols(); ++u) {
-      if (!image.valid(v, u)) continue;
+      if (!image.valid(v, u) || image.averaged(v, u) > 1) continue;
       out.range_m(v, u) = 1 / (smooth.value(v)[u] * rays.z(v, u));
       out.sigma_m(v, u) = std::sqrt(smooth.variance(v)[u]) / rays.z(v, u);
     }

@@ -42,6 +42,7 @@ using SurfaceCloud = pcl::PointCloud<SurfacePoint>;
 
 struct CloudOptions {
   int window_radius_px = 3;
+  int max_window_radius_px = 15;
   double gate_sigmas = 3;
   int min_neighbours = 12;
   double max_normal_sigma_rad = 0.35;
@@ -54,7 +55,8 @@ struct CloudOptions {
 /// In inverse depth a plane is linear in the pixel's tangents, q = 1/z = a x + b y + c, at
 /// any slant. Each pixel takes the neighbours in its window that lie on its own surface, as
 /// far as their predicted noise can tell, fits that plane with weights from their noise, and
-/// is moved along its ray onto it; its sigma_m is the fit's. `rays` are those of the camera
+/// is moved along its ray onto it; its sigma_m is the fit's. Windows grow where noise alone would
+/// leave the normal less certain than the options allow. `rays` are those of the camera
 /// that took the image. The result does not depend on the number of threads.
 SurfaceCloud surface_cloud(const RangeImage& image, const PixelRays& rays,
                            const CloudOptions& options);

@@ -35,6 +35,10 @@ struct RangeImage {
   ImageU8 wrap_count;  ///< whole wavelengths of A added; invalid_wrap_count where invalid
   ImageF confidence;   ///< probability that the wrap count is right, 0 … 1; 0 where invalid
   ImageU8 reason;      ///< InvalidReason as a number; 0 where valid
+  /// How many pixels' worth of noise a valid range is the mean of, if pixels around it are in it,
+  /// too: its noise is not independent of theirs, and one pixel by itself would have the variance
+  /// averaged_px · sigma_m². 0 x 0: all pixels are by themselves.
+  ImageF averaged_px;
 
   RangeImage() = default;
 
@@ -45,6 +49,11 @@ struct RangeImage {
   Eigen::Index cols() const { return range_m.cols(); }
   bool valid(Eigen::Index row, Eigen::Index col) const { return reason(row, col) == 0; }
   int count_valid() const;
+
+  /// averaged_px, 1 where pixels are by themselves.
+  float averaged(Eigen::Index row, Eigen::Index col) const {
+    return averaged_px.size() == 0 ? 1.0F : averaged_px(row, col);
+  }
 
   /// Makes the pixel invalid in all planes.
   void invalidate(Eigen::Index row, Eigen::Index col, InvalidReason why);

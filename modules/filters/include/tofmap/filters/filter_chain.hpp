@@ -14,9 +14,11 @@
 namespace tofmap {
 
 struct FilterOptions {
-  std::string chain = "amplitude confidence isolated_wrap plane_edge";
+  std::string chain = "amplitude confidence phasor_mean isolated_wrap plane_edge";
   double min_amplitude = 0;
   double min_confidence = 0;
+  double min_phasor_noise_cycles = 0.1;
+  double max_phasor_radius_px = 16;
   double max_isolated_share = 0.01;
   double max_edge_angle_deg = 170;
   double min_edge_gap_sigmas = 5;

@@ -17,8 +17,9 @@ struct SmoothLimits {
 /// opposite pixels of the 5 x 5 around it that agree with it, weighted by predicted noise and by
 /// confidence, and the less the farther they are off. Pairs cancel slant, so planes stay where they
 /// are, also at grazing incidence; a pair across an edge disagrees and is left out. sigma_m becomes
-/// that of the mean. No pixel becomes valid or invalid. Throws UsageError if image and rays differ
-/// in size.
+/// that of the mean. Pixels that are means already (RangeImage::averaged_px) stay as they are,
+/// since their noise is that of their neighbours. No pixel becomes valid or invalid. Throws
+/// UsageError if image and rays differ in size.
 RangeImage smooth_ranges(const RangeImage& image, const PixelRays& rays,
                          const SmoothLimits& limits);
 

@@ -1,0 +1,427 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "phasor_windows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#include <tofmap/core/vector_clones.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr float two_pi = 2 * std::numbers::pi_v<float>;
+
+/// The mean phasor of a pixel with this noise, along the true phase, and its variance across.
+struct PhasorMoments {
+  float mean;
+  float variance_across;
+
+  explicit PhasorMoments(float sigma_cycles) {
+    constexpr float least_sigma_rad = 0.01F;
+    const float sigma = std::max(least_sigma_rad, two_pi * sigma_cycles);
+    mean = std::exp(-0.5F * sigma * sigma);
+    variance_across = 0.5F * (1 - mean * mean * mean * mean);
+  }
+};
+
+struct Complex {
+  float re;
+  float im;
+};
+
+[[gnu::always_inline]] inline Complex product(Complex one, Complex other) {
+  return {one.re * other.re - one.im * other.im, one.re * other.im + one.im * other.re};
+}
+
+/// Turned back by the phase of `by`.
+[[gnu::always_inline]] inline Complex turned_back(Complex one, Complex by) {
+  return {one.re * by.re + one.im * by.im, one.im * by.re - one.re * by.im};
+}
+
+[[gnu::always_inline]] inline float dot(Complex one, Complex other) {
+  return one.re * other.re + one.im * other.im;
+}
+
+/// Phasors of a row, from one pixel on.
+struct PhasorRow {
+  const float* re;
+  const float* im;
+
+  PhasorRow(const PhasorImage& image, int v, int offset)
+      : re(image.re.row(v) + offset), im(image.im.row(v) + offset) {}
+
+  [[gnu::always_inline]] Complex operator[](int i) const { return {re[i], im[i]}; }
+};
+
+/// Phasors of pixels in a row that are calculated on the way.
+class RowPhasors {
+ public:
+  explicit RowPhasors(int cols) : re_(static_cast<std::size_t>(cols)), im_(re_) {}
+
+  float* re() { return re_.data(); }
+  float* im() { return im_.data(); }
+
+ private:
+  std::vector<float> re_;
+  std::vector<float> im_;
+};
+
+/// What the slopes of a row's pixels add to both phases from them to an offset.
+struct Rotors {
+  RowPhasors a;
+  RowPhasors b;
+
+  explicit Rotors(int cols) : a(cols), b(cols) {}
+};
+
+struct RotorRow {
+  float* re;
+  float* im;
+
+  explicit RotorRow(RowPhasors& phasors) : re(phasors.re()), im(phasors.im()) {}
+
+  [[gnu::always_inline]] Complex operator[](int i) const { return {re[i], im[i]}; }
+};
+
+TOFMAP_VECTOR_CLONES void turn(int pixels, const RotorRow& rotors_, const RotorRow& by_) {
+  const RotorRow rotors = rotors_;
+  const RotorRow by = by_;
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    const Complex turned = product(rotors[i], by[i]);
+    rotors.re[i] = turned.re;
+    rotors.im[i] = turned.im;
+  }
+}
+
+void turn(int pixels, Rotors& rotors, Rotors& by) {
+  turn(pixels, RotorRow(rotors.a), RotorRow(by.a));
+  turn(pixels, RotorRow(rotors.b), RotorRow(by.b));
+}
+
+/// The rotors of one offset.
+void set_rotors(int pixels, const float* slope_x, const float* slope_y, int x, int y, float ratio,
+                Rotors& out) {
+  for (int i = 0; i < pixels; ++i) {
+    const float angle = slope_x[i] * static_cast<float>(x) + slope_y[i] * static_cast<float>(y);
+    out.a.re()[i] = std::cos(angle);
+    out.a.im()[i] = std::sin(angle);
+    out.b.re()[i] = std::cos(ratio * angle);
+    out.b.im()[i] = std::sin(ratio * angle);
+  }
+}
+
+/// Weighted sums of phasors over windows, by themselves and times the offsets.
+struct FrequencySums {
+  float *re, *im, *x_re, *x_im, *y_re, *y_im;
+
+  [[gnu::always_inline]] void add(int i, Complex z, float w, float wx, float wy) const {
+    re[i] += w * z.re;
+    im[i] += w * z.im;
+    x_re[i] += wx * z.re;
+    x_im[i] += wx * z.im;
+    y_re[i] += wy * z.re;
+    y_im[i] += wy * z.im;
+  }
+};
+
+/// Sums over the windows of a row's pixels.
+struct SumRow {
+  FrequencySums a;
+  FrequencySums b;
+  float *s, *sx, *sy, *sxx, *sxy, *syy;  ///< of information, times products of offsets
+  float* s2;                             ///< of information, with squared weights
+};
+
+class WindowSums {
+ public:
+  explicit WindowSums(int cols) {
+    for (auto& values : values_) values.resize(static_cast<std::size_t>(cols));
+  }
+
+  void set_zero() {
+    for (auto& values : values_) std::ranges::fill(values, 0.0F);
+  }
+
+  SumRow row() {
+    const auto at = [this](std::size_t i) { return values_[i].data(); };
+    return {{at(0), at(1), at(2), at(3), at(4), at(5)},
+            {at(6), at(7), at(8), at(9), at(10), at(11)},
+            at(12),
+            at(13),
+            at(14),
+            at(15),
+            at(16),
+            at(17),
+            at(18)};
+  }
+
+ private:
+  std::array<std::vector<float>, 19> values_;
+};
+
+/// Planes of a row, from one pixel on.
+struct PhasePlaneRow {
+  PhasorRow a;
+  PhasorRow b;
+  const float* variance;
+  const float* slope_variance;
+
+  PhasePlaneRow(const PhasePlanes& planes, int v, int offset)
+      : a(planes.a, v, offset),
+        b(planes.b, v, offset),
+        variance(planes.variance.row(v) + offset),
+        slope_variance(planes.slope_variance.row(v) + offset) {}
+};
+
+/// Measurements of a row, from one pixel on.
+struct MeasuredRow {
+  PhasorRow a;
+  PhasorRow b;
+  const float* information;
+
+  MeasuredRow(const Phasors& phasors, int v, int offset)
+      : a(phasors.a, v, offset),
+        b(phasors.b, v, offset),
+        information(phasors.information.row(v) + offset) {}
+};
+
+/// One place in the window.
+struct Place {
+  float x;
+  float y;
+  float weight;
+  float inverse_misfit;  ///< 1 / the largest misfit; 0: all agree
+};
+
+/// Adds the pixels at one place of the windows, as far as their planes agree. Pixels whose misfit
+/// is below a third of the largest weigh in full.
+TOFMAP_VECTOR_CLONES void add_place(int pixels, const Place& place_, const RotorRow& rotor_a_,
+                                    const RotorRow& rotor_b_, const PhasePlaneRow& own_,
+                                    const PhasePlaneRow& other_, const MeasuredRow& measured_,
+                                    const SumRow& sums_) {
+  const Place place = place_;
+  const RotorRow rotor_a = rotor_a_;
+  const RotorRow rotor_b = rotor_b_;
+  const PhasePlaneRow own = own_;
+  const PhasePlaneRow other = other_;
+  const MeasuredRow measured = measured_;
+  const SumRow sums = sums_;
+  const float length2 = place.x * place.x + place.y * place.y;
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    const Complex turn_a = rotor_a[i];
+    const Complex turn_b = rotor_b[i];
+    const float cosines =
+        dot(product(own.a[i], turn_a), other.a[i]) + dot(product(own.b[i], turn_b), other.b[i]);
+    const float noise = own.variance[i] + other.variance[i] + length2 * own.slope_variance[i];
+    const float misfit = (4 - 2 * cosines) / noise * place.inverse_misfit;
+    const float open = 1.5F - 1.5F * misfit;
+    const float share = open < 0 ? 0.0F : (open > 1 ? 1.0F : open);
+    const float w = place.weight * share;
+    const float wx = w * place.x;
+    const float wy = w * place.y;
+    sums.a.add(i, turned_back(measured.a[i], turn_a), w, wx, wy);
+    sums.b.add(i, turned_back(measured.b[i], turn_b), w, wx, wy);
+    const float information = measured.information[i];
+    sums.s[i] += w * information;
+    sums.sx[i] += wx * information;
+    sums.sy[i] += wy * information;
+    sums.sxx[i] += wx * place.x * information;
+    sums.sxy[i] += wx * place.y * information;
+    sums.syy[i] += wy * place.y * information;
+    sums.s2[i] += w * w * information;
+  }
+}
+
+/// The mean phasor of one frequency, and what the offset terms say of the slope: how fast phases
+/// turn away from the mean along x and y.
+struct MeanPhasor {
+  float length;
+  Complex direction;
+  float turn_x;
+  float turn_y;
+
+  MeanPhasor(const FrequencySums& sums, int i)
+      : length(std::hypot(sums.re[i], sums.im[i])),
+        direction{sums.re[i] / length, sums.im[i] / length},
+        turn_x(turned_back({sums.x_re[i], sums.x_im[i]}, direction).im),
+        turn_y(turned_back({sums.y_re[i], sums.y_im[i]}, direction).im) {}
+
+  /// The direction a bit farther on.
+  Complex turned(float angle) const {
+    return product(direction, {std::cos(angle), std::sin(angle)});
+  }
+};
+
+/// The plane of one pixel: a step of Fisher scoring from the plane before, whose slopes the sums
+/// are turned back by. The phases at both frequencies are free, the slope is common to both.
+void solve(const SumRow& sums, int v, int i, const WindowGrowth& growth, const PhasePlanes& before,
+           PhasePlanes& out) {
+  const float s = sums.s[i];
+  if (!(s > 0)) return;
+  const MeanPhasor a(sums.a, i);
+  const MeanPhasor b(sums.b, i);
+  if (!(a.length > 0 && b.length > 0)) return;
+  const auto ratio = static_cast<float>(growth.wavelength_ratio);
+  const float both = 1 + ratio * ratio;
+  const float prior = 1 / static_cast<float>(growth.slope_sigma * growth.slope_sigma);
+  const float mean_x = sums.sx[i] / s;
+  const float mean_y = sums.sy[i] / s;
+  const float xx = both * (sums.sxx[i] - mean_x * sums.sx[i]) + prior;
+  const float xy = both * (sums.sxy[i] - mean_x * sums.sy[i]);
+  const float yy = both * (sums.syy[i] - mean_y * sums.sy[i]) + prior;
+  const float determinant = xx * yy - xy * xy;
+  const float slope_x = before.slope_x.row(v)[i];
+  const float slope_y = before.slope_y.row(v)[i];
+  const float score_x = a.turn_x + ratio * b.turn_x - prior * slope_x;
+  const float score_y = a.turn_y + ratio * b.turn_y - prior * slope_y;
+  const float step_x = (yy * score_x - xy * score_y) / determinant;
+  const float step_y = (xx * score_y - xy * score_x) / determinant;
+  // The mean phasor is that of the middle of the window; the plane's that of the pixel.
+  const float back = -(mean_x * step_x + mean_y * step_y);
+  const Complex at_a = a.turned(back);
+  const Complex at_b = b.turned(ratio * back);
+  const float spread = sums.s2[i] / s;
+  const float lever = yy * mean_x * mean_x - 2 * xy * mean_x * mean_y + xx * mean_y * mean_y;
+  out.a.re.row(v)[i] = at_a.re;
+  out.a.im.row(v)[i] = at_a.im;
+  out.b.re.row(v)[i] = at_b.re;
+  out.b.im.row(v)[i] = at_b.im;
+  out.slope_x.row(v)[i] = slope_x + step_x;
+  out.slope_y.row(v)[i] = slope_y + step_y;
+  out.variance.row(v)[i] = spread / s;
+  out.lever_variance.row(v)[i] = spread * lever / determinant;
+  out.slope_variance.row(v)[i] = 0.5F * spread * (xx + yy) / determinant;
+  out.coherence.row(v)[i] = (a.length + b.length) / (2 * s);
+}
+
+/// One step.
+class WindowStep {
+ public:
+  WindowStep(const Phasors& phasors, int rows, int cols, int margin, const WindowGrowth& growth)
+      : phasors_(phasors),
+        rows_(rows),
+        cols_(cols),
+        margin_(margin),
+        growth_(growth),
+        sums_(cols),
+        right_(cols),
+        down_(cols),
+        row_start_(cols),
+        rotors_(cols) {}
+
+  PhasePlanes grow(const PhasePlanes& before, double radius_px, double inverse_misfit) {
+    PhasePlanes out(rows_, cols_, margin_);
+    for (int v = 0; v < rows_; ++v) {
+      sums_.set_zero();
+      add_window(before, v, static_cast<float>(radius_px), static_cast<float>(inverse_misfit));
+      for (int i = 0; i < cols_; ++i) solve(sums_.row(), v, i, growth_, before, out);
+    }
+    return out;
+  }
+
+ private:
+  void add_window(const PhasePlanes& before, int v, float radius_px, float inverse_misfit) {
+    const int reach = static_cast<int>(std::ceil(radius_px)) - 1;
+    const int top = std::max(-reach, -v);
+    const int bottom = std::min(reach, rows_ - 1 - v);
+    const auto set = [&](int x, int y, Rotors& rotors) {
+      set_rotors(cols_, before.slope_x.row(v), before.slope_y.row(v), x, y,
+                 static_cast<float>(growth_.wavelength_ratio), rotors);
+    };
+    set(1, 0, right_);
+    set(0, 1, down_);
+    set(-reach, top, row_start_);
+    for (int y = top; y <= bottom; ++y) {
+      rotors_ = row_start_;
+      for (int x = -reach; x <= reach; ++x) {
+        const float share = static_cast<float>(x * x + y * y) / (radius_px * radius_px);
+        if (share < 1) {
+          add_place(cols_,
+                    {static_cast<float>(x), static_cast<float>(y), 1 - share, inverse_misfit},
+                    RotorRow(rotors_.a), RotorRow(rotors_.b), PhasePlaneRow(before, v, 0),
+                    PhasePlaneRow(before, v + y, x), MeasuredRow(phasors_, v + y, x), sums_.row());
+        }
+        turn(cols_, rotors_, right_);
+      }
+      turn(cols_, row_start_, down_);
+    }
+  }
+
+  const Phasors& phasors_;
+  int rows_;
+  int cols_;
+  int margin_;
+  const WindowGrowth& growth_;
+  WindowSums sums_;
+  Rotors right_;
+  Rotors down_;
+  Rotors row_start_;
+  Rotors rotors_;
+};
+
+}  // namespace
+
+float phase_information(float sigma_cycles) {
+  const PhasorMoments moments(sigma_cycles);
+  return moments.mean * moments.mean / moments.variance_across;
+}
+
+Phasors::Phasors(int rows, int cols, int margin) : a(rows, cols, margin), b(a), information(a.re) {}
+
+Phasors::Phasors(const ImageF& phase_a, const ImageF& phase_b, const ImageF& sigma_cycles,
+                 int margin)
+    : Phasors(static_cast<int>(phase_a.rows()), static_cast<int>(phase_a.cols()), margin) {
+  for (int v = 0; v < phase_a.rows(); ++v) {
+    for (int u = 0; u < phase_a.cols(); ++u) {
+      const float turn_a = two_pi * phase_a(v, u);
+      const float turn_b = two_pi * phase_b(v, u);
+      if (!std::isfinite(turn_a + turn_b + sigma_cycles(v, u))) continue;
+      const PhasorMoments moments(sigma_cycles(v, u));
+      const float weight = moments.mean / moments.variance_across;
+      a.re.row(v)[u] = weight * std::cos(turn_a);
+      a.im.row(v)[u] = weight * std::sin(turn_a);
+      b.re.row(v)[u] = weight * std::cos(turn_b);
+      b.im.row(v)[u] = weight * std::sin(turn_b);
+      information.row(v)[u] = weight * moments.mean;
+    }
+  }
+}
+
+PhasePlanes::PhasePlanes(int rows, int cols, int margin)
+    : a(rows, cols, margin),
+      b(a),
+      slope_x(a.re),
+      slope_y(a.re),
+      variance(rows, cols, margin, 1e6F),  // nothing is known
+      lever_variance(a.re),
+      slope_variance(a.re),
+      coherence(a.re) {}
+
+PhasePlanes grow_phase_planes(const Phasors& phasors, int rows, int cols,
+                              const WindowGrowth& growth) {
+  const int margin = static_cast<int>(std::ceil(growth.last_radius_px));
+  // Steps of one ratio that end at the last radius.
+  const double whole = growth.last_radius_px / growth.first_radius_px;
+  const int steps =
+      std::max(1, static_cast<int>(std::ceil(std::log(whole) / std::log(growth.growth))));
+  WindowStep step(phasors, rows, cols, margin, growth);
+  // The first windows know nothing to agree with.
+  PhasePlanes planes = step.grow(PhasePlanes(rows, cols, margin),
+                                 std::min(growth.first_radius_px, growth.last_radius_px), 0);
+  for (int i = 1; i <= steps; ++i) {
+    const double radius_px =
+        growth.first_radius_px * std::pow(whole, static_cast<double>(i) / steps);
+    planes = step.grow(planes, radius_px, 1 / growth.max_misfit);
+  }
+  return planes;
+}
+
+}  // namespace tofmap
