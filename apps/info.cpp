@@ -68,6 +68,9 @@ void print_frames(const SequenceReader& source, const RecordingSurvey& survey) {
   } else {
     std::printf("both frequencies: too few pixels with returns at both to compare\n");
   }
+  for (const std::string& remark : remarks_about(survey.errors)) {
+    std::printf("  %s\n", remark.c_str());
+  }
   std::printf("damaged frames: %zu\n", survey.damages.size());
   for (const std::string& damage : survey.damages) std::printf("  %s\n", damage.c_str());
 }

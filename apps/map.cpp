@@ -93,6 +93,7 @@ void write_map_and_path(OutputFolder& out, const RoomMap& map) {
 void write_report(const OutputFolder& out, const FinishedMap& finished, const MapOutput& output) {
   nlohmann::ordered_json report;
   report["summary"] = summary_json(finished.map);
+  report["camera_errors"] = errors_json(finished.map.errors);
   report["consistency"] = consistency_json(finished.consistency);
   report["doubts"] = output.doubts;
   if (!output.failures.empty()) report["failed"] = output.failures.texts();
@@ -119,6 +120,7 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
   std::printf("%zu of %zu frames registered, %zu keyframes, %zu map points\n",
               map.trajectory.size(), map.frames.size(), map.keyframes.size(), map.surface.size());
   if (map.damaged() > 0) std::printf("%d frames were damaged, see report.json\n", map.damaged());
+  for (const std::string& remark : remarks_about(map.errors)) std::printf("%s\n", remark.c_str());
   std::printf("map: %s, mesh beside it\n", (folder / "map.ply").c_str());
 }
 

@@ -104,6 +104,7 @@ UnwrappedRecording unwrap_recording(const SequenceReader& source, const Trajecto
                                             options.pipeline.filters};
   FrameFusion fusion(source.sensor().camera, rays, poses, options.fusion);
   auto unwrappers = one_a_thread(Unwrapper(source.sensor(), options.pipeline.unwrap));
+  MeasuredRecording measured(source, options.pipeline.unwrap);
   const int total = *source.frame_count();
   const std::vector<std::filesystem::path> names = image_names(source);
   UnwrappedRecording result;
@@ -114,8 +115,11 @@ UnwrappedRecording unwrap_recording(const SequenceReader& source, const Trajecto
   Progress progress("unwrapping frame", total, arguments.common.quiet);
   for (int begin = 0; begin < total && !is_interrupted();) {
     const int end = std::min(total, begin + omp_get_max_threads());
+    const std::vector<MeasuredSource> sources = measured.read(begin, end);
     const auto unwrap_one = [&](Unwrapper& unwrapper, int i) {
-      UnwrappedFrame frame = unwrap_frame(source, begin + i, unwrapper, rays, frame_options);
+      UnwrappedFrame frame =
+          unwrap_frame(sources[static_cast<std::size_t>(i)], source.sensor().modulation, unwrapper,
+                       rays, frame_options);
       const auto index = static_cast<std::size_t>(begin + i);
       frame.name = names[index];
       if (frame.name != source.files()[index].phase_a.filename()) {

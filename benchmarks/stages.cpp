@@ -27,8 +27,10 @@ struct Example {
     frame = simulator.simulate(middle).frame;
     Unwrapper unwrapper(simulator.sensor(), options.unwrap);
     const SensorModel& sensor = simulator.sensor();
-    prepared = prepare_frame(frame, unwrapper, sensor, rays, options);
-    next = prepare_frame(simulator.simulate(middle + 1).frame, unwrapper, sensor, rays, options);
+    FrameMeasurer measurer(sensor, options.unwrap);
+    prepared = prepare_frame(measure_frame(frame, measurer), unwrapper, sensor, rays, options);
+    next = prepare_frame(measure_frame(simulator.simulate(middle + 1).frame, measurer), unwrapper,
+                         sensor, rays, options);
   }
 };
 

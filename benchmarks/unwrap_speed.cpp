@@ -68,7 +68,8 @@ void pass_count_messages(benchmark::State& state, const Size& size) {
   constexpr int iterations = 3;
   const Example& e = example(size);
   CountModel model;
-  model.assign(e.frame, beat_limits(e.sensor, 0), estimate_phase_noise(e.frame), {});
+  model.assign(e.frame, beat_limits(e.sensor, 0),
+               PhaseSigma(e.frame, estimate_phase_noise(e.frame)), 0, {});
   CountPropagation propagation;
   for (auto _ : state) benchmark::DoNotOptimize(propagation.run(model, iterations));
   count_pixel_iterations(state, size, iterations);

@@ -106,6 +106,18 @@ StageTimes mean_times(const RoomMap& map) {
   return mean;
 }
 
+Json errors_json(const ErrorSurvey& survey) {
+  return {{"offset_m", survey.camera.offset_m()},
+          {"periodic_rms_m", survey.camera.periodic_rms_m()},
+          {"per_decade_m", survey.camera.per_decade_m()},
+          {"systematic_m", survey.camera.systematic_m},
+          {"exposure_flow_px", survey.flow_px},
+          {"ambient_share", survey.ambient_share},
+          {"ambient_factor", survey.ambient_factor},
+          {"frames", survey.frames},
+          {"remarks", remarks_about(survey)}};
+}
+
 Json summary_json(const RoomMap& map) {
   const StageTimes mean = mean_times(map);
   int degenerate = 0;

@@ -35,6 +35,7 @@ MapCloud wrapped_map(const MapPageSubject& subject, PageProgress& progress) {
   PipelineOptions options = subject.options.pipeline;
   options.unwrap.method = "none";
   options.map.min_observations = 1;  // there are but some of the frames
+  FrameMeasurer measurer(subject.sensor, options.unwrap);
   Unwrapper unwrapper(subject.sensor, options.unwrap);
   const PixelRays rays = pixel_rays(subject.sensor.camera);
   SurfaceMap map(options.map);
@@ -42,7 +43,9 @@ MapCloud wrapped_map(const MapPageSubject& subject, PageProgress& progress) {
     progress.next_frame();
     const auto pose = pose_at(subject.map.trajectory, frame.timestamp_s);
     if (!pose) continue;
-    map.integrate(*prepare_frame(frame, unwrapper, subject.sensor, rays, options).cloud, *pose);
+    const PreparedFrame prepared =
+        prepare_frame(measure_frame(frame, measurer), unwrapper, subject.sensor, rays, options);
+    map.integrate(*prepared.cloud, *pose);
   }
   return map.extract();
 }

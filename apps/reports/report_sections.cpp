@@ -21,8 +21,9 @@ namespace {
 
 StagedFrame staged_frame(const DualFrequencyFrame& frame, const SensorModel& sensor,
                          const PixelRays& rays, const PipelineOptions& pipeline,
-                         Unwrapper& unwrapper) {
-  const PreparedFrame prepared = prepare_ranges(frame, unwrapper, sensor, rays, pipeline);
+                         FrameMeasurer& measurer, Unwrapper& unwrapper) {
+  const PreparedFrame prepared =
+      prepare_ranges(measure_frame(frame, measurer), unwrapper, sensor, rays, pipeline);
   StagedFrame staged;
   staged.title = formatted("Frame %d, %.2f s", frame.index, frame.timestamp_s);
   staged.amplitude = frame.amplitude_a;
@@ -48,12 +49,13 @@ void add_frames(ReportPage& page, const std::vector<DualFrequencyFrame>& frames,
                 const ReportOptions& options, PageProgress& progress) {
   if (frames.empty() || options.frames == 0) return;
   const PixelRays rays = pixel_rays(sensor.camera);
+  FrameMeasurer measurer(sensor, pipeline.unwrap);
   Unwrapper unwrapper(sensor, pipeline.unwrap);
   std::vector<StagedFrame> staged;
   for (const int i : spread_indices(static_cast<int>(frames.size()), options.frames)) {
     progress.next_frame();
     const DualFrequencyFrame& frame = frames[static_cast<std::size_t>(i)];
-    staged.push_back(staged_frame(frame, sensor, rays, pipeline, unwrapper));
+    staged.push_back(staged_frame(frame, sensor, rays, pipeline, measurer, unwrapper));
     if (auto truth = truth_m(frame.index)) staged.back().truth_m = *std::move(truth);
   }
   const FrameStrip strip = frame_strip(staged, sensor.modulation.wavelength_a_m());

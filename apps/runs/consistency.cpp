@@ -48,16 +48,21 @@ Consistency consistency_of(const RoomMap& map, const std::vector<DualFrequencyFr
   auto unwrappers = one_a_thread(Unwrapper(sensor, pipeline.unwrap));
   const std::vector<int> chosen =
       spread_indices(static_cast<int>(frames.size()), consistency_frames(sensor.camera));
+  FrameMeasurer measurer(sensor, pipeline.unwrap);
+  std::vector<TimedMeasurement> measured;
+  for (const int i : chosen) {
+    measured.push_back(measure_frame(frames[static_cast<std::size_t>(i)], measurer));
+  }
   const auto prepare = [&](Unwrapper& unwrapper, int i) {
-    const auto frame = static_cast<std::size_t>(chosen[static_cast<std::size_t>(i)]);
-    PreparedFrame ranges = prepare_ranges(frames[frame], unwrapper, sensor, rays, pipeline);
+    PreparedFrame ranges =
+        prepare_ranges(measured[static_cast<std::size_t>(i)], unwrapper, sensor, rays, pipeline);
     return std::pair(std::move(ranges.unwrapped.image), std::move(ranges.filtered.image));
   };
   std::vector<RangedFrame> unwrapped;
   std::vector<RangedFrame> filtered;
   auto images = side_by_side(static_cast<int>(chosen.size()), unwrappers, prepare);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
-    const DualFrequencyFrame& frame = frames[static_cast<std::size_t>(chosen[i])];
+    const DualFrequencyFrame& frame = measured[i].frame.returns;
     const auto pose = pose_at(map.trajectory, frame.timestamp_s);
     unwrapped.push_back({&frame, std::move(images[i].first), pose});
     filtered.push_back({&frame, std::move(images[i].second), pose});

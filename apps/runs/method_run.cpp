@@ -7,6 +7,7 @@
 #include "console/progress.hpp"
 #include "input/sampled_frames.hpp"
 #include "output/frame_report.hpp"
+#include "runs/measured_recording.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -34,13 +35,14 @@ struct UnwrappedFrame {
 };
 
 UnwrappedFrame unwrap_frame(const SequenceReader& recording, const RecordedTruth& recorded,
-                            int index, Unwrapper& unwrapper) {
-  const SourcedFrame sourced = recording.read(index);
-  if (!sourced.frame) return {std::nullopt, sourced.damage};
+                            const MeasuredSource& source, Unwrapper& unwrapper) {
+  if (!source.measured) return {std::nullopt, source.sourced.damage};
   const auto start = std::chrono::steady_clock::now();
-  const UnwrapResult unwrapped = unwrapper.unwrap(*sourced.frame);
+  const UnwrapResult unwrapped = unwrapper.unwrap(source.measured->frame);
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
-  return {record_of_index(unwrapped, spent.count(), recording, recorded, index), ""};
+  return {record_of_index(unwrapped, source.measured->milliseconds + spent.count(), recording,
+                          recorded, source.sourced.index),
+          ""};
 }
 
 }  // namespace
@@ -129,13 +131,15 @@ MethodResult run_unwrapping(const std::string& method, const SequenceReader& rec
   options.method = method;
   const int total = *recording.frame_count();
   auto unwrappers = one_a_thread(Unwrapper(recording.sensor(), options));
+  MeasuredRecording measured(recording, options);
   Progress progress("method " + method + ", frame", total, quiet);
   int done = 0;
   std::string first_damage;
   while (done < total && !is_interrupted()) {
     const int end = std::min(total, done + omp_get_max_threads());
+    const std::vector<MeasuredSource> sources = measured.read(done, end);
     const auto unwrap_one = [&](Unwrapper& unwrapper, int i) {
-      return unwrap_frame(recording, recorded, done + i, unwrapper);
+      return unwrap_frame(recording, recorded, sources[static_cast<std::size_t>(i)], unwrapper);
     };
     for (const UnwrappedFrame& frame : side_by_side(end - done, unwrappers, unwrap_one)) {
       if (frame.record) result.frames.push_back(*frame.record);

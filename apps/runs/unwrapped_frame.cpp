@@ -36,36 +36,40 @@ ImageU16 confidence_u16(const ImageF& confidence) {
 
 }  // namespace
 
-UnwrappedFrame unwrap_frame(const SequenceReader& source, int index, Unwrapper& unwrapper,
-                            const PixelRays& rays, const UnwrappedFrameOptions& options) {
-  const SourcedFrame sourced = source.read(index);
+UnwrappedFrame unwrap_frame(const MeasuredSource& source, const Modulation& modulation,
+                            Unwrapper& unwrapper, const PixelRays& rays,
+                            const UnwrappedFrameOptions& options) {
+  const SourcedFrame& sourced = source.sourced;
   UnwrappedFrame out;
   out.timestamp_s = sourced.timestamp_s;
-  if (!sourced.frame) {
+  if (!source.measured) {
     out.damage = sourced.damage;
     out.report = damaged_json(sourced);
     return out;
   }
   const auto start = std::chrono::steady_clock::now();
-  const UnwrapResult result = unwrapper.unwrap(*sourced.frame);
+  const UnwrapResult result = unwrapper.unwrap(source.measured->frame);
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
   out.image = drop_low_confidence(result.image, options.min_confidence);
   out.out_of_range = drop_out_of_range(out.image);
-  out.report = {{"index", index},
+  out.report = {{"index", sourced.index},
                 {"timestamp", sourced.timestamp_s},
-                {"milliseconds", spent.count()},
+                {"milliseconds", source.measured->milliseconds + spent.count()},
                 {"iterations", result.iterations},
                 {"converged", result.converged},
                 {"curl_violations", result.curl_violations},
                 {"largest_message_change", result.largest_message_change},
                 {"phase_noise_cycles", result.phase_noise_cycles},
+                {"frequency_offset_m", result.errors.camera.offset_m()},
+                {"systematic_m", result.errors.camera.systematic_m},
+                {"exposure_flow_px", result.errors.flow_px},
                 {"regions", result.regions},
                 {"ambiguous_pixels", count_reason(result.image, InvalidReason::ambiguous)},
                 {"saturated_pixels", count_reason(result.image, InvalidReason::saturated)},
                 {"valid_pixels", out.image.count_valid()}};
   if (options.with_filters) {
     FilterResult filtered =
-        apply_filters(out.image, *sourced.frame, source.sensor().modulation, rays, options.filters);
+        apply_filters(out.image, source.measured->frame.returns, modulation, rays, options.filters);
     out.image = std::move(filtered.image);
     add_filter_counts(out.report, filtered.counts);
   }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "runs/measured_recording.hpp"
+
 #include <filesystem>
 #include <string>
 
@@ -30,9 +32,10 @@ struct UnwrappedFrame {
   nlohmann::ordered_json report;  ///< what became of it
 };
 
-/// Reads and unwraps one frame of a recording; the name of its images is still to be given.
-UnwrappedFrame unwrap_frame(const SequenceReader& source, int index, Unwrapper& unwrapper,
-                            const PixelRays& rays, const UnwrappedFrameOptions& options);
+/// Unwraps one frame of a recording; the name of its images is still to be given.
+UnwrappedFrame unwrap_frame(const MeasuredSource& source, const Modulation& modulation,
+                            Unwrapper& unwrapper, const PixelRays& rays,
+                            const UnwrappedFrameOptions& options);
 
 /// Makes pixels invalid, with the reason out_of_range, whose range does not fit into 16 bits of
 /// millimetres: below 0.5 mm or beyond 65.535 m. Returns how many.

@@ -163,8 +163,10 @@ TEST(PrepareRanges, AreThoseOfTheWholeFrame) {
   const PixelRays rays = pixel_rays(sensor.camera);
   const PipelineOptions options;
   Unwrapper unwrapper(sensor, options.unwrap);
-  const PreparedFrame whole = prepare_frame(frame, unwrapper, sensor, rays, options);
-  const PreparedFrame ranges = prepare_ranges(frame, unwrapper, sensor, rays, options);
+  FrameMeasurer measurer(sensor, options.unwrap);
+  const TimedMeasurement measured = measure_frame(frame, measurer);
+  const PreparedFrame whole = prepare_frame(measured, unwrapper, sensor, rays, options);
+  const PreparedFrame ranges = prepare_ranges(measured, unwrapper, sensor, rays, options);
   EXPECT_TRUE(whole.cloud);
   EXPECT_FALSE(ranges.cloud);
   EXPECT_TRUE((ranges.unwrapped.image.wrap_count == whole.unwrapped.image.wrap_count).all());

@@ -56,7 +56,7 @@ DualFrequencyFrame noisy_walls(int rows, int cols, const BeatLimits& limits, int
 
 CountModel model_of(const DualFrequencyFrame& frame, const BeatLimits& limits) {
   CountModel model;
-  model.assign(frame, limits, {noise_cycles * 100, noise_cycles * 100}, {});
+  model.assign(frame, limits, PhaseSigma(frame, {noise_cycles * 100, noise_cycles * 100}), 0, {});
   return model;
 }
 

@@ -12,7 +12,6 @@
 
 #include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/core/trajectory.hpp>
-#include <tofmap/unwrap/exposure_motion.hpp>
 #include <tofmap/unwrap/range_fusion.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
@@ -295,70 +294,6 @@ TEST(Fusion, AllowsForTheMotionBetweenTheExposures) {
   EXPECT_NEAR(mean_error_m({}), 0, 0.001);
 }
 
-/// Ranges to a floor and two walls from a camera, and rays.
-struct Corner {
-  PixelRays rays;
-
-  Corner() {
-    CameraModel camera{
-        .width_px = 88, .height_px = 72, .fx_px = 64, .fy_px = 64, .cx_px = 43.5, .cy_px = 35.5};
-    rays = pixel_rays(camera);
-  }
-
-  ImageF ranges_from(const Pose& world_from_camera) const {
-    ImageF range_m(rays.x.rows(), rays.x.cols());
-    for (Eigen::Index i = 0; i < range_m.size(); ++i) {
-      const Eigen::Vector3d ray =
-          world_from_camera.linear() *
-          Eigen::Vector3d(rays.x.data()[i], rays.y.data()[i], rays.z.data()[i]);
-      const Eigen::Vector3d origin = world_from_camera.translation();
-      double nearest = 1e9;
-      const auto hit = [&](const Eigen::Vector3d& normal, double distance_m) {
-        const double toward = normal.dot(ray);
-        if (toward > 0) nearest = std::min(nearest, (distance_m - normal.dot(origin)) / toward);
-      };
-      hit(Eigen::Vector3d::UnitY(), 1.5);
-      hit(Eigen::Vector3d(0.6, 0, 0.8), 5);
-      hit(Eigen::Vector3d(-0.8, 0, 0.6), 4);
-      hit(Eigen::Vector3d(0, -0.8, 0.6), 4);
-      range_m.data()[i] = static_cast<float>(nearest);
-    }
-    return range_m;
-  }
-};
-
-float median(ImageF values) {
-  std::nth_element(values.data(), values.data() + values.size() / 2, values.data() + values.size());
-  return values.data()[values.size() / 2];
-}
-
-TEST(ExposureMotion, IsFoundFromTheDifferenceOfRanges) {
-  const Corner corner;
-  const Eigen::Vector3d translation_m(0.02, -0.01, 0.05);
-  const Eigen::Vector3d rotation_rad(0.004, -0.008, 0.003);
-  Pose moved = Pose::Identity();
-  moved.translation() = translation_m;
-  moved.linear() =
-      Eigen::AngleAxisd(rotation_rad.norm(), rotation_rad.normalized()).toRotationMatrix();
-  const ImageF at_a = corner.ranges_from(Pose::Identity());
-  const ImageF residual_m = at_a - corner.ranges_from(moved);
-  const ImageF sigma_m = ImageF::Constant(at_a.rows(), at_a.cols(), 0.001F);
-  const ExposureMotion motion = estimate_exposure_motion(at_a, residual_m, sigma_m, corner.rays);
-  // The equation is linear in a motion of 6 cm and half a degree: a few percent of it remain.
-  EXPECT_LT((motion.translation_m.cast<double>() - translation_m).norm(), 0.003);
-  EXPECT_LT((motion.rotation_rad.cast<double>() - rotation_rad).norm(), 0.0008);
-  const ImageF left = (residual_m - range_shrinkage_m(motion, at_a, corner.rays)).abs();
-  // Where two planes meet there is no tangent.
-  EXPECT_LT(median(left), 0.05 * median(residual_m.abs()));
-}
-
-TEST(ExposureMotion, IsUnknownWithoutResiduals) {
-  const Corner corner;
-  const ImageF range_m = corner.ranges_from(Pose::Identity());
-  const ImageF none = ImageF::Constant(range_m.rows(), range_m.cols(), NAN);
-  EXPECT_EQ(estimate_exposure_motion(range_m, none, range_m, corner.rays).pixels, 0);
-}
-
 TEST(Fusion, LeavesAPixelAloneWhoseFrequenciesDisagree) {
   SensorModel sensor;
   sensor.modulation = {29e6, 31e6};
@@ -367,8 +302,8 @@ TEST(Fusion, LeavesAPixelAloneWhoseFrequenciesDisagree) {
   frame.phase_a = ImageF::Constant(1, 1, 0.5F);
   frame.phase_b = ImageF::Constant(1, 1, 0.9F);
   frame.amplitude_a = frame.amplitude_b = ImageF::Constant(1, 1, 1.0F);
-  const FusedRanges out = fuse_ranges(
-      pair_ranges(frame, ImageU8::Constant(1, 1, 1), limits, PhaseSigma(frame, {0.01, 0.01})), {});
+  const FusedRanges out =
+      fuse_ranges(frame, ImageU8::Constant(1, 1, 1), limits, PhaseSigma(frame, {0.01, 0.01}), 0);
   EXPECT_FLOAT_EQ(out.range_m(0, 0), static_cast<float>(1.5 * limits.wavelength_a_m));
   EXPECT_FLOAT_EQ(out.sigma_m(0, 0), static_cast<float>(0.01 * limits.wavelength_a_m));
 }
@@ -379,15 +314,17 @@ TEST(Halving, AveragesPhasorsAndTheirNoise) {
   frame.phase_a << 0.95F, 0.05F, 0.95F, 0.05F, 0.25F, NAN;
   frame.phase_b = frame.phase_a;
   frame.amplitude_a = frame.amplitude_b = ImageF::Constant(3, 2, 10.0F);
-  const DualFrequencyFrame half = halve(frame);
+  const auto [half, sigma] = halve(frame, PhaseSigma(frame, {.scale_a = 0.4, .scale_b = 0.4}));
   ASSERT_EQ(half.phase_a.rows(), 2);
   ASSERT_EQ(half.phase_a.cols(), 1);
   const float from_zero = half.phase_a(0, 0) - std::round(half.phase_a(0, 0));
   EXPECT_NEAR(from_zero, 0, 1e-6) << "the mean of phases on both sides of 0";
-  EXPECT_NEAR(half.amplitude_a(0, 0), 10 * std::cos(0.1 * 3.14159265), 1e-4);
-  // One pixel alone is no less noisy in a block: half the scale takes half the amplitude.
+  const double agreement = std::cos(0.1 * 3.14159265);
+  EXPECT_NEAR(half.amplitude_a(0, 0), 10 * agreement, 1e-4);
+  EXPECT_NEAR(sigma.a_cycles(0, 0), 0.04 / 2 / agreement, 1e-6) << "of four pixels";
   EXPECT_NEAR(half.phase_a(1, 0), 0.25, 1e-6);
-  EXPECT_NEAR(half.amplitude_a(1, 0), 5, 1e-4);
+  EXPECT_NEAR(half.amplitude_a(1, 0), 10, 1e-4);
+  EXPECT_NEAR(sigma.a_cycles(1, 0), 0.04, 1e-6) << "one pixel alone is no less noisy in a block";
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <pcl/kdtree/kdtree_flann.h>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/frequency_residual.hpp>
 #include <tofmap/core/median.hpp>
 
 namespace tofmap {
@@ -40,7 +41,8 @@ ImageF beat_residuals(const RangedFrame& ranged, const Modulation& modulation) {
     const double phase_b = ranged.frame->phase_b.data()[i];
     if (image.reason.data()[i] != 0 || std::isnan(phase_a) || std::isnan(phase_b)) continue;
     const double cycles_a = phase_a + image.wrap_count.data()[i];
-    residuals.data()[i] = static_cast<float>(nearest_cycle(cycles_a * ratio - phase_b));
+    residuals.data()[i] = frequency_residual_cycles(
+        static_cast<float>(cycles_a), static_cast<float>(phase_b), static_cast<float>(ratio));
   }
   return residuals;
 }
@@ -64,18 +66,12 @@ double mean_around(const ImageF& residuals, const ImageU8& counts, Eigen::Index 
   return nearest_cycle(residuals(row, col) + sum / pixels);
 }
 
-/// By how little another wrap count of A moves phase B, in cycles: of counts up to three away that
-/// the frequencies can tell. NaN if they can tell none, as if one were a multiple of the other.
+/// By how little another wrap count of A moves phase B, in cycles: of counts up to three away,
+/// since farther ones are as many wavelengths off, and no near miss.
 double smallest_step_cycles(const Modulation& modulation) {
-  constexpr int counts_away = 3;       // farther ones are as many wavelengths off: no near miss
-  constexpr double least_step = 1e-3;  // cycles; less is no difference
-  const double ratio = modulation.wavelength_a_m() / modulation.wavelength_b_m();
-  double smallest = nan;
-  for (int count = 1; count <= counts_away; ++count) {
-    const double step = std::abs(nearest_cycle(count * ratio));
-    if (step > least_step && !(step >= smallest)) smallest = step;
-  }
-  return smallest;
+  constexpr int counts = 4;
+  return residual_step_m(modulation.wavelength_a_m(), modulation.wavelength_b_m(), counts) /
+         modulation.wavelength_b_m();
 }
 
 /// Points of one frame in another: how many fall on a range, and how many of these it sees through.

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/frequency_residual.hpp>
 #include <tofmap/core/median.hpp>
 #include <tofmap/core/vector_clones.hpp>
 
@@ -34,8 +35,11 @@ TOFMAP_VECTOR_CLONES void fill_difference(int pixels, const FrameRow& from_, flo
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
     const float cycles_a = from.phase_a[i] + static_cast<float>(from.wrap_count[i]);
-    const float cycles = cycles_a * wavelengths_b - from.phase_b[i];
-    const float wrapped = cycles - std::floor(cycles + 0.5F);
+    const float phase_b = from.phase_b[i];
+    const bool is_present = cycles_a == cycles_a && phase_b == phase_b;
+    const float wrapped = frequency_residual_cycles(is_present ? cycles_a : 0.0F,
+                                                    is_present ? phase_b : 0.0F, wavelengths_b) +
+                          0 * cycles_a + 0 * phase_b;
     const float sigma_a = wavelength_a_m / from.amplitude_a[i];
     const float sigma_b = wavelength_b_m / from.amplitude_b[i];
     const float z = from.ray_z[i];

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/frequency_residual.hpp>
 
 namespace tofmap {
 namespace {
@@ -131,8 +132,8 @@ double beat_cost(const Region& region, int change, const RangeImage& image,
   for (const Pixel at : region.pixels) {
     const double a_cycles =
         frame.phase_a(at.row, at.col) + image.wrap_count(at.row, at.col) + change;
-    const double beat = a_cycles * b_per_a - frame.phase_b(at.row, at.col);
-    const double residual = beat - std::round(beat);
+    const double residual = frequency_residual_cycles(
+        static_cast<float>(a_cycles), frame.phase_b(at.row, at.col), static_cast<float>(b_per_a));
     // The range is the mean of A's and B's, their difference twice as uncertain.
     const double sigma = 2 * image.sigma_m(at.row, at.col) / modulation.wavelength_a_m();
     sum += std::min(sure_nats, residual * residual / (2 * sigma * sigma));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include <tofmap/core/frequency_residual.hpp>
 #include <tofmap/core/median.hpp>
 #include <tofmap/core/modulation.hpp>
 #include <tofmap/core/text.hpp>
@@ -57,8 +58,11 @@ class Differences {
     for (int n = 0; n < count_a_; ++n) {
       const double range_a_m = a_m_ * (phases.a_cycles + n);
       if (n > 0 && range_a_m > farthest_m_) return;
-      const double wraps_b = std::round((range_a_m - about_m) / b_m_ - phases.b_cycles);
-      if (wraps_b >= 0) use(range_a_m - b_m_ * (phases.b_cycles + wraps_b));
+      const double difference_m =
+          about_m +
+          frequency_residual_m(a_m_, b_m_, phases.a_cycles + n - about_m / a_m_, phases.b_cycles);
+      const double wraps_b = (range_a_m - difference_m) / b_m_ - phases.b_cycles;
+      if (wraps_b > -0.5) use(difference_m);
     }
   }
 

@@ -42,18 +42,36 @@ std::vector<SourcedFrame> take(FrameSource& source, int count) {
   return frames;
 }
 
-/// Prepares frames side by side; damaged ones stay empty.
+/// Measures frames in their order and prepares them side by side; damaged ones stay empty.
 std::vector<std::optional<PreparedFrame>> prepare_all(const std::vector<SourcedFrame>& frames,
+                                                      FrameMeasurer& measurer, ErrorTally& errors,
                                                       std::vector<Unwrapper>& unwrappers,
                                                       const SensorModel& sensor,
                                                       const PixelRays& rays,
                                                       const PipelineOptions& options) {
+  std::vector<std::optional<TimedMeasurement>> measured;
+  for (const SourcedFrame& sourced : frames) {
+    measured.push_back(sourced.frame ? std::optional(measure_frame(*sourced.frame, measurer))
+                                     : std::nullopt);
+    if (measured.back()) errors.add(measured.back()->frame);
+  }
   return side_by_side(
       static_cast<int>(frames.size()), unwrappers, [&](Unwrapper& unwrapper, int i) {
-        const std::optional<DualFrequencyFrame>& frame = frames[static_cast<std::size_t>(i)].frame;
+        const auto& frame = measured[static_cast<std::size_t>(i)];
         return frame ? std::optional(prepare_frame(*frame, unwrapper, sensor, rays, options))
                      : std::nullopt;
       });
+}
+
+/// The first frames of a recording tell what the camera is like.
+void look_ahead(const std::vector<SourcedFrame>& first, FrameMeasurer& measurer) {
+  std::vector<DualFrequencyFrame> frames;
+  for (const SourcedFrame& sourced : first) {
+    if (sourced.frame && frames.size() < FrameMeasurer::frames_ahead) {
+      frames.push_back(*sourced.frame);
+    }
+  }
+  measurer.look_ahead(frames);
 }
 
 FrameRecord damaged_record(const SourcedFrame& frame) {
@@ -111,15 +129,23 @@ int RoomMap::damaged() const {
       frames, [](const FrameRecord& record) { return !record.damage.empty(); }));
 }
 
-PreparedFrame prepare_ranges(const DualFrequencyFrame& frame, Unwrapper& unwrapper,
+TimedMeasurement measure_frame(const DualFrequencyFrame& frame, FrameMeasurer& measurer) {
+  TimedMeasurement out;
+  out.frame = timed(out.milliseconds, [&] { return measurer.measure(frame); });
+  return out;
+}
+
+PreparedFrame prepare_ranges(const TimedMeasurement& measured, Unwrapper& unwrapper,
                              const SensorModel& sensor, const PixelRays& rays,
                              const PipelineOptions& options) {
+  const DualFrequencyFrame& returns = measured.frame.returns;
   PreparedFrame out;
-  out.index = frame.index;
-  out.timestamp_s = frame.timestamp_s;
-  out.unwrapped = timed(out.times.unwrap_ms, [&] { return unwrapper.unwrap(frame); });
+  out.index = returns.index;
+  out.timestamp_s = returns.timestamp_s;
+  out.times.unwrap_ms = measured.milliseconds;
+  out.unwrapped = timed(out.times.unwrap_ms, [&] { return unwrapper.unwrap(measured.frame); });
   out.filtered = timed(out.times.filter_ms, [&] {
-    return apply_filters(out.unwrapped.image, frame, sensor.modulation, rays, options.filters);
+    return apply_filters(out.unwrapped.image, returns, sensor.modulation, rays, options.filters);
   });
   // Wrapped ranges are those of a camera that knows of no wraps: how likely they are right would
   // tell registration what only unwrapping knows.
@@ -127,10 +153,10 @@ PreparedFrame prepare_ranges(const DualFrequencyFrame& frame, Unwrapper& unwrapp
   return out;
 }
 
-PreparedFrame prepare_frame(const DualFrequencyFrame& frame, Unwrapper& unwrapper,
+PreparedFrame prepare_frame(const TimedMeasurement& measured, Unwrapper& unwrapper,
                             const SensorModel& sensor, const PixelRays& rays,
                             const PipelineOptions& options) {
-  PreparedFrame out = prepare_ranges(frame, unwrapper, sensor, rays, options);
+  PreparedFrame out = prepare_ranges(measured, unwrapper, sensor, rays, options);
   out.cloud = timed(out.times.cloud_ms, [&] {
     return std::make_shared<const SurfaceCloud>(
         surface_cloud(out.filtered.image, rays, options.cloud));
@@ -143,6 +169,7 @@ MapRun::MapRun(const SensorModel& sensor, const PipelineOptions& options)
       options_(options),
       rays_(pixel_rays(sensor.camera)),
       mapper_(sensor.camera, options.odometry, options.registration, options.loops, options.map),
+      measurer_(sensor, options.unwrap),
       unwrappers_(one_a_thread(Unwrapper(sensor, options.unwrap))) {}
 
 void MapRun::advance(FrameSource& source, const MapHooks& hooks) {
@@ -151,9 +178,14 @@ void MapRun::advance(FrameSource& source, const MapHooks& hooks) {
     return !is_interrupted_;
   };
   while (may_go_on()) {
-    std::vector<SourcedFrame> frames = take(source, omp_get_max_threads());
+    const bool is_first = frames_.empty();
+    const int batch = is_first ? std::max(FrameMeasurer::frames_ahead, omp_get_max_threads())
+                               : omp_get_max_threads();
+    std::vector<SourcedFrame> frames = take(source, batch);
     if (frames.empty()) break;
-    const auto prepared = prepare_all(frames, unwrappers_, sensor_, rays_, options_);
+    if (is_first) look_ahead(frames, measurer_);
+    const auto prepared =
+        prepare_all(frames, measurer_, errors_, unwrappers_, sensor_, rays_, options_);
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (prepared[i] && hooks.on_frame) hooks.on_frame(*prepared[i]);
       frames_.push_back(prepared[i] ? place(*prepared[i], mapper_) : damaged_record(frames[i]));
@@ -172,6 +204,7 @@ RoomMap MapRun::finish() {
   map.surface = mapper_.surface();
   map.loops = mapper_.loops();
   map.frames = std::move(frames_);
+  map.errors = errors_.survey();
   map.interrupted = is_interrupted_;
   return map;
 }

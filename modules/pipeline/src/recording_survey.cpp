@@ -169,6 +169,7 @@ RecordingSurvey survey_recording(const SequenceReader& recording,
   survey_times(recording.files(), survey);
   survey.axial_depth_doubt = axial_depth_doubt(some, sensor);
   survey.beat = survey_beat(some, sensor);
+  survey.errors = survey_errors(some, sensor);
   return survey;
 }
 

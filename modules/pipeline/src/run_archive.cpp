@@ -40,6 +40,7 @@ void MapRun::save(std::ostream& out) const {
     boost::archive::binary_oarchive archive(out);
     archive << frames_;
   }
+  measurer_.save(out);
   mapper_.save(out);
 }
 
@@ -48,6 +49,7 @@ void MapRun::load(std::istream& in) {
     boost::archive::binary_iarchive archive(in);
     archive >> frames_;
   }
+  measurer_.load(in);
   mapper_.load(in);
 }
 

@@ -30,13 +30,8 @@ struct CountStep {
 };
 
 CountStep count_step(const BeatLimits& limits, int n) {
-  const double cycles_b = n * limits.wavelength_a_m / limits.wavelength_b_m;
-  const double farthest = limits.max_range_m / limits.wavelength_a_m + noise_tolerance_cycles - n;
-  const bool is_count = n >= 0 && n < limits.count_a;
-  return {static_cast<float>(cycles_b - std::round(cycles_b)), n == 0 ? 1.0F
-                                                               : is_count
-                                                                   ? static_cast<float>(farthest)
-                                                                   : -1.0F};
+  const double ratio = limits.wavelength_ratio();
+  return {static_cast<float>(residual_shift_cycles(ratio, n)), farthest_phase_cycles(limits, n)};
 }
 
 /// Pixels treated at a time: what is known of them so far stays in the first-level cache.
@@ -84,14 +79,16 @@ struct Pixels {
 /// The beat of count 0, and half its inverse variance, both in cycles of B. Without a return the
 /// phase is beyond any limit.
 TOFMAP_VECTOR_CLONES void fill_beat(int pixels, const Pixels& from_, float wavelength_ratio,
-                                    float* phase_a, float* beat_cycles, float* precision) {
+                                    float residual_variance, float* phase_a, float* beat_cycles,
+                                    float* precision) {
   constexpr float beyond_any_limit = 1e9F;
   const Pixels from = from_;
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
     const float beat = from.phase_a[i] * wavelength_ratio - from.phase_b[i];
     const float sigma_a = from.sigma_a[i] * wavelength_ratio;
-    const float variance = sigma_a * sigma_a + from.sigma_b[i] * from.sigma_b[i];
+    const float variance =
+        sigma_a * sigma_a + from.sigma_b[i] * from.sigma_b[i] + residual_variance;
     const bool is_present = beat == beat;
     phase_a[i] = is_present ? from.phase_a[i] : beyond_any_limit;
     beat_cycles[i] = is_present ? beat : 0.0F;
@@ -172,10 +169,19 @@ BeatLimits beat_limits(const SensorModel& sensor, double max_range_m) {
 }
 
 float beat_residual_m(const BeatLimits& limits, float phase_a, float phase_b, int n_a) {
-  const auto range_a_m = static_cast<float>((phase_a + n_a) * limits.wavelength_a_m);
-  const auto wavelength_b_m = static_cast<float>(limits.wavelength_b_m);
-  const float cycles_b = range_a_m / wavelength_b_m - phase_b;
-  return (cycles_b - std::round(cycles_b)) * wavelength_b_m;
+  return static_cast<float>(frequency_residual_m(limits.wavelength_a_m, limits.wavelength_b_m,
+                                                 double{phase_a} + n_a, phase_b));
+}
+
+float farthest_phase_cycles(const BeatLimits& limits, int n_a) {
+  if (n_a == 0) return 1;
+  if (n_a < 0 || n_a >= limits.count_a) return -1;
+  return static_cast<float>(limits.max_range_m / limits.wavelength_a_m + noise_tolerance_cycles -
+                            n_a);
+}
+
+double residual_step_m(const BeatLimits& limits) {
+  return residual_step_m(limits.wavelength_a_m, limits.wavelength_b_m, limits.count_a);
 }
 
 bool count_within_limits(const BeatLimits& limits, float phase_a, int n_a) {
@@ -186,8 +192,8 @@ bool count_within_limits(const BeatLimits& limits, float phase_a, int n_a) {
 }
 
 bool can_tell_apart(const BeatLimits& limits, int n_a, int other_n_a) {
-  const double cycles_b = (n_a - other_n_a) * limits.wavelength_a_m / limits.wavelength_b_m;
-  return std::abs(cycles_b - std::round(cycles_b)) > noise_tolerance_cycles;
+  return std::abs(residual_shift_cycles(limits.wavelength_ratio(), n_a - other_n_a)) >
+         noise_tolerance_cycles;
 }
 
 ImageU8 nearest_pair_counts(const DualFrequencyFrame& frame, const BeatLimits& limits) {
@@ -220,17 +226,19 @@ ImageF reconstruct_cycles(const ImageF& phase_a, const ImageU8& counts) {
 }
 
 BeatCost::BeatCost(const DualFrequencyFrame& frame, const BeatLimits& limits,
-                   const PhaseSigma& sigma)
+                   const PhaseSigma& sigma, double residual_sigma_m)
     : count_a_(limits.count_a),
       size_(static_cast<std::size_t>(DiagonalLayout::whole_vectors(count_a_ + 2))) {
   for (ImageF* plane : {&phase_a_, &beat_cycles_, &precision_}) {
     plane->resize(frame.phase_a.rows(), frame.phase_a.cols());
   }
+  const double residual_cycles = residual_sigma_m / limits.wavelength_b_m;
   fill_beat(
       static_cast<int>(phase_a_.size()),
       {frame.phase_a.data(), frame.phase_b.data(), sigma.a_cycles.data(), sigma.b_cycles.data()},
-      static_cast<float>(limits.wavelength_a_m / limits.wavelength_b_m), phase_a_.data(),
-      beat_cycles_.data(), precision_.data());
+      static_cast<float>(limits.wavelength_a_m / limits.wavelength_b_m),
+      static_cast<float>(residual_cycles * residual_cycles), phase_a_.data(), beat_cycles_.data(),
+      precision_.data());
   const int reach = static_cast<int>(size_);
   for (int n = -1 - reach; n < 2 * reach - 1; ++n) {
     const CountStep step = count_step(limits, n);

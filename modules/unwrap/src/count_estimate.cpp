@@ -32,22 +32,13 @@ float phase_of(std::complex<float> sum) {
   return cycles < 0 ? std::min(cycles + 1, std::nextafter(1.0F, 0.0F)) : cycles;
 }
 
-/// σ of A's phase in one pixel, cycles.
-float sigma_cycles(const DualFrequencyFrame& frame, const PhaseNoise& noise, Eigen::Index v,
-                   Eigen::Index u) {
-  const auto scale = static_cast<float>(noise.scale_a);
-  return frame.has_amplitude() ? scale / frame.amplitude_a(v, u) : scale;
-}
-
-bool is_loud(const DualFrequencyFrame& frame, const PhaseNoise& noise) {
+bool is_loud(const PhaseSigma& sigma) {
   int returns = 0;
   int loud = 0;
-  for (Eigen::Index v = 0; v < frame.phase_a.rows(); ++v) {
-    for (Eigen::Index u = 0; u < frame.phase_a.cols(); ++u) {
-      if (std::isnan(frame.phase_a(v, u))) continue;
-      ++returns;
-      loud += sigma_cycles(frame, noise, v, u) > loud_cycles ? 1 : 0;
-    }
+  for (const float cycles : sigma.a_cycles.reshaped()) {
+    if (std::isnan(cycles)) continue;
+    ++returns;
+    loud += cycles > loud_cycles ? 1 : 0;
   }
   return static_cast<float>(loud) > loud_share * static_cast<float>(returns);
 }
@@ -79,14 +70,12 @@ void set_hint(const CountBeliefs& coarse, Eigen::Index row, Eigen::Index col, fl
 }
 
 /// Lets noisy pixels hear what the blocks of 2 x 2 that they are in have found out.
-void hint(const DualFrequencyFrame& pixels, const PhaseNoise& noise,
+void hint(const DualFrequencyFrame& pixels, const PhaseSigma& sigma,
           const DualFrequencyFrame& blocks, const CountBeliefs& coarse, CountModel& model) {
   std::vector<float> factors(static_cast<std::size_t>(model.counts()));
   for (Eigen::Index v = 0; v < pixels.phase_a.rows(); ++v) {
     for (Eigen::Index u = 0; u < pixels.phase_a.cols(); ++u) {
-      if (std::isnan(pixels.phase_a(v, u)) || sigma_cycles(pixels, noise, v, u) < loud_cycles) {
-        continue;
-      }
+      if (std::isnan(pixels.phase_a(v, u)) || sigma.a_cycles(v, u) < loud_cycles) continue;
       set_hint(coarse, v / 2, u / 2, blocks.phase_a(v / 2, u / 2), pixels.phase_a(v, u), factors);
       model.weigh_evidence(static_cast<int>(v), static_cast<int>(u), factors);
     }
@@ -100,19 +89,17 @@ float joint_probability(float coarse, float fine, bool agree) {
 }
 
 /// Takes over what the blocks know better: where pixels are loud and the block is surer.
-void adopt(const DualFrequencyFrame& pixels, const DualFrequencyFrame& blocks, int block_px,
-           const CountBeliefs& coarse, const PhaseNoise& block_noise, int counts,
-           CountBeliefs& fine) {
+void adopt(const DualFrequencyFrame& pixels, const NoisyFrame& blocks, int block_px,
+           const CountBeliefs& coarse, int counts, CountBeliefs& fine) {
   for (Eigen::Index v = 0; v < pixels.phase_a.rows(); ++v) {
     for (Eigen::Index u = 0; u < pixels.phase_a.cols(); ++u) {
       const Eigen::Index row = v / block_px;
       const Eigen::Index col = u / block_px;
-      const float pixel_sigma =
-          static_cast<float>(block_px) * sigma_cycles(blocks, block_noise, row, col);
+      const float pixel_sigma = static_cast<float>(block_px) * blocks.sigma.a_cycles(row, col);
       if (std::isnan(pixels.phase_a(v, u)) || pixel_sigma <= loud_cycles) continue;
       if (coarse.probability(row, col) <= fine.probability(v, u)) continue;
       const float phase = pixels.phase_a(v, u);
-      const float block_phase = blocks.phase_a(row, col);
+      const float block_phase = blocks.frame.phase_a(row, col);
       const auto count = [&](std::uint8_t n) {
         return nearest_count(block_phase + static_cast<float>(n), phase, counts);
       };
@@ -129,71 +116,99 @@ void adopt(const DualFrequencyFrame& pixels, const DualFrequencyFrame& blocks, i
 
 }  // namespace
 
-DualFrequencyFrame halve(const DualFrequencyFrame& frame) {
+namespace {
+
+/// Phasors of one frequency in a block, summed, and the variance of the noise of the sum.
+struct BlockSum {
+  std::complex<float> phasor = 0;
+  float noise_variance = 0;
+
+  void add(float phase, float amplitude, float sigma_cycles) {
+    const float noise = amplitude * sigma_cycles;
+    phasor += tofmap::phasor(phase, amplitude);
+    noise_variance += noise * noise;
+  }
+
+  float amplitude() const { return std::max(std::abs(phasor), 1e-6F); }
+  /// At most that of a phase that is anything.
+  float sigma_cycles() const { return std::sqrt(noise_variance) / amplitude(); }
+};
+
+}  // namespace
+
+NoisyFrame halve(const DualFrequencyFrame& frame, const PhaseSigma& sigma) {
   const Eigen::Index rows = (frame.phase_a.rows() + 1) / 2;
   const Eigen::Index cols = (frame.phase_a.cols() + 1) / 2;
-  DualFrequencyFrame out;
-  out.index = frame.index;
-  out.timestamp_s = frame.timestamp_s;
-  for (ImageF* image : {&out.phase_a, &out.phase_b}) image->setConstant(rows, cols, nan);
-  for (ImageF* image : {&out.amplitude_a, &out.amplitude_b}) image->setZero(rows, cols);
+  NoisyFrame out;
+  out.frame.index = frame.index;
+  out.frame.timestamp_s = frame.timestamp_s;
+  for (ImageF* image :
+       {&out.frame.phase_a, &out.frame.phase_b, &out.sigma.a_cycles, &out.sigma.b_cycles}) {
+    image->setConstant(rows, cols, nan);
+  }
+  for (ImageF* image : {&out.frame.amplitude_a, &out.frame.amplitude_b}) {
+    image->setZero(rows, cols);
+  }
+  const bool weighted = frame.has_amplitude();
   for (Eigen::Index row = 0; row < rows; ++row) {
     for (Eigen::Index col = 0; col < cols; ++col) {
-      std::complex<float> a = 0;
-      std::complex<float> b = 0;
+      BlockSum a;
+      BlockSum b;
       int count = 0;
       for (Eigen::Index v = 2 * row; v < std::min(2 * row + 2, frame.phase_a.rows()); ++v) {
         for (Eigen::Index u = 2 * col; u < std::min(2 * col + 2, frame.phase_a.cols()); ++u) {
           if (std::isnan(frame.phase_a(v, u)) || std::isnan(frame.phase_b(v, u))) continue;
-          const bool weighted = frame.has_amplitude();
-          a += phasor(frame.phase_a(v, u), weighted ? frame.amplitude_a(v, u) : 1.0F);
-          b += phasor(frame.phase_b(v, u), weighted ? frame.amplitude_b(v, u) : 1.0F);
+          a.add(frame.phase_a(v, u), weighted ? frame.amplitude_a(v, u) : 1.0F,
+                sigma.a_cycles(v, u));
+          b.add(frame.phase_b(v, u), weighted ? frame.amplitude_b(v, u) : 1.0F,
+                sigma.b_cycles(v, u));
           ++count;
         }
       }
       if (count == 0) continue;
-      // The noise of a mean goes as 1 / √count, that of a whole block as 1 / 2.
-      const float size = 2 * std::sqrt(static_cast<float>(count));
-      out.phase_a(row, col) = phase_of(a);
-      out.phase_b(row, col) = phase_of(b);
-      out.amplitude_a(row, col) = std::max(std::abs(a) / size, 1e-6F);
-      out.amplitude_b(row, col) = std::max(std::abs(b) / size, 1e-6F);
+      out.frame.phase_a(row, col) = phase_of(a.phasor);
+      out.frame.phase_b(row, col) = phase_of(b.phasor);
+      out.frame.amplitude_a(row, col) = a.amplitude() / static_cast<float>(count);
+      out.frame.amplitude_b(row, col) = b.amplitude() / static_cast<float>(count);
+      out.sigma.a_cycles(row, col) = a.sigma_cycles();
+      out.sigma.b_cycles(row, col) = b.sigma_cycles();
     }
   }
   return out;
 }
 
 /// Prepares the scales that noise asks for, at most so many: their blocks and noise.
-int CountEstimator::divide(const DualFrequencyFrame& frame, const PhaseNoise& noise, int most) {
+int CountEstimator::divide(const DualFrequencyFrame& frame, const PhaseSigma& sigma, int most) {
   scales_.resize(static_cast<std::size_t>(most));
-  scales_[0].noise = noise;
   const DualFrequencyFrame* finer = &frame;
+  const PhaseSigma* finer_sigma = &sigma;
   int count = 1;
-  while (count < most && is_loud(*finer, scales_[static_cast<std::size_t>(count) - 1].noise)) {
+  while (count < most && is_loud(*finer_sigma)) {
     Scale& scale = scales_[static_cast<std::size_t>(count)];
-    const PhaseNoise& finer_noise = scales_[static_cast<std::size_t>(count) - 1].noise;
-    scale.blocks = halve(*finer);
-    scale.noise = {finer_noise.scale_a / 2, finer_noise.scale_b / 2};
-    finer = &scale.blocks;
+    scale.blocks = halve(*finer, *finer_sigma);
+    finer = &scale.blocks.frame;
+    finer_sigma = &scale.blocks.sigma;
     ++count;
   }
   return count;
 }
 
 CountBeliefs CountEstimator::estimate(const DualFrequencyFrame& frame, const BeatLimits& limits,
-                                      const PhaseNoise& noise, const CountEstimation& options) {
-  const int count = divide(frame, noise, options.scales);
+                                      const PhaseSigma& sigma, double residual_sigma_m,
+                                      const CountEstimation& options) {
+  const int count = divide(frame, sigma, options.scales);
   const auto seen_at = [&](std::size_t s) -> const DualFrequencyFrame& {
-    return s == 0 ? frame : scales_[s].blocks;
+    return s == 0 ? frame : scales_[s].blocks.frame;
   };
   for (auto s = static_cast<std::size_t>(count); s-- > 0;) {
     Scale& scale = scales_[s];
     CountPrior prior = options.prior;
     prior.slope_m *= static_cast<double>(1U << s);
-    scale.model.assign(seen_at(s), limits, scale.noise, prior);
+    const PhaseSigma& its_sigma = s == 0 ? sigma : scale.blocks.sigma;
+    scale.model.assign(seen_at(s), limits, its_sigma, residual_sigma_m, prior);
     if (static_cast<int>(s) + 1 < count) {
       const Scale& coarser = scales_[s + 1];
-      hint(seen_at(s), scale.noise, coarser.blocks, coarser.beliefs, scale.model);
+      hint(seen_at(s), its_sigma, coarser.blocks.frame, coarser.beliefs, scale.model);
     }
     scale.beliefs = scale.propagation.run(scale.model, options.iterations);
   }
@@ -201,7 +216,7 @@ CountBeliefs CountEstimator::estimate(const DualFrequencyFrame& frame, const Bea
   CountBeliefs beliefs = std::move(scales_[0].beliefs);
   for (std::size_t s = 1; s < static_cast<std::size_t>(count); ++s) {
     const Scale& coarse = scales_[s];
-    adopt(frame, coarse.blocks, 1 << s, coarse.beliefs, coarse.noise, limits.count_a, beliefs);
+    adopt(frame, coarse.blocks, 1 << s, coarse.beliefs, limits.count_a, beliefs);
     beliefs.iterations += coarse.beliefs.iterations;
     beliefs.largest_message_change =
         std::max(beliefs.largest_message_change, coarse.beliefs.largest_message_change);

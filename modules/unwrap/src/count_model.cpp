@@ -88,8 +88,7 @@ template <bool passes>
     HalfFloat* at = evidence + static_cast<std::size_t>(k) * step;
     // Cycles of B in k wavelengths of A, without the whole ones: counts that the pair cannot tell
     // apart get the same evidence to the last bit.
-    const double cycles_b = k * scale.wavelength_ratio;
-    const auto shift = static_cast<float>(cycles_b - std::round(cycles_b));
+    const auto shift = static_cast<float>(residual_shift_cycles(scale.wavelength_ratio, k));
     const float farthest = k == 0 ? 1 : scale.farthest_cycles_a - static_cast<float>(k);
 #pragma GCC ivdep
     for (int i = 0; i < rows; ++i) {
@@ -156,13 +155,19 @@ struct Cross {
 }
 
 /// 1 for pixels that see two surfaces, else 0.
-TOFMAP_VECTOR_CLONES void find_mixed(int count, const Cross& cross_, float noise, float* mixed) {
+TOFMAP_VECTOR_CLONES void find_mixed(int count, const Cross& cross_, const float* sigma_cycles,
+                                     float* mixed) {
   constexpr float least_contrast = 0.05F;  // shading of one surface changes less in a pixel
+  constexpr float sigmas =
+      2.5F * std::numbers::sqrt2_v<float>;  // of a difference of two amplitudes
+  // Noise of the amplitude, which is that of a signal's two parts, as of a phase of one radian.
+  constexpr float per_sigma = sigmas * 2 * std::numbers::pi_v<float>;
   const Cross cross = cross_;
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
     const float here = cross.here[i];
     const float contrast = least_contrast * here;
+    const float noise = per_sigma * sigma_cycles[i] * here;
     const float step = contrast > noise ? contrast : noise;
     const bool across = lies_between(cross.left[i], here, cross.right[i], step);
     const bool along = lies_between(cross.above[i], here, cross.below[i], step);
@@ -233,19 +238,15 @@ void CountModel::resize(int rows, int cols, int counts) {
 
 /// The beat of a pixel that sees two surfaces is that of none: its evidence is made flat. The outer
 /// pixels of the image are taken at their word.
-void CountModel::mark_mixed_pixels(const ImageF& amplitude, const PhaseNoise& noise) {
+void CountModel::mark_mixed_pixels(const ImageF& amplitude, const ImageF& sigma_cycles) {
   constexpr float flat = 0.999F;
-  constexpr double deviations = 2.5;  // of the difference of two amplitudes
-  // Noise of the amplitude, which is that of a signal's two parts, as of a phase of one radian.
-  const double sigma = 2 * std::numbers::pi * noise.scale_a;
-  const auto least_step = static_cast<float>(deviations * std::numbers::sqrt2 * sigma);
   const auto rows = static_cast<int>(amplitude.rows());
   const auto cols = static_cast<int>(amplitude.cols());
   std::vector<float> mixed(static_cast<std::size_t>(std::max(cols, 2)));
   for (int v = 1; v + 1 < rows; ++v) {
     const float* here = amplitude.data() + v * cols + 1;
-    find_mixed(cols - 2, {here, here - 1, here + 1, here - cols, here + cols}, least_step,
-               mixed.data());
+    find_mixed(cols - 2, {here, here - 1, here + 1, here - cols, here + cols},
+               sigma_cycles.data() + v * cols + 1, mixed.data());
     for (int u = 1; u + 1 < cols; ++u) {
       if (mixed[static_cast<std::size_t>(u - 1)] == 0) continue;
       outlier_share_[layout_.place(u + v, v, 1)] = flat;
@@ -254,32 +255,32 @@ void CountModel::mark_mixed_pixels(const ImageF& amplitude, const PhaseNoise& no
 }
 
 void CountModel::assign(const DualFrequencyFrame& frame, const BeatLimits& limits,
-                        const PhaseNoise& noise, const CountPrior& prior) {
+                        const PhaseSigma& sigma, double residual_sigma_m, const CountPrior& prior) {
   const auto rows = static_cast<int>(frame.phase_a.rows());
   const auto cols = static_cast<int>(frame.phase_a.cols());
   resize(rows, cols, limits.count_a);
   const auto wavelength_a = static_cast<float>(limits.wavelength_a_m);
   const auto wavelength_b = static_cast<float>(limits.wavelength_b_m);
-  const auto scale_a = static_cast<float>(noise.scale_a) * wavelength_a;
-  const auto scale_b = static_cast<float>(noise.scale_b) * wavelength_b;
+  const auto residual_variance_m2 = static_cast<float>(residual_sigma_m * residual_sigma_m);
   for (int v = 0; v < rows; ++v) {
     for (int u = 0; u < cols; ++u) {
       const float a = frame.phase_a(v, u);
       const float b = frame.phase_b(v, u);
       if (std::isnan(a) || std::isnan(b)) continue;
       const std::size_t at = layout_.place(u + v, v, 1);
-      const float amplitude_a = frame.has_amplitude() ? frame.amplitude_a(v, u) : 1.0F;
-      const float amplitude_b = frame.has_amplitude() ? frame.amplitude_b(v, u) : 1.0F;
+      const float sigma_a_m = sigma.a_cycles(v, u) * wavelength_a;
+      const float sigma_b_m = sigma.b_cycles(v, u) * wavelength_b;
       phase_a_[at] = a;
       phase_b_[at] = b;
-      amplitude_[at] = amplitude_a;
-      variance_a_m2_[at] = scale_a * scale_a / (amplitude_a * amplitude_a);
-      variance_b_m2_[at] = scale_b * scale_b / (amplitude_b * amplitude_b);
+      if (frame.has_amplitude()) amplitude_[at] = frame.amplitude_a(v, u);
+      variance_a_m2_[at] = sigma_a_m * sigma_a_m;
+      variance_b_m2_[at] = sigma_b_m * sigma_b_m + residual_variance_m2;
     }
   }
 
   outlier_share_.assign(layout_.size(1), static_cast<float>(prior.outlier_share));
-  if (prior.mixed_pixels && frame.has_amplitude()) mark_mixed_pixels(frame.amplitude_a, noise);
+  if (prior.mixed_pixels && frame.has_amplitude())
+    mark_mixed_pixels(frame.amplitude_a, sigma.a_cycles);
 
   const auto pixels = [&](int d, int row, int count) {
     const std::size_t at = layout_.place(d, row, 1);

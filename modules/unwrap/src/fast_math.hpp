@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <tofmap/core/frequency_residual.hpp>
+
 namespace tofmap {
 
 // Without branches and library calls, so that loops over them become vector instructions.
@@ -24,12 +26,6 @@ namespace tofmap {
       t * (1 + t * (0.5F + t * (0.166666667F +
                                 t * (0.0416666667F + t * (0.00833333333F + t * 0.00138888889F)))));
   return series * std::bit_cast<float>((whole + 127) << 23);
-}
-
-/// x minus the nearest whole number; |x| < 2^30.
-[[gnu::always_inline]] inline float to_half_cycle(float x) {
-  const float half = x < 0 ? -0.5F : 0.5F;
-  return x - static_cast<float>(static_cast<std::int32_t>(x + half));
 }
 
 /// The least of 2^k lanes.

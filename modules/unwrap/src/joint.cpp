@@ -4,7 +4,6 @@
 #include "joint.hpp"
 
 #include "counted_ranges.hpp"
-#include "tofmap/unwrap/exposure_motion.hpp"
 #include "tofmap/unwrap/range_fusion.hpp"
 
 namespace tofmap {
@@ -34,29 +33,16 @@ void drop_ambiguous(const CountBeliefs& beliefs, const BeatLimits& limits, Range
   }
 }
 
-/// Ranges from both frequencies; B's are brought back to the instant of A if the camera's rays are
-/// known.
-FusedRanges ranges_of_both(const MeasuredFrame& frame, const ImageU8& counts,
-                           const BeatLimits& limits, const PixelRays& rays) {
-  const RangePair pair = pair_ranges(frame.returns, counts, limits, frame.sigma);
-  if (!same_size(rays.x, counts)) return fuse_ranges(pair, {});
-  const ImageF sigma_m = (pair.variance_a_m2 + pair.variance_b_m2).sqrt();
-  const ExposureMotion motion =
-      estimate_exposure_motion(pair.range_a_m, pair.residual_m, sigma_m, rays);
-  return fuse_ranges(
-      pair, motion.pixels > 0 ? range_shrinkage_m(motion, pair.range_a_m, rays) : ImageF());
-}
-
 }  // namespace
 
 UnwrapResult unwrap_jointly(CountEstimator& estimator, const MeasuredFrame& frame,
-                            const BeatLimits& limits, const PixelRays& rays,
-                            const UnwrapOptions& options) {
-  const CountBeliefs beliefs =
-      estimator.estimate(frame.returns, limits, frame.noise, count_estimation(options));
+                            const BeatLimits& limits, const UnwrapOptions& options) {
+  const CountBeliefs beliefs = estimator.estimate(
+      frame.returns, limits, frame.sigma, frame.residual_sigma_m, count_estimation(options));
   UnwrapResult result;
   if (options.fuse_frequencies) {
-    const FusedRanges fused = ranges_of_both(frame, beliefs.count, limits, rays);
+    const FusedRanges fused =
+        fuse_ranges(frame.returns, beliefs.count, limits, frame.sigma, frame.residual_sigma_m);
     result.image =
         make_range_image(fused.range_m, fused.sigma_m, beliefs.count, beliefs.probability);
   } else {

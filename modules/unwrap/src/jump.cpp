@@ -44,7 +44,7 @@ Integrated integrated(const JumpEstimate& jumps, const MeasuredFrame& frame,
 
 Integrated integrated_with_residual(const JumpEstimate& jumps, const MeasuredFrame& frame,
                                     const BeatLimits& limits, const UnwrapOptions& options) {
-  const BeatCost beat(frame.returns, limits, frame.sigma);
+  const BeatCost beat(frame.returns, limits, frame.sigma, frame.residual_sigma_m);
   const RelativeCounts relative =
       integrate_jumps_with_beat(jumps.beliefs.marginals, jumps.evidence, frame.valid, beat,
                                 jumps.inputs.pixel_counts, options.objection_share);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "measured_frame.hpp"
 #include "tofmap/unwrap/jump_estimate.hpp"
 #include "tofmap/unwrap/unwrap.hpp"
 

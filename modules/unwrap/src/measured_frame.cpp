@@ -1,15 +1,18 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "measured_frame.hpp"
+#include "tofmap/unwrap/measured_frame.hpp"
 
+#include "ambient_noise.hpp"
 #include "median.hpp"
+#include "tofmap/unwrap/phase_noise.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tofmap/core/error.hpp>
@@ -51,25 +54,74 @@ TOFMAP_VECTOR_CLONES void keep_lit(int pixels, const float* amplitude_a, const f
   }
 }
 
-}  // namespace
-
-MeasuredFrame::MeasuredFrame(const DualFrequencyFrame& frame, double saturation_amplitude)
-    : returns(frame) {
+/// Returns, noise, and where it differs; of systematic errors nothing.
+MeasuredFrame measured_alone(const DualFrequencyFrame& frame, double saturation_amplitude) {
   check(frame);
   const Eigen::Index rows = frame.phase_a.rows();
   const Eigen::Index cols = frame.phase_a.cols();
-  valid.resize(rows, cols);
-  saturated.resize(rows, cols);
+  MeasuredFrame out;
+  out.returns = frame;
+  out.valid.resize(rows, cols);
+  out.saturated.resize(rows, cols);
   const ImageF lit = frame.has_amplitude() ? ImageF() : ImageF::Ones(rows, cols);
   const bool can_saturate = frame.has_amplitude() && saturation_amplitude > 0;
-  keep_lit(static_cast<int>(valid.size()),
+  keep_lit(static_cast<int>(out.valid.size()),
            frame.has_amplitude() ? frame.amplitude_a.data() : lit.data(),
            frame.has_amplitude() ? frame.amplitude_b.data() : lit.data(),
            can_saturate ? static_cast<float>(saturation_amplitude)
                         : std::numeric_limits<float>::infinity(),
-           returns.phase_a.data(), returns.phase_b.data(), valid.data(), saturated.data());
-  noise = estimate_phase_noise(returns);
-  sigma = PhaseSigma(returns, noise);
+           out.returns.phase_a.data(), out.returns.phase_b.data(), out.valid.data(),
+           out.saturated.data());
+  out.noise = estimate_phase_noise(out.returns);
+  out.ambient = find_ambient_noise(out.returns, out.noise);
+  out.sigma = PhaseSigma(out.returns, out.noise, out.ambient);
+  return out;
+}
+
+/// Replaces B by what the tracker makes of it, and adds what is known of the errors.
+void match_exposures(ErrorTracker& tracker, const BeatLimits& limits, MeasuredFrame& frame) {
+  // The tracker does not see errors that vary within the image, as of light that came by other
+  // ways; this much of a step is no evidence against any count.
+  constexpr double least_share_of_step = 1.0 / 30;
+  ErrorTracker::Tracked tracked = tracker.track(frame.returns, frame.sigma);
+  frame.returns.phase_b = std::move(tracked.b.phase_b);
+  if (frame.returns.has_amplitude()) frame.returns.amplitude_b = std::move(tracked.b.amplitude_b);
+  frame.sigma.b_cycles = std::move(tracked.b.sigma_b_cycles);
+  frame.residual_sigma_m =
+      std::max(tracked.errors.camera.systematic_m, least_share_of_step * residual_step_m(limits));
+  frame.errors = std::move(tracked.errors);
+}
+
+}  // namespace
+
+FrameMeasurer::FrameMeasurer(const SensorModel& sensor, const UnwrapOptions& options)
+    : limits_(beat_limits(sensor, options.max_range_m)),
+      saturation_amplitude_(sensor.saturation_amplitude) {
+  const UnwrapMethod method = unwrap_method(options);
+  const bool compares_frequencies = method == UnwrapMethod::joint || method == UnwrapMethod::jump;
+  if (compares_frequencies && options.systematic_errors) {
+    tracker_.emplace(limits_, options.correct_exposure ? sensor.camera : CameraModel());
+  }
+}
+
+void FrameMeasurer::look_ahead(std::span<const DualFrequencyFrame> frames) {
+  if (!tracker_) return;
+  for (const DualFrequencyFrame& frame : frames) measure(frame);
+  tracker_->forget_last_frame();
+}
+
+MeasuredFrame FrameMeasurer::measure(const DualFrequencyFrame& frame) {
+  MeasuredFrame measured = measured_alone(frame, saturation_amplitude_);
+  if (tracker_) match_exposures(*tracker_, limits_, measured);
+  return measured;
+}
+
+void FrameMeasurer::save(std::ostream& out) const {
+  if (tracker_) tracker_->save(out);
+}
+
+void FrameMeasurer::load(std::istream& in) {
+  if (tracker_) tracker_->load(in);
 }
 
 double median_phase_noise_cycles(const MeasuredFrame& frame) {

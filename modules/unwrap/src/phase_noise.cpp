@@ -3,8 +3,8 @@
 
 #include "tofmap/unwrap/phase_noise.hpp"
 
-#include "fast_math.hpp"
 #include "median.hpp"
+#include "phase_differences.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,15 +14,9 @@
 #include <vector>
 
 #include <tofmap/core/median.hpp>
-#include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
 namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
-/// Numbers of a row of pixels, and of rows that are combined with it.
-using Row = const float*;
 
 /// Differences of phases, in half a cycle around 0, and their standard deviations up to the scale.
 struct Differences {
@@ -32,71 +26,21 @@ struct Differences {
   std::size_t size() const { return cycles.size(); }
 };
 
-/// Pixels in a row or column whose phases are combined with these weights.
-struct Stencil {
-  int size;
-  std::array<float, 3> weights;
-};
-constexpr Stencil first_difference{2, {-1, 1, 0}};
-constexpr Stencil second_difference{3, {1, -2, 1}};
-
 /// Rows from one sampled one to the next: about 16000 differences tell the noise to 1 %.
 Eigen::Index sampling_step(const ImageF& phase) {
   constexpr Eigen::Index enough = 8000;
   return std::max<Eigen::Index>(1, phase.size() / enough);
 }
 
-/// The variance of the phase up to the scale, from an amplitude; infinite without light.
-[[gnu::always_inline]] inline float relative_variance(float amplitude) {
-  const float light = amplitude > 0 ? amplitude : 0.0F;
-  return 1 / (light * light);
-}
-
-/// Differences between pixels and those one and two steps away. Where anything is missing their
-/// standard deviation is not finite.
-TOFMAP_VECTOR_CLONES void fill_differences(int count, const std::array<Row, 3>& phase,
-                                           const std::array<Row, 3>& amplitude,
-                                           const std::array<float, 3>& weights, float* cycles,
-                                           float* relative_sigma) {
-  const auto [phase_0, phase_1, phase_2] = phase;
-  const auto [amplitude_0, amplitude_1, amplitude_2] = amplitude;
-  const auto [weight_0, weight_1, weight_2] = weights;
-#pragma GCC ivdep
-  for (int i = 0; i < count; ++i) {
-    const float difference = weight_0 * phase_0[i] + weight_1 * phase_1[i] + weight_2 * phase_2[i];
-    const float variance = weight_0 * weight_0 * relative_variance(amplitude_0[i]) +
-                           weight_1 * weight_1 * relative_variance(amplitude_1[i]) +
-                           weight_2 * weight_2 * relative_variance(amplitude_2[i]);
-    const bool is_present = difference == difference;
-    cycles[i] = to_half_cycle(is_present ? difference : 0.0F);
-    // A sum, unlike a choice, leaves the compiler no branch.
-    relative_sigma[i] = std::sqrt(variance) + 0 * difference;
-  }
-}
-
 void append_differences(const ImageF& phase, const ImageF& amplitude, const Stencil& stencil,
                         Eigen::Index step_row, Eigen::Index step_col, Differences& differences) {
-  const Eigen::Index reach = stencil.size - 1;
   const Eigen::Index step = sampling_step(phase);
-  const Eigen::Index count = phase.cols() - reach * step_col;
-  if (count <= 0) return;
-  const std::vector<float> ones(static_cast<std::size_t>(count), 1.0F);
-  std::vector<float> cycles(ones.size());
-  std::vector<float> relative_sigma(ones.size());
-  for (Eigen::Index v = step / 2; v + reach * step_row < phase.rows(); v += step) {
-    std::array<Row, 3> phases{};
-    std::array<Row, 3> amplitudes{};
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      // What a short stencil lacks has the weight 0.
-      const Eigen::Index k = std::min(i, reach);
-      const Eigen::Index place = (v + k * step_row) * phase.cols() + k * step_col;
-      phases[static_cast<std::size_t>(i)] = phase.data() + place;
-      amplitudes[static_cast<std::size_t>(i)] =
-          amplitude.size() > 0 ? amplitude.data() + place : ones.data();
-    }
-    fill_differences(static_cast<int>(count), phases, amplitudes, stencil.weights, cycles.data(),
-                     relative_sigma.data());
-    for (std::size_t i = 0; i < cycles.size(); ++i) {
+  std::vector<float> cycles(static_cast<std::size_t>(phase.cols()));
+  std::vector<float> relative_sigma(cycles.size());
+  for (Eigen::Index v = step / 2; v < phase.rows(); v += step) {
+    const int count = find_differences(phase, amplitude, stencil, v, step_row, step_col,
+                                       cycles.data(), relative_sigma.data());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
       if (!std::isfinite(relative_sigma[i])) continue;
       differences.cycles.push_back(cycles[i]);
       differences.relative_sigma.push_back(relative_sigma[i]);
@@ -169,11 +113,29 @@ double median_amplitude(const ImageF& amplitude) {
   return positive.empty() ? 1 : median_of_positive(positive);
 }
 
-double noise_scale(const ImageF& phase, const ImageF& amplitude) {
+/// The step from one phase to the next larger one that the camera can give: the least difference
+/// between phases of a sample. No less than that of 16 bits.
+double quantisation_step_cycles(const ImageF& phase) {
+  constexpr double least_cycles = 1 / 65535.0;
+  constexpr double coarsest_cycles = 1 / 16.0;
+  constexpr Eigen::Index enough = 400;
+  std::vector<float> sample;
+  for (Eigen::Index i = 0; i < phase.size(); i += 1 + phase.size() / enough) {
+    if (!std::isnan(phase.data()[i])) sample.push_back(phase.data()[i]);
+  }
+  std::ranges::sort(sample);
+  double step = coarsest_cycles;
+  for (std::size_t i = 1; i < sample.size(); ++i) {
+    const double gap = double{sample[i]} - double{sample[i - 1]};
+    if (gap > least_cycles / 2) step = std::min(step, gap);
+  }
+  return std::max(step, least_cycles);
+}
+
+/// c of one frequency; `quantisation_cycles` is the step of its phases.
+double noise_scale(const ImageF& phase, const ImageF& amplitude, double quantisation_cycles) {
   constexpr std::size_t enough = 16;
   constexpr double fallback_cycles = 0.01;
-  // What rounding leaves in a second difference of 16-bit phases.
-  constexpr double quantisation_cycles = 1 / 65535.0;
   // From here on a normal difference passes half a cycle too often for its median.
   constexpr double wrapping_cycles = 0.2;
   Differences differences = sample_differences(phase, amplitude, second_difference);
@@ -191,36 +153,15 @@ double noise_scale(const ImageF& phase, const ImageF& amplitude) {
   return std::max(scale, quantisation_cycles / relative_sigma);
 }
 
-TOFMAP_VECTOR_CLONES void fill_sigma(int count, Row phase, Row amplitude, float scale,
-                                     float* sigma) {
-#pragma GCC ivdep
-  for (int i = 0; i < count; ++i) {
-    const float known = scale * std::sqrt(relative_variance(amplitude[i]));
-    sigma[i] = phase[i] == phase[i] && amplitude[i] > 0 ? known : nan;
-  }
-}
-
 }  // namespace
 
 PhaseNoise estimate_phase_noise(const DualFrequencyFrame& frame) {
-  return {noise_scale(frame.phase_a, frame.amplitude_a),
-          noise_scale(frame.phase_b, frame.amplitude_b)};
+  const double step_a_cycles = quantisation_step_cycles(frame.phase_a);
+  const double step_b_cycles = quantisation_step_cycles(frame.phase_b);
+  return {.scale_a = noise_scale(frame.phase_a, frame.amplitude_a, step_a_cycles),
+          .scale_b = noise_scale(frame.phase_b, frame.amplitude_b, step_b_cycles),
+          .quantisation_a_cycles = step_a_cycles,
+          .quantisation_b_cycles = step_b_cycles};
 }
-
-ImageF phase_sigma_cycles(const ImageF& phase, const ImageF& amplitude, double scale) {
-  ImageF sigma(phase.rows(), phase.cols());
-  const auto count = static_cast<int>(phase.size());
-  if (amplitude.size() == 0) {
-    sigma = phase.isNaN().select(
-        nan, ImageF::Constant(phase.rows(), phase.cols(), static_cast<float>(scale)));
-  } else {
-    fill_sigma(count, phase.data(), amplitude.data(), static_cast<float>(scale), sigma.data());
-  }
-  return sigma;
-}
-
-PhaseSigma::PhaseSigma(const DualFrequencyFrame& frame, const PhaseNoise& noise)
-    : a_cycles(phase_sigma_cycles(frame.phase_a, frame.amplitude_a, noise.scale_a)),
-      b_cycles(phase_sigma_cycles(frame.phase_b, frame.amplitude_b, noise.scale_b)) {}
 
 }  // namespace tofmap

@@ -6,7 +6,6 @@
 #include "counted_ranges.hpp"
 #include "joint.hpp"
 #include "jump.hpp"
-#include "measured_frame.hpp"
 #include "tofmap/unwrap/beat.hpp"
 
 namespace tofmap {
@@ -31,19 +30,17 @@ Unwrapper::Unwrapper(const SensorModel& sensor, const UnwrapOptions& options)
     : options_(options),
       method_(unwrap_method(options)),
       limits_(beat_limits(sensor, options.max_range_m)),
-      saturation_amplitude_(sensor.saturation_amplitude) {
-  const bool knows_camera = sensor.camera.width_px > 0 && sensor.camera.fx_px > 0;
-  const bool needs_rays =
-      method_ == UnwrapMethod::joint && options.fuse_frequencies && options.correct_exposure;
-  if (knows_camera && needs_rays) rays_ = pixel_rays(sensor.camera);
-}
+      measurer_(sensor, options) {}
 
 UnwrapResult Unwrapper::unwrap(const DualFrequencyFrame& frame) {
-  const MeasuredFrame measured(frame, saturation_amplitude_);
+  return unwrap(measurer_.measure(frame));
+}
+
+UnwrapResult Unwrapper::unwrap(const MeasuredFrame& measured) {
   const auto unwrap_measured = [&] {
     switch (method_) {
       case UnwrapMethod::joint:
-        return unwrap_jointly(count_estimator_, measured, limits_, rays_, options_);
+        return unwrap_jointly(count_estimator_, measured, limits_, options_);
       case UnwrapMethod::jump:
       case UnwrapMethod::paper:
       case UnwrapMethod::single:
@@ -56,6 +53,7 @@ UnwrapResult Unwrapper::unwrap(const DualFrequencyFrame& frame) {
     return unwrap_by_pixel(measured, wrapped_counts(measured.valid), limits_);
   };
   UnwrapResult result = unwrap_measured();
+  result.errors = measured.errors;
   const auto because_saturated = static_cast<std::uint8_t>(InvalidReason::saturated);
   result.image.reason = (measured.saturated != 0).select(because_saturated, result.image.reason);
   result.phase_noise_cycles = median_phase_noise_cycles(measured);

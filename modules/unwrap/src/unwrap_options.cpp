@@ -50,7 +50,10 @@ std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
       {"fuse_frequencies", &O::fuse_frequencies, 0, 1, "",
        "joint: ranges from both frequencies, weighted by their noise, not from A alone"},
       {"correct_exposure", &O::correct_exposure, 0, 1, "",
-       "joint: allow for the camera's motion from A's exposure to B's when ranges are fused"},
+       "joint, jump: allow for the camera's motion from A's exposure to B's"},
+      {"systematic_errors", &O::systematic_errors, 0, 1, "",
+       "joint, jump: estimate what the frequencies disagree by, over the frames so far; 0: noise "
+       "alone explains it"},
       {"iterations", &O::iterations, 1, 1000, "",
        "jump, paper, single: most iterations of belief propagation"},
       {"trust_discontinuity", &O::trust_discontinuity, 0, 1, "",

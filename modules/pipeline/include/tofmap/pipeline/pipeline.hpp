@@ -14,6 +14,7 @@
 #include <tofmap/core/trajectory.hpp>
 #include <tofmap/filters/filter_chain.hpp>
 #include <tofmap/mapping/room_mapper.hpp>
+#include <tofmap/pipeline/error_survey.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap {
@@ -56,14 +57,21 @@ struct PreparedFrame {
   StageTimes times;
 };
 
-/// Phases to surface. Depends on no other frame, so frames can be prepared side by side, each
-/// thread with an unwrapper of its own.
-PreparedFrame prepare_frame(const DualFrequencyFrame& frame, Unwrapper& unwrapper,
+/// A frame and its errors, as one FrameMeasurer measures all frames in their order.
+struct TimedMeasurement {
+  MeasuredFrame frame;
+  double milliseconds = 0;
+};
+TimedMeasurement measure_frame(const DualFrequencyFrame& frame, FrameMeasurer& measurer);
+
+/// Phases to surface. Depends on no other frame, so frames that were measured can be prepared side
+/// by side, each thread with an unwrapper of its own.
+PreparedFrame prepare_frame(const TimedMeasurement& measured, Unwrapper& unwrapper,
                             const SensorModel& sensor, const PixelRays& rays,
                             const PipelineOptions& options);
 
 /// The same as far as ranges go: `cloud` is null.
-PreparedFrame prepare_ranges(const DualFrequencyFrame& frame, Unwrapper& unwrapper,
+PreparedFrame prepare_ranges(const TimedMeasurement& measured, Unwrapper& unwrapper,
                              const SensorModel& sensor, const PixelRays& rays,
                              const PipelineOptions& options);
 
@@ -90,6 +98,7 @@ struct RoomMap {
   MapCloud surface;
   std::vector<Loop> loops;          ///< places recognised
   std::vector<FrameRecord> frames;  ///< all, in order
+  ErrorSurvey errors;               ///< of the camera, by the frames since the run was taken up
   bool interrupted = false;
 
   int damaged() const;
@@ -135,6 +144,8 @@ class MapRun {
   PipelineOptions options_;
   PixelRays rays_;
   RoomMapper mapper_;
+  FrameMeasurer measurer_;
+  ErrorTally errors_;
   std::vector<Unwrapper> unwrappers_;  ///< one a thread
   std::vector<FrameRecord> frames_;
   DualFrequencyFrame last_;  ///< that could be read; empty before

@@ -9,6 +9,7 @@
 
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/pipeline/beat_survey.hpp>
+#include <tofmap/pipeline/error_survey.hpp>
 
 namespace tofmap {
 
@@ -28,6 +29,7 @@ struct RecordingSurvey {
   int frame_before_gap = 0;
   std::optional<std::string> axial_depth_doubt;  ///< see axial_depth.hpp
   std::optional<BeatSurvey> beat;  ///< if some hundred pixels have returns at both frequencies
+  ErrorSurvey errors;              ///< of some frames, spread over the recording
 };
 
 /// Whether a frame has the phases of the one before it.

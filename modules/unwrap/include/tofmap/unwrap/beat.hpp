@@ -6,8 +6,9 @@
 #include <vector>
 
 #include <tofmap/core/frame.hpp>
+#include <tofmap/core/frequency_residual.hpp>
 #include <tofmap/core/image.hpp>
-#include <tofmap/unwrap/phase_noise.hpp>
+#include <tofmap/core/range_error.hpp>
 
 namespace tofmap {
 
@@ -17,6 +18,8 @@ struct BeatLimits {
   double wavelength_b_m = 0;
   double max_range_m = 0;
   int count_a = 0;
+
+  double wavelength_ratio() const { return wavelength_a_m / wavelength_b_m; }
 };
 
 /// Limits for ranges up to `max_range_m`; 0 means the sensor's, and if that is 0 too, what the
@@ -29,6 +32,13 @@ BeatLimits beat_limits(const SensorModel& sensor, double max_range_m);
 /// B's count is not bounded by itself: near both ends of the range noise may carry B across
 /// a wrap boundary that A has not crossed.
 float beat_residual_m(const BeatLimits& limits, float phase_a, float phase_b, int n_a);
+
+/// The phase of A up to which a count's range is within the limits, cycles; negative for a count
+/// that is none.
+float farthest_phase_cycles(const BeatLimits& limits, int n_a);
+
+/// residual_step_m (tofmap/core/frequency_residual.hpp) among the counts within the limits.
+double residual_step_m(const BeatLimits& limits);
 
 /// True if the count puts A's range within 0 … max_range_m. A twentieth of a wavelength is
 /// tolerated above for noise at the limit; count 0 is always within.
@@ -58,7 +68,9 @@ struct CountedPixel {
 class BeatCost {
  public:
   BeatCost() = default;
-  BeatCost(const DualFrequencyFrame& frame, const BeatLimits& limits, const PhaseSigma& sigma);
+  /// `residual_sigma_m` is what the residual has besides the noise of both phases.
+  BeatCost(const DualFrequencyFrame& frame, const BeatLimits& limits, const PhaseSigma& sigma,
+           double residual_sigma_m = 0);
 
   /// The cost of n_A at a pixel, numbered row by row: 0 … bound. n_A is any count.
   float operator()(Eigen::Index pixel, int n_a) const;

@@ -6,10 +6,10 @@
 
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/image.hpp>
+#include <tofmap/core/range_error.hpp>
 #include <tofmap/unwrap/beat.hpp>
 #include <tofmap/unwrap/count_model.hpp>
 #include <tofmap/unwrap/count_propagation.hpp>
-#include <tofmap/unwrap/phase_noise.hpp>
 
 namespace tofmap {
 
@@ -20,30 +20,37 @@ struct CountEstimation {
   int scales = 3;  ///< pixels, blocks of 2 x 2, of 4 x 4 …, as far as the noise asks for it
 };
 
-/// A frame of half the size: phasors, averaged over blocks of 2 x 2 pixels. Amplitudes are scaled
-/// so that half the scale of the phase noise holds for them, also for blocks where pixels are
-/// missing. A block without any return is NaN.
-DualFrequencyFrame halve(const DualFrequencyFrame& frame);
+/// Phases and their noise; NaN where there is no return.
+struct NoisyFrame {
+  DualFrequencyFrame frame;
+  PhaseSigma sigma;
+};
+
+/// A frame of half the size: phasors, averaged over blocks of 2 x 2 pixels, and the noise of their
+/// phases. A block without any return is NaN. Without amplitudes all phasors weigh the same; the
+/// frame of half the size has amplitudes, which say how well phasors agree.
+NoisyFrame halve(const DualFrequencyFrame& frame, const PhaseSigma& sigma);
 
 /// Estimates the wrap counts of frames by belief propagation, at several scales where noise is
 /// large. Phases are NaN where there is no return; counts are invalid there. Buffers persist, so
 /// that frames of one size cost few allocations.
 class CountEstimator {
  public:
+  /// `residual_sigma_m` is what the residual between the frequencies has besides noise.
   CountBeliefs estimate(const DualFrequencyFrame& frame, const BeatLimits& limits,
-                        const PhaseNoise& noise, const CountEstimation& options);
+                        const PhaseSigma& sigma, double residual_sigma_m,
+                        const CountEstimation& options);
 
  private:
   /// What is seen at one scale: pixels, or blocks of them.
   struct Scale {
-    DualFrequencyFrame blocks;  ///< empty at the scale of pixels
-    PhaseNoise noise;
+    NoisyFrame blocks;  ///< empty at the scale of pixels
     CountModel model;
     CountPropagation propagation;
     CountBeliefs beliefs;
   };
 
-  int divide(const DualFrequencyFrame& frame, const PhaseNoise& noise, int most);
+  int divide(const DualFrequencyFrame& frame, const PhaseSigma& sigma, int most);
 
   std::vector<Scale> scales_;
 };

@@ -8,9 +8,9 @@
 
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/image.hpp>
+#include <tofmap/core/range_error.hpp>
 #include <tofmap/unwrap/beat.hpp>
 #include <tofmap/unwrap/diagonal_layout.hpp>
-#include <tofmap/unwrap/phase_noise.hpp>
 
 namespace tofmap {
 
@@ -38,10 +38,11 @@ class CountModel {
     std::vector<float> next;
   };
 
-  /// Replaces the model by that of a frame, whose phases are NaN where there is no return. Keeps
-  /// its memory, so that frames of one size cost no allocation.
-  void assign(const DualFrequencyFrame& frame, const BeatLimits& limits, const PhaseNoise& noise,
-              const CountPrior& prior);
+  /// Replaces the model by that of a frame, whose phases are NaN where there is no return. `sigma`
+  /// is the noise of its phases, `residual_sigma_m` what their residual has besides, as systematic
+  /// errors make it. Keeps its memory, so that frames of one size cost no allocation.
+  void assign(const DualFrequencyFrame& frame, const BeatLimits& limits, const PhaseSigma& sigma,
+              double residual_sigma_m, const CountPrior& prior);
 
   /// Multiplies the evidence of a pixel by a factor for each count. The best is 1 again then.
   void weigh_evidence(int row, int col, std::span<const float> factors);
@@ -57,7 +58,7 @@ class CountModel {
 
  private:
   void resize(int rows, int cols, int counts);
-  void mark_mixed_pixels(const ImageF& amplitude, const PhaseNoise& noise);
+  void mark_mixed_pixels(const ImageF& amplitude, const ImageF& sigma_cycles);
 
   DiagonalLayout layout_;
   int counts_ = 0;

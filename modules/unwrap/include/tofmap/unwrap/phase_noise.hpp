@@ -4,15 +4,9 @@
 
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/image.hpp>
+#include <tofmap/core/range_error.hpp>
 
 namespace tofmap {
-
-/// The scale of the phase noise: σ_phase = scale / amplitude, in cycles. For a frame without
-/// amplitudes it is the same σ_phase for all pixels.
-struct PhaseNoise {
-  double scale_a = 0;
-  double scale_b = 0;
-};
 
 /// Estimates the noise from one frame: the median absolute second difference of the wrapped
 /// phase along rows and columns, each divided by what amplitudes predict for it.
@@ -24,17 +18,5 @@ struct PhaseNoise {
 /// neighbours to tell (fewer than 16 triples), it is a noise of 0.01 cycles at the median
 /// amplitude.
 PhaseNoise estimate_phase_noise(const DualFrequencyFrame& frame);
-
-/// σ_phase of every pixel, cycles; NaN where phase is NaN. `amplitude` may be empty.
-ImageF phase_sigma_cycles(const ImageF& phase, const ImageF& amplitude, double scale);
-
-/// The same at both frequencies.
-struct PhaseSigma {
-  ImageF a_cycles;
-  ImageF b_cycles;
-
-  PhaseSigma() = default;
-  PhaseSigma(const DualFrequencyFrame& frame, const PhaseNoise& noise);
-};
 
 }  // namespace tofmap

@@ -4,8 +4,8 @@
 
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/image.hpp>
+#include <tofmap/core/range_error.hpp>
 #include <tofmap/unwrap/beat.hpp>
-#include <tofmap/unwrap/phase_noise.hpp>
 
 namespace tofmap {
 
@@ -16,22 +16,12 @@ struct FusedRanges {
   ImageF sigma_m;
 };
 
-/// Two measurements of one range, once the counts are known.
-struct RangePair {
-  ImageF range_a_m;   ///< NaN where the count is invalid
-  ImageF residual_m;  ///< A's range minus B's; NaN where B's own count is not sure
-  ImageF variance_a_m2;
-  ImageF variance_b_m2;
-};
-
-/// The ranges of both frequencies. Where noise may carry B across a wrap boundary, or the two
-/// differ by more than noise explains (a mixed pixel, or a wrong count), there is no residual.
-RangePair pair_ranges(const DualFrequencyFrame& frame, const ImageU8& counts,
-                      const BeatLimits& limits, const PhaseSigma& sigma);
-
-/// Their mean, weighted by the inverse variances: less noise than either. A's range alone where
-/// there is no residual. `shrinkage_m` is what the range lost from A's exposure to B's; it may be
-/// empty if nothing moved.
-FusedRanges fuse_ranges(const RangePair& pair, const ImageF& shrinkage_m);
+/// The ranges of both frequencies in one: their mean, weighted by the inverse variances, which has
+/// less noise than either. It is A's alone where noise may carry B across a wrap boundary, where B
+/// did not see what A sees, and where the two differ by more than residual_agreement_sigmas of
+/// noise and `residual_sigma_m`: a pixel of two surfaces, or a wrong count. B is matched to A: what
+/// the camera's errors and motion make of the residual is gone from its phases.
+FusedRanges fuse_ranges(const DualFrequencyFrame& frame, const ImageU8& counts,
+                        const BeatLimits& limits, const PhaseSigma& sigma, double residual_sigma_m);
 
 }  // namespace tofmap

@@ -7,12 +7,14 @@
 #include <tofmap/unwrap/beat.hpp>
 #include <tofmap/unwrap/count_estimate.hpp>
 #include <tofmap/unwrap/jump_estimate.hpp>
+#include <tofmap/unwrap/measured_frame.hpp>
 #include <tofmap/unwrap/unwrap_options.hpp>
 
 namespace tofmap {
 
 struct UnwrapResult {
   RangeImage image;
+  FrameErrors errors = {};            ///< of joint and jump; nothing is known of others
   int iterations = 0;                 ///< of belief propagation; 0 for none and pixel
   int curl_violations = 0;            ///< curl nodes that are not zero when it ended
   bool converged = true;              ///< no curl is left
@@ -33,22 +35,26 @@ struct UnwrapResult {
 /// (saturated). sigma_m is what the phase noise, estimated from each frame, makes of the range.
 /// confidence is the probability that the count is right. That of `joint` is calibrated
 /// (docs/unwrapping.md has the measurement); those of the other methods order pixels.
-/// Frames do not depend on one another; the same frame and options give the same bits. The object
-/// keeps its buffers, so that frames of one size cost few allocations. One thread at a time.
+/// `joint` and `jump` estimate the camera's systematic errors over the frames so far, so that these
+/// come in their order; the same frames and options give the same bits. To unwrap frames side by
+/// side let one FrameMeasurer measure all, and an Unwrapper a thread unwrap what it returns. The
+/// object keeps its buffers, so that frames of one size cost few allocations. One thread at a time.
 class Unwrapper {
  public:
   /// Throws UsageError if options are not allowed.
   Unwrapper(const SensorModel& sensor, const UnwrapOptions& options);
 
-  /// Throws UsageError if the frame's images differ in size.
+  /// The next frame of the camera. Throws UsageError if its images differ in size.
   UnwrapResult unwrap(const DualFrequencyFrame& frame);
+
+  /// A frame that was measured for the same sensor and options; depends on no other.
+  UnwrapResult unwrap(const MeasuredFrame& measured);
 
  private:
   UnwrapOptions options_;
   UnwrapMethod method_;
   BeatLimits limits_;
-  double saturation_amplitude_;
-  PixelRays rays_;  ///< empty if they are not needed
+  FrameMeasurer measurer_;
   CountEstimator count_estimator_;
   JumpEstimator jump_estimator_;
 };

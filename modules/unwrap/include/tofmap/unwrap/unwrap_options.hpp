@@ -42,6 +42,8 @@ struct UnwrapOptions {
   bool mixed_pixels = true;
   bool fuse_frequencies = true;
   bool correct_exposure = true;
+  // Of joint and jump.
+  bool systematic_errors = true;
   // Of jump, paper and single.
   int iterations = 5;
   double trust_discontinuity = 0.9;  ///< c_d of the paper
