@@ -6,6 +6,7 @@
 #include "noise.hpp"
 #include "pixel_signal.hpp"
 #include "sensor_effects.hpp"
+#include "sensor_readout.hpp"
 #include "systematic_errors.hpp"
 
 #include <algorithm>
@@ -23,7 +24,6 @@
 namespace tofmap {
 namespace {
 
-constexpr double two_pi = 2 * std::numbers::pi;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// Checks every option as the command line would, for those who fill the struct in code.
@@ -180,15 +180,14 @@ std::optional<SourcedFrame> Simulator::next() {
   return sourced;
 }
 
-/// What one image needs.
+/// Where the camera is while it takes one image.
 struct Simulator::Exposure {
-  /// Where the camera is at each of the four samples; the same pose four times if it is so short
-  /// that the camera stands still.
+  /// At each of the four samples; the same pose four times if the exposure is so short that the
+  /// camera stands still.
   std::array<Pose, 4> world_from_camera;
   bool stands_still = true;
   double wavelength_m = 0;
-  std::uint64_t noise_key = 0;
-  RangeErrors errors;
+  std::uint64_t noise_key = 0;  ///< draws the rays of light by way of other surfaces
 };
 
 struct Simulator::Exposed {
@@ -202,26 +201,25 @@ struct Simulator::Truth {
   ImageF cos_incidence;
 };
 
+void Simulator::check_index(int index) const {
+  if (index >= 0 && index < *frame_count()) return;
+  throw UsageError("frame " + std::to_string(index) + " of the simulation: there are frames 0 " +
+                   "to " + std::to_string(*frame_count() - 1));
+}
+
 SimulatedFrame Simulator::simulate(int index) const {
-  if (index < 0 || index >= *frame_count()) {
-    throw UsageError("frame " + std::to_string(index) + " of the simulation: there are frames 0 " +
-                     "to " + std::to_string(*frame_count() - 1));
-  }
+  check_index(index);
   const StampedPose& at_a = motion_.at_a[static_cast<std::size_t>(index)];
-  const auto key = [&](int image) {
-    return mix(mix(static_cast<std::uint64_t>(options_.seed)) + 2 * static_cast<unsigned>(index) +
-               static_cast<unsigned>(image));
-  };
   SimulatedFrame simulated;
   DualFrequencyFrame& frame = simulated.frame;
   frame.index = index;
   frame.timestamp_s = at_a.timestamp_s;
-  const Modulation& modulation = sensor_.modulation;
+  const auto readout = [&](ImageOfFrame image) {
+    return sensor_readout(options_, sensor_, index, image);
+  };
   constexpr bool with_labels = true;
-  Exposed a = expose(exposure_of(motion_.at_a, index, range_errors_a(options_, modulation), key(0)),
-                     with_labels);
-  Exposed b = expose(exposure_of(motion_.at_b, index, range_errors_b(options_, modulation), key(1)),
-                     !with_labels);
+  Exposed a = expose(exposure_a(index), readout(ImageOfFrame::a), with_labels);
+  Exposed b = expose(exposure_b(index), readout(ImageOfFrame::b), !with_labels);
   frame.phase_a = std::move(a.phase);
   frame.amplitude_a = std::move(a.amplitude);
   frame.phase_b = std::move(b.phase);
@@ -236,13 +234,33 @@ SimulatedFrame Simulator::simulate(int index) const {
   return simulated;
 }
 
+IdealFrame Simulator::ideal(int index) const {
+  check_index(index);
+  const StampedPose& at_a = motion_.at_a[static_cast<std::size_t>(index)];
+  return {.index = index,
+          .timestamp_s = at_a.timestamp_s,
+          .signal_a = ideal_signals(exposure_a(index)),
+          .signal_b = ideal_signals(exposure_b(index)),
+          .world_from_camera = at_a.world_from_camera,
+          .range_truth_m = cast_truth(at_a.world_from_camera).range_m};
+}
+
+Simulator::Exposure Simulator::exposure_a(int index) const {
+  return exposure_of(motion_.at_a, index, sensor_.modulation.wavelength_a_m(),
+                     noise_key(options_, index, ImageOfFrame::a));
+}
+
+Simulator::Exposure Simulator::exposure_b(int index) const {
+  return exposure_of(motion_.at_b, index, sensor_.modulation.wavelength_b_m(),
+                     noise_key(options_, index, ImageOfFrame::b));
+}
+
 /// The four samples share the exposure evenly, about the instant of the image.
-Simulator::Exposure Simulator::exposure_of(const Trajectory& poses, int index, RangeErrors errors,
-                                           std::uint64_t noise_key) const {
+Simulator::Exposure Simulator::exposure_of(const Trajectory& poses, int index, double wavelength_m,
+                                           std::uint64_t key) const {
   Exposure exposure;
-  exposure.wavelength_m = errors.wavelength_m;
-  exposure.noise_key = noise_key;
-  exposure.errors = std::move(errors);
+  exposure.wavelength_m = wavelength_m;
+  exposure.noise_key = key;
   const auto i = static_cast<std::size_t>(index);
   exposure.world_from_camera.fill(poses[i].world_from_camera);
   if (options_.exposure_share == 0 || poses.size() == 1) return exposure;
@@ -303,40 +321,52 @@ std::optional<std::complex<double>> Simulator::ideal_signal(std::size_t pixel,
                                                      : demodulate(samples, effects);
 }
 
-Simulator::Exposed Simulator::expose(const Exposure& exposure, bool with_labels) const {
+/// Calls `visit(row, col, signal, rays)` for every pixel that meets a surface, from several
+/// threads.
+template <class Visit>
+void Simulator::for_each_signal(const Exposure& exposure, const Visit& visit) const {
   const int rows = sensor_.camera.height_px;
   const int cols = sensor_.camera.width_px;
   const auto rays_per_pixel = static_cast<std::size_t>(options_.subpixels * options_.subpixels);
   const SensorEffects effects = sensor_effects(options_, sensor_.modulation);
-  const AmbientLight ambient = ambient_light(options_, sensor_.camera);
-  Exposed out{ImageF::Constant(rows, cols, nan), ImageF::Zero(rows, cols),
-              ImageU8::Zero(rows, cols)};
-
 #pragma omp parallel for schedule(dynamic)
   for (int v = 0; v < rows; ++v) {
     if (is_stopped()) continue;
     std::vector<SubRay> rays(rays_per_pixel);
     for (int u = 0; u < cols; ++u) {
       const std::size_t pixel = static_cast<std::size_t>(v) * cols + u;
-      const auto ideal = ideal_signal(pixel, exposure, effects, rays);
-      if (!ideal) continue;
-      const double noise_sigma =
-          ambient.noise_factor(v, u) * std::hypot(noise_sigma_, dark_noise_sigma(effects));
-      const std::complex<double> rotation = exposure.errors.rotation(*ideal, pixel);
-      const std::complex<double> signal =
-          rotation * *ideal + noise_sigma * complex_noise(exposure.noise_key, pixel);
-      const auto measured = measure(signal);
-      if (!measured) continue;
-      out.amplitude(v, u) = measured->amplitude;
-      out.phase(v, u) = quantised(measured->phase_cycles, options_.phase_bits);
-      if (!with_labels) continue;
-      // What the pixel would have measured without errors of its range.
-      const auto without_errors = measure(std::conj(rotation) * signal).value_or(*measured);
-      const double sigma_m = noise_sigma / std::abs(signal) * exposure.wavelength_m / two_pi;
-      out.label(v, u) = static_cast<std::uint8_t>(
-          label_pixel(rays, without_errors.phase_cycles, exposure.wavelength_m, sigma_m));
+      const auto signal = ideal_signal(pixel, exposure, effects, rays);
+      if (signal) visit(v, u, *signal, rays);
     }
   }
+}
+
+ImageC Simulator::ideal_signals(const Exposure& exposure) const {
+  const std::complex<double> nothing(std::numeric_limits<double>::quiet_NaN(), 0);
+  ImageC out = ImageC::Constant(sensor_.camera.height_px, sensor_.camera.width_px, nothing);
+  for_each_signal(exposure, [&](int v, int u, const std::complex<double>& signal,
+                                const std::vector<SubRay>&) { out(v, u) = signal; });
+  return out;
+}
+
+Simulator::Exposed Simulator::expose(const Exposure& exposure, const SensorReadout& readout,
+                                     bool with_labels) const {
+  const int rows = sensor_.camera.height_px;
+  const int cols = sensor_.camera.width_px;
+  Exposed out{ImageF::Constant(rows, cols, nan), ImageF::Zero(rows, cols),
+              ImageU8::Zero(rows, cols)};
+  for_each_signal(exposure, [&](int v, int u, const std::complex<double>& signal,
+                                const std::vector<SubRay>& rays) {
+    const auto pixel = readout.read(signal, v, u);
+    if (!pixel) return;
+    out.amplitude(v, u) = pixel->measured.amplitude;
+    out.phase(v, u) = pixel->measured.phase_cycles;
+    if (!with_labels) return;
+    // A label says what the pixel would have measured without errors of its range.
+    const auto without_errors = measure(pixel->signal_without_errors).value_or(pixel->measured);
+    out.label(v, u) = static_cast<std::uint8_t>(label_pixel(
+        rays, without_errors.phase_cycles, exposure.wavelength_m, pixel->range_sigma_m));
+  });
   return out;
 }
 

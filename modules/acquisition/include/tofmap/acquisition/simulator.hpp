@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <tofmap/acquisition/frame_source.hpp>
+#include <tofmap/acquisition/ideal_frame.hpp>
 #include <tofmap/acquisition/ray_scene.hpp>
 #include <tofmap/acquisition/scenes.hpp>
 #include <tofmap/core/option_table.hpp>
@@ -76,8 +77,8 @@ struct SimulatedFrame {
 };
 
 struct PixelLight;
-struct RangeErrors;
 struct SensorEffects;
+struct SensorReadout;
 struct SubRay;
 
 /// A dual-frequency time-of-flight camera on a path through a scene (docs/simulator.md).
@@ -106,6 +107,10 @@ class Simulator final : public FrameSource {
   /// is_stopped() afterwards.
   SimulatedFrame simulate(int index) const;
 
+  /// The same frame before the sensor reads it: to measure one place with many errors and noises
+  /// (measured_frame()) without casting rays anew.
+  IdealFrame ideal(int index) const;
+
   bool is_stopped() const { return keep_going_ && !keep_going_(); }
 
   /// Camera poses at the instants of A.
@@ -122,9 +127,15 @@ class Simulator final : public FrameSource {
  private:
   struct Exposure;
   struct Exposed;
-  Exposure exposure_of(const Trajectory& poses, int index, RangeErrors errors,
-                       std::uint64_t noise_key) const;
-  Exposed expose(const Exposure& exposure, bool with_labels) const;
+  void check_index(int index) const;
+  Exposure exposure_a(int index) const;
+  Exposure exposure_b(int index) const;
+  Exposure exposure_of(const Trajectory& poses, int index, double wavelength_m,
+                       std::uint64_t key) const;
+  template <class Visit>
+  void for_each_signal(const Exposure& exposure, const Visit& visit) const;
+  ImageC ideal_signals(const Exposure& exposure) const;
+  Exposed expose(const Exposure& exposure, const SensorReadout& readout, bool with_labels) const;
   PixelLight light_of(std::size_t pixel, const Exposure& exposure, const Pose& world_from_camera,
                       std::vector<SubRay>& rays) const;
   std::optional<std::complex<double>> ideal_signal(std::size_t pixel, const Exposure& exposure,
