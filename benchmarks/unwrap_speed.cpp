@@ -43,7 +43,6 @@ const Example& example(const Size& size) {
   Example& e = made[size.width_px];
   e.frame = simulator.simulate(*simulator.frame_count() / 2).frame;
   e.sensor = simulator.sensor();
-  e.sensor.max_range_m = 0;
   return e;
 }
 

@@ -280,6 +280,12 @@ TEST(Simulator, SurfacesBeyondTheMaximumRangeReturnNothing) {
   EXPECT_TRUE(simulator.simulate(0).frame.phase_a.isNaN().all());
 }
 
+TEST(Simulator, DoesNotTellUnwrappingHowLargeTheSceneIs) {
+  const Scene scene = test::facing_wall_scene(5, 0.5);
+  ASSERT_GT(scene.max_range_m, 5);
+  EXPECT_EQ(Simulator(scene, plain_options()).sensor().max_range_m, 0);
+}
+
 TEST(Simulator, TooWeakASignalIsNoReturn) {
   // 6000 × 0.002 / 25 m² is 0.48: it rounds to zero.
   const Simulator simulator(test::facing_wall_scene(5, 0.002), plain_options());

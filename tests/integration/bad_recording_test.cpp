@@ -177,6 +177,7 @@ TEST_F(BadRecording, ThatStandsStillForAWhileIsDoubted) {
 }
 
 TEST_F(BadRecording, WhoseFrequenciesCannotTellTheSceneApartIsDoubted) {
+  edit("sequence.yaml", "version: 1", "version: 1\nmax_range_m: 15.5");
   edit("sequence.yaml", "frequency_a_hz: 2.9e+07", "frequency_a_hz: 3.1e+08");
   EXPECT_THAT(run("info").out, HasSubstr("doubtful: the scene reaches farther"));
 }

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What `joint` promises, on simulated scenes that none of its numbers was fitted to alone.
+// What `joint` promises, on simulated scenes that none of its numbers was fitted to alone. The
+// simulated camera does not say how large a scene is: every count that the pair of frequencies can
+// tell apart competes, up to 72 m at 29 and 31 MHz.
 
 #include <algorithm>
 #include <array>
@@ -105,10 +107,8 @@ TEST_P(JointAt, UnwrapsAFlat) {
   SimulatorOptions simulation;
   simulation.frequency_a_hz = GetParam().frequency_a_hz;
   simulation.frequency_b_hz = GetParam().frequency_b_hz;
-  UnwrapOptions options;
-  options.max_range_m = 7.4;  // no place in the flat is farther; at 80 and 100 MHz, none may be
-  const Tally joint = unwrap_scene("flat", simulation, options);
-  UnwrapOptions pixel = options;
+  const Tally joint = unwrap_scene("flat", simulation);
+  UnwrapOptions pixel;
   pixel.method = "pixel";
   // Mixed pixels, whose truth is that of one of two surfaces, are 0.2 % here.
   EXPECT_LT(joint.wrong_percent(), 0.5);
@@ -116,7 +116,6 @@ TEST_P(JointAt, UnwrapsAFlat) {
 }
 
 TEST(Joint, UnwrapsACorridorOfSeveralWrapsWhereverItMayEnd) {
-  // No limit of range is given: fourteen counts compete.
   SimulatorOptions simulation;
   const Tally joint = unwrap_scene("corridor", simulation);
   UnwrapOptions jump;
@@ -127,12 +126,10 @@ TEST(Joint, UnwrapsACorridorOfSeveralWrapsWhereverItMayEnd) {
 }
 
 TEST(Joint, LeavesPixelsThatSeeTwoSurfacesToTheirNeighbours) {
-  UnwrapOptions options;
-  options.max_range_m = 72;  // many counts compete
-  UnwrapOptions believing = options;
+  UnwrapOptions believing;
   believing.mixed_pixels = false;
   for (const char* scene : {"hall", "flat"}) {
-    const Tally leaving = unwrap_scene(scene, {}, options, 8);
+    const Tally leaving = unwrap_scene(scene, {}, {}, 8);
     const Tally all_believed = unwrap_scene(scene, {}, believing, 8);
     // An eighth of what is wrong at least; in other places nothing changes.
     EXPECT_LT(leaving.wrong_percent(), 0.88 * all_believed.wrong_percent()) << scene;
@@ -172,12 +169,10 @@ TEST_P(JointInRandomRooms, KnowsHowSureItIs) {
 TEST(Joint, UnwrapsWhereOnlyNeighbourhoodsCarryInformation) {
   SimulatorOptions simulation;
   simulation.range_noise_m = 0.8;  // about one radian a pixel
-  UnwrapOptions options;
-  options.max_range_m = 60;
-  const double percent = unwrap_scene("flat", simulation, options).wrong_percent();
-  UnwrapOptions pixels_alone = options;
+  const double percent = unwrap_scene("flat", simulation).wrong_percent();
+  UnwrapOptions pixels_alone;
   pixels_alone.scales = 1;
-  UnwrapOptions jump = options;
+  UnwrapOptions jump;
   jump.method = "jump";
   EXPECT_LT(percent, 3);
   EXPECT_LT(percent, 0.7 * unwrap_scene("flat", simulation, pixels_alone).wrong_percent());

@@ -45,7 +45,7 @@ SimulatorOptions checked(SimulatorOptions options) {
   return options;
 }
 
-SensorModel sensor_model(const SimulatorOptions& options, double scene_max_range_m) {
+SensorModel sensor_model(const SimulatorOptions& options) {
   SensorModel sensor;
   CameraModel& camera = sensor.camera;
   camera = pinhole_camera(options.horizontal_fov_deg * std::numbers::pi / 180, options.width_px,
@@ -53,7 +53,7 @@ SensorModel sensor_model(const SimulatorOptions& options, double scene_max_range
   camera.distortion = {options.distortion_k1, options.distortion_k2, options.distortion_p1,
                        options.distortion_p2, options.distortion_k3};
   sensor.modulation = {options.frequency_a_hz, options.frequency_b_hz};
-  sensor.max_range_m = options.max_range_m > 0 ? options.max_range_m : scene_max_range_m;
+  sensor.max_range_m = options.max_range_m;
   try {
     validate(camera);
     validate(sensor.modulation);
@@ -153,7 +153,7 @@ std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
       {"max_turn_deg", &S::max_turn_deg, 0.01, 90, "deg", "how far it turns a frame, at most"},
       // Truth images hold millimetres in 16 bits.
       {"max_range_m", &S::max_range_m, 0, 65.5, "m",
-       "surfaces beyond return nothing; 0: the scene's own limit"},
+       "surfaces beyond return nothing, and the recording says so; 0: all return something"},
       {"trajectory_file", &S::trajectory_file, 0, 0, "",
        "camera poses in TUM form, one a frame; empty: the scene's path"},
       {"seed", &S::seed, 0, 2147483647, "", "of the noise"},
@@ -163,7 +163,8 @@ std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
 Simulator::Simulator(Scene scene, const SimulatorOptions& options, std::function<bool()> keep_going)
     : scene_(std::move(scene)),
       options_(checked(options)),
-      sensor_(sensor_model(options_, scene_.max_range_m)),
+      sensor_(sensor_model(options_)),
+      reach_m_(options_.max_range_m > 0 ? options_.max_range_m : scene_.max_range_m),
       ray_scene_(scene_.surface),
       motion_(camera_motion(scene_, options_)),
       rays_(subpixel_rays(sensor_.camera, options_.subpixels)),
@@ -284,7 +285,7 @@ PixelLight Simulator::light_of(std::size_t pixel, const Exposure& exposure,
   for (std::size_t i = 0; i < rays.size(); ++i) {
     SubRay& ray = rays[i];
     ray.direction = turn * rays_[pixel * rays.size() + i].cast<double>();
-    ray.hit = ray_scene_.cast(origin, ray.direction, sensor_.max_range_m);
+    ray.hit = ray_scene_.cast(origin, ray.direction, reach_m_);
     if (!ray.hit) continue;
     const RayHit& hit = *ray.hit;
     const double strength =
@@ -295,7 +296,7 @@ PixelLight Simulator::light_of(std::size_t pixel, const Exposure& exposure,
   const SubRay& middle = rays[rays.size() / 2];
   if (options_.multipath_rays > 0 && middle.hit) {
     const std::uint64_t key = mix(exposure.noise_key ^ mix(pixel));
-    const Lamp lamp{sensor_.camera, world_from_camera, sensor_.max_range_m};
+    const Lamp lamp{sensor_.camera, world_from_camera, reach_m_};
     light += indirect_light(ray_scene_, lamp, middle.direction, *middle.hit,
                             options_.multipath_rays, key, exposure.wavelength_m);
   }
@@ -376,7 +377,7 @@ Simulator::Truth Simulator::cast_truth(const Pose& world_from_camera) const {
   for (int v = 0; v < sensor_.camera.height_px && !is_stopped(); ++v) {
     for (int u = 0; u < sensor_.camera.width_px; ++u) {
       const Eigen::Vector3d ray = world_from_camera.linear() * pixel_ray(sensor_.camera, u, v);
-      const auto hit = ray_scene_.cast(world_from_camera.translation(), ray, sensor_.max_range_m);
+      const auto hit = ray_scene_.cast(world_from_camera.translation(), ray, reach_m_);
       if (!hit) continue;
       truth.range_m(v, u) = static_cast<float>(hit->range_m);
       truth.cos_incidence(v, u) = static_cast<float>(hit->cos_incidence);

@@ -97,6 +97,7 @@ class Simulator final : public FrameSource {
   /// InputError if the trajectory cannot be read.
   Simulator(Scene scene, const SimulatorOptions& options, std::function<bool()> keep_going = {});
 
+  /// Its max_range_m is the option's: a camera does not know how large the scene is.
   const SensorModel& sensor() const override { return sensor_; }
 
   /// Nothing at the end, and once it is not to keep going.
@@ -147,6 +148,7 @@ class Simulator final : public FrameSource {
   Scene scene_;
   SimulatorOptions options_;
   SensorModel sensor_;
+  double reach_m_ = 0;  ///< rays end here
   RayScene ray_scene_;
   CameraMotion motion_;
   std::vector<Eigen::Vector3f> rays_;  ///< camera frame; all of a pixel's together, row by row
