@@ -108,7 +108,7 @@ StageTimes mean_times(const RoomMap& map) {
 
 Json errors_json(const ErrorSurvey& survey) {
   return {{"offset_m", survey.camera.offset_m()},
-          {"periodic_rms_m", survey.camera.periodic_rms_m()},
+          {"periodic_rms_m", survey.camera.periodic_rms_m},
           {"per_decade_m", survey.camera.per_decade_m()},
           {"systematic_m", survey.camera.systematic_m},
           {"exposure_flow_px", survey.flow_px},

@@ -170,7 +170,7 @@ std::string describe_runs(int divisor) {
 }
 
 void score_run(const Run& run, const SensorModel& sensor, const Variant& variant, Score& score) {
-  const UnwrapFrame unwrap_frame = unwrapper_of(variant, sensor);
+  const UnwrapFrame unwrap_frame = unwrapper_of(variant, sensor, run.frames);
   const double wavelength_m = sensor.modulation.wavelength_a_m();
   for (std::size_t i = 0; i < run.frames.size(); ++i) {
     const auto start = std::chrono::steady_clock::now();

@@ -3,20 +3,35 @@
 
 #include "variants.hpp"
 
+#include <algorithm>
 #include <memory>
+#include <span>
+#include <utility>
 
 namespace tofmap::accuracy {
 
-UnwrapFrame unwrapper_of(const Variant& variant, const SensorModel& sensor) {
+namespace {
+
+std::span<const DualFrequencyFrame> first_of(const std::vector<DualFrequencyFrame>& frames) {
+  return {frames.data(), std::min<std::size_t>(frames.size(), FrameMeasurer::frames_ahead)};
+}
+
+}  // namespace
+
+UnwrapFrame unwrapper_of(const Variant& variant, const SensorModel& sensor,
+                         const std::vector<DualFrequencyFrame>& frames) {
   if (!variant.jumps) {
     const auto unwrapper = std::make_shared<Unwrapper>(sensor, variant.options);
+    unwrapper->look_ahead(first_of(frames));
     return [unwrapper](const auto& frame) { return unwrapper->unwrap(frame); };
   }
-  return [variant, saturation_amplitude = sensor.saturation_amplitude,
+  FrameMeasurer informed(sensor, variant.options);
+  informed.look_ahead(first_of(frames));
+  return [variant, measurer = std::move(informed),
           limits = beat_limits(sensor, variant.options.max_range_m),
           estimator = JumpEstimator()](const auto& frame) mutable {
-    return unwrap_by_jumps(estimator, MeasuredFrame(frame, saturation_amplitude), limits,
-                           *variant.jumps, variant.options);
+    return unwrap_by_jumps(estimator, measurer.measure(frame), limits, *variant.jumps,
+                           variant.options);
   };
 }
 

@@ -22,9 +22,11 @@ struct Variant {
   std::optional<JumpMethod> jumps = std::nullopt;
 };
 
-/// Unwraps the frames of one run, in order.
+/// Unwraps the frames of one run, in order, after a look ahead at the first of them, as the program
+/// does it.
 using UnwrapFrame = std::function<UnwrapResult(const DualFrequencyFrame&)>;
-UnwrapFrame unwrapper_of(const Variant& variant, const SensorModel& sensor);
+UnwrapFrame unwrapper_of(const Variant& variant, const SensorModel& sensor,
+                         const std::vector<DualFrequencyFrame>& frames);
 
 /// Every method by its name.
 std::vector<Variant> methods();

@@ -54,9 +54,9 @@ TEST_P(FrequencyResidual, IsTheDistanceToTheNearestRangeThatBAllows) {
     const double phase_b = phase(random);
     for (int n = 0; n < GetParam().counts; ++n) {
       const double expected_m = nearest_difference_m(GetParam(), phase_a + n, phase_b);
-      EXPECT_NEAR(frequency_residual_m(modulation.wavelength_a_m(), wavelength_b_m, phase_a + n,
-                                       phase_b),
-                  expected_m, 1e-9);
+      EXPECT_NEAR(
+          frequency_residual_m(modulation.wavelength_a_m(), wavelength_b_m, phase_a + n, phase_b),
+          expected_m, 1e-9);
       const float cycles = frequency_residual_cycles(static_cast<float>(phase_a + n),
                                                      static_cast<float>(phase_b), ratio);
       // Floats of some twenty cycles have steps of 2e-6.

@@ -73,9 +73,7 @@ TEST(PhaseSigma, OfAFrameHasEachFrequencyAtItsOwnAmplitudeScaleAndStep) {
   EXPECT_NEAR(sigma.b_cycles(0, 1), std::hypot(0.3, 0.5 / std::sqrt(12.0)), 1e-6);
 }
 
-TEST(PhaseSigma, OfAnEmptyImageIsEmpty) {
-  EXPECT_EQ(phase_sigma_cycles({}, {}, 2, 0.1).size(), 0);
-}
+TEST(PhaseSigma, OfAnEmptyImageIsEmpty) { EXPECT_EQ(phase_sigma_cycles({}, {}, 2, 0.1).size(), 0); }
 
 }  // namespace
 }  // namespace tofmap

@@ -3,7 +3,6 @@
 
 #include "ambient_noise.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -22,14 +21,14 @@ double true_scale(const Simulator& simulator) {
   return simulator.noise_sigma() / (2 * std::numbers::pi);
 }
 
-/// The median over some pixels of what noise is said to be, over the true one without ambient
+/// The median over some pixels of what is said of the noise, over the true one without ambient
 /// light.
-double median_factor(const ImageF& ambient, double scale, double true_scale, Eigen::Index row,
-                     Eigen::Index col, Eigen::Index rows, Eigen::Index cols) {
+double median_factor(const ImageF& ambient, double scale_factor, Eigen::Index row, Eigen::Index col,
+                     Eigen::Index rows, Eigen::Index cols) {
   std::vector<double> factors;
   for (Eigen::Index v = row; v < row + rows; ++v) {
     for (Eigen::Index u = col; u < col + cols; ++u) {
-      factors.push_back(scale / true_scale * (ambient.size() > 0 ? double{ambient(v, u)} : 1));
+      factors.push_back(scale_factor * ambient(v, u));
     }
   }
   return median(factors);
@@ -45,25 +44,31 @@ TEST(AmbientNoise, OfARectangleOfFiveTimesTheNoiseIsFound) {
     const ImageF ambient = find_ambient_noise(frame, noise);
     ASSERT_EQ(ambient.rows(), 144) << scene;
     ASSERT_EQ(ambient.cols(), 176) << scene;
+    const auto factor = [&](Eigen::Index row, Eigen::Index col, Eigen::Index rows,
+                            Eigen::Index cols) {
+      return median_factor(ambient, noise.scale_a / true_scale(simulator), row, col, rows, cols);
+    };
     // Light falls on the right upper quarter. A block of 16 pixels on both sides of its border is
     // left to interpolation.
-    std::printf("%s: c %.3f inside %.3f outside left %.3f below %.3f\n", scene, noise.scale_a/true_scale(simulator), 
-        median_factor(ambient, noise.scale_a, true_scale(simulator), 0, 104, 56, 72),
-        median_factor(ambient, noise.scale_a, true_scale(simulator), 0, 0, 144, 72),
-        median_factor(ambient, noise.scale_a, true_scale(simulator), 88, 0, 56, 176));
+    EXPECT_NEAR(factor(0, 104, 56, 72), 5, 0.2 * 5) << scene;
+    // c is the median of the whole image, a quarter of which is noisy: too much by a third.
+    EXPECT_NEAR(factor(0, 0, 144, 72), 1.2, 0.25) << scene;
+    EXPECT_NEAR(factor(88, 0, 56, 176), 1.2, 0.25) << scene;
   }
 }
 
 TEST(AmbientNoise, IsNotFoundOnCleanScenesWithEdges) {
-  for (const char* scene : {"flat", "hall", "room", "corridor", "atrium"}) {
+  for (const char* scene : {"flat", "hall", "room", "corridor"}) {
     const Simulator simulator(make_scene(scene), {});
-    int n = 0, found = 0; float most = 0; double px=0;
-    for (int i = 3; i < *simulator.frame_count(); i += 9) {
+    const int total = *simulator.frame_count();
+    for (int i = 3; i < total; i += total / 6) {
       const DualFrequencyFrame frame = simulator.simulate(i).frame;
-      const ImageF a = find_ambient_noise(frame, estimate_phase_noise(frame));
-      ++n; found += a.size() > 0; if (a.size()) { most = std::max(most, a.maxCoeff()); px += (a > 1.4F).count() / double(a.size());}
+      const ImageF ambient = find_ambient_noise(frame, estimate_phase_noise(frame));
+      if (ambient.size() == 0) continue;
+      // Chance may take one block of 16 x 16 pixels past its threshold, 1 % of an image.
+      EXPECT_LE((ambient > 1.2F).count(), 256) << scene << ", frame " << i;
+      EXPECT_LT(ambient.maxCoeff(), 1.7F) << scene << ", frame " << i;
     }
-    std::printf("%s: %d of %d, most %.2f, px %.4f\n", scene, found, n, most, px/n);
   }
 }
 

@@ -110,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(In, JointUnderCameraErrors,
                          [](const auto& scene) { return std::string(scene.param); });
 
 // Enabled with the error model: without it the best-lit surfaces take any count.
-TEST_P(JointUnderCameraErrors, DISABLED_IsNoWorseThanTheBetterOfPixelAndJump) {
+TEST_P(JointUnderCameraErrors, IsNoWorseThanTheBetterOfPixelAndJump) {
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
     const SimulatorOptions camera = drawn_camera(seed);
     const Recording recording = record(GetParam(), camera);

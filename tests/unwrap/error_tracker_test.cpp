@@ -3,21 +3,22 @@
 
 // What the error tracker finds on frames of a simulated camera whose errors are known.
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <exception>
+#include <iterator>
 #include <random>
 #include <sstream>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
+#include <gtest/gtest.h>
 
 #include <tofmap/acquisition/simulator.hpp>
-#include <tofmap/acquisition/pixel_label.hpp>
 #include <tofmap/core/median.hpp>
 #include <tofmap/unwrap/error_tracker.hpp>
 #include <tofmap/unwrap/measured_frame.hpp>
@@ -69,18 +70,28 @@ std::vector<SimulatedFrame> run_of(const Simulator& simulator, int first, int fr
   return simulated;
 }
 
-/// The residuals at the true count of pixels that see one surface.
-std::vector<double> true_residuals_m(const SimulatedFrame& simulated, const ImageF& phase_a,
-                                     const ImageF& phase_b, const BeatLimits& limits) {
+/// True where the pixel and its four neighbours see one plane: no edge is within reach.
+bool is_smooth(const ImageF& range_m, Eigen::Index v, Eigen::Index u) {
+  constexpr float flat_m = 0.01F;
+  if (v < 1 || u < 1 || v + 1 >= range_m.rows() || u + 1 >= range_m.cols()) return false;
+  const float across_m = range_m(v, u - 1) - 2 * range_m(v, u) + range_m(v, u + 1);
+  const float along_m = range_m(v - 1, u) - 2 * range_m(v, u) + range_m(v + 1, u);
+  return std::abs(across_m) < flat_m && std::abs(along_m) < flat_m;
+}
+
+/// The residuals at the true count of pixels on smooth surfaces.
+std::vector<double> residuals_m(const SimulatedFrame& truth, const ImageF& phase_b,
+                                const BeatLimits& limits) {
   std::vector<double> residuals_m;
-  for (Eigen::Index i = 0; i < phase_a.size(); ++i) {
-    if (simulated.label.data()[i] != static_cast<int>(PixelLabel::right)) continue;
-    const double a = phase_a.data()[i];
-    const double b = phase_b.data()[i];
-    const double n = std::round(simulated.range_truth_m.data()[i] / limits.wavelength_a_m - a);
-    const double residual_m =
-        frequency_residual_m(limits.wavelength_a_m, limits.wavelength_b_m, a + n, b);
-    if (!std::isnan(residual_m)) residuals_m.push_back(residual_m);
+  for (Eigen::Index v = 0; v < phase_b.rows(); ++v) {
+    for (Eigen::Index u = 0; u < phase_b.cols(); ++u) {
+      if (!is_smooth(truth.range_truth_m, v, u)) continue;
+      const double phase_a = truth.frame.phase_a(v, u);
+      const double n = std::round(truth.range_truth_m(v, u) / limits.wavelength_a_m - phase_a);
+      const double residual_m = frequency_residual_m(limits.wavelength_a_m, limits.wavelength_b_m,
+                                                     phase_a + n, phase_b(v, u));
+      if (!std::isnan(residual_m)) residuals_m.push_back(residual_m);
+    }
   }
   return residuals_m;
 }
@@ -92,59 +103,510 @@ double rms(const std::vector<double>& values) {
 }
 
 TEST(ErrorTracker, FindsAnOffsetOnTheFirstFrame) {
-  for (const char* scene : {"hall", "room", "flat", "corridor"}) {
-  for (const double offset_b_m : {-0.1, 0.1}) {
-    SimulatorOptions simulation = small_camera();
-    simulation.offset_b_m = offset_b_m;
-    const Simulator simulator(make_scene(scene), simulation);
-    for (int i : {5, 20, 35, 60}) {
-    ErrorTracker tracker = tracker_of(simulator);
-    const FrameErrors errors = track(tracker, returns_of(simulator.simulate(i % *simulator.frame_count()))).errors;
-    std::printf("%s %d: %.3f -> %.4f, sys %.4f flow %.2f t %.3f %.3f %.3f\n", scene, i, offset_b_m, errors.camera.offset_m(), errors.camera.systematic_m, errors.flow_px, errors.motion.translation_m.x(),errors.motion.translation_m.y(),errors.motion.translation_m.z());
+  for (const char* scene : {"hall", "room", "flat"}) {
+    for (const double offset_b_m : {-0.14, -0.1, 0.1, 0.14}) {
+      SimulatorOptions simulation = small_camera();
+      simulation.offset_b_m = offset_b_m;
+      const Simulator simulator(make_scene(scene), simulation);
+      ErrorTracker tracker = tracker_of(simulator);
+      const FrameErrors errors = track(tracker, returns_of(simulator.simulate(20))).errors;
+      // Motion along the view up to the prior's centimetre is not told from it on one frame.
+      EXPECT_NEAR(errors.camera.offset_m(), -offset_b_m, 0.012) << scene;
+      EXPECT_EQ(tracker.camera_errors().frames, 1) << scene;
     }
   }
+}
+
+TEST(ErrorTracker, CorrectsNothingWhereThereIsNoError) {
+  for (const char* scene : {"hall", "room", "flat"}) {
+    SimulatorOptions simulation = small_camera();
+    simulation.b_delay_share = 0;
+    const Simulator simulator(make_scene(scene), simulation);
+    const double wavelength_b_m = beat_limits(simulator.sensor(), 0).wavelength_b_m;
+    ErrorTracker tracker = tracker_of(simulator);
+    std::vector<double> corrections_m;
+    for (const SimulatedFrame& simulated : frames_of(simulator, 12)) {
+      const DualFrequencyFrame frame = returns_of(simulated);
+      const ErrorTracker::Tracked tracked = track(tracker, frame);
+      for (Eigen::Index i = 0; i < frame.phase_b.size(); ++i) {
+        const double change = tracked.b.phase_b.data()[i] - frame.phase_b.data()[i];
+        if (std::isnan(change) || tracked.b.sigma_b_cycles.data()[i] > 1) continue;
+        corrections_m.push_back(std::remainder(change, 1) * wavelength_b_m);
+      }
+    }
+    // The noise of a pixel's residual is 2 cm and more: a fifth of it is what some hundred
+    // independent samples a frame leave.
+    EXPECT_LT(rms(corrections_m), 0.005) << scene;
+    EXPECT_NEAR(tracker.camera_errors().offset_m(), 0, 0.005) << scene;
+    EXPECT_LT(tracker.camera_errors().systematic_m, 0.005) << scene;
   }
 }
 
 TEST(ErrorTracker, PredictsAPeriodicErrorAfterSomeFrames) {
-  SimulatorOptions simulation = small_camera();
-  simulation.periodic_a_m = 0.04;
-  simulation.periodic_b_m = 0.04;
-  simulation.range_noise_m = 0.003;
-  for (int seed = 1; seed <= 3; ++seed) {
-  simulation.errors_seed = seed;
-  for (const char* scene : {"hall", "room"}) {
-  const Simulator simulator(make_scene(scene), simulation);
-  ErrorTracker tracker = tracker_of(simulator);
-  const BeatLimits limits = beat_limits(simulator.sensor(), 0);
-  int k = 0;
-  for (const SimulatedFrame& simulated : frames_of(simulator, 12)) {
-    const DualFrequencyFrame frame = returns_of(simulated);
-    const auto tracked = track(tracker, frame);
-    if (++k % 3 != 0) continue;
-    auto before = true_residuals_m(simulated, frame.phase_a, frame.phase_b, limits);
-    auto after = true_residuals_m(simulated, frame.phase_a, tracked.b.phase_b, limits);
-    std::printf("%s %d frame %d: %.4f -> %.4f sys %.4f per %.4f\n", scene, seed, k, rms(before), rms(after), tracked.errors.camera.systematic_m, tracked.errors.camera.periodic_rms_m());
-  }
-  }
+  for (const int seed : {1, 2}) {
+    SimulatorOptions simulation = small_camera();
+    simulation.periodic_a_m = 0.04;
+    simulation.periodic_b_m = 0.04;
+    simulation.errors_seed = seed;
+    simulation.range_noise_m = 0.003;  // so that what is left of the residual is not noise
+    const Simulator simulator(make_scene("hall"), simulation);
+    const BeatLimits limits = beat_limits(simulator.sensor(), 0);
+    ErrorTracker tracker = tracker_of(simulator);
+    std::vector<double> before_m;
+    std::vector<double> after_m;
+    int index = 0;
+    for (const SimulatedFrame& simulated : frames_of(simulator, 12)) {
+      const ErrorTracker::Tracked tracked = track(tracker, returns_of(simulated));
+      if (++index <= 6) continue;
+      std::ranges::copy(residuals_m(simulated, simulated.frame.phase_b, limits),
+                        std::back_inserter(before_m));
+      std::ranges::copy(residuals_m(simulated, tracked.b.phase_b, limits),
+                        std::back_inserter(after_m));
+    }
+    EXPECT_GT(rms(before_m), 0.015) << "the error is there";
+    EXPECT_LT(rms(after_m), 0.01) << seed;
   }
 }
 
-TEST(ErrorTracker, FindsAnErrorThatGrowsWithDarkness) {
+TEST(ErrorTracker, PredictsAnErrorThatGrowsWithDarkness) {
   SimulatorOptions simulation = small_camera();
-  simulation.amplitude_error_b_m = 0.06;
-  simulation.range_noise_m = 0.01;
-  for (const char* scene : {"hall", "room"}) {
-  const Simulator simulator(make_scene(scene), simulation);
-  ErrorTracker tracker = tracker_of(simulator);
+  simulation.amplitude_error_b_m = 0.09;  // 3 cm a decade, and of B: A's excess falls with darkness
+  simulation.range_noise_m = 0.005;
+  const Simulator simulator(make_scene("hall"), simulation);
   const BeatLimits limits = beat_limits(simulator.sensor(), 0);
+  ErrorTracker tracker = tracker_of(simulator);
+  std::vector<double> before_m;
+  std::vector<double> after_m;
+  int index = 0;
   for (const SimulatedFrame& simulated : frames_of(simulator, 12)) {
-    const DualFrequencyFrame frame = returns_of(simulated);
-    const auto tracked = track(tracker, frame);
-    auto before = true_residuals_m(simulated, frame.phase_a, frame.phase_b, limits);
-    auto after = true_residuals_m(simulated, frame.phase_a, tracked.b.phase_b, limits);
-    std::printf("%s amp: %.4f -> %.4f med %.4f -> %.4f per decade %.4f offset %.4f\n", scene, rms(before), rms(after), median(before), median(after), tracker.camera_errors().per_decade_m(), tracker.camera_errors().offset_m());
+    const ErrorTracker::Tracked tracked = track(tracker, returns_of(simulated));
+    if (++index <= 6) continue;
+    std::ranges::copy(residuals_m(simulated, simulated.frame.phase_b, limits),
+                      std::back_inserter(before_m));
+    std::ranges::copy(residuals_m(simulated, tracked.b.phase_b, limits),
+                      std::back_inserter(after_m));
   }
+  EXPECT_GT(rms(before_m), 0.04);
+  EXPECT_LT(rms(after_m), 0.009);
+  // Of one surface after another amplitude goes with range, and periodic errors share what it
+  // explains: the slope is found to a third.
+  EXPECT_NEAR(tracker.camera_errors().per_decade_m(), 0.03, 0.01);
+}
+
+/// Ranges to a floor and walls, and the light that comes back from them.
+class Corner {
+ public:
+  const CameraModel camera{
+      .width_px = 88, .height_px = 72, .fx_px = 64, .fy_px = 64, .cx_px = 43.5, .cy_px = 35.5};
+  const PixelRays rays = pixel_rays(camera);
+
+  /// The range along a ray of the world, and the amplitude of its light.
+  struct Seen {
+    double range_m;
+    double amplitude;
+  };
+  Seen look(const Eigen::Vector3d& origin, const Eigen::Vector3d& ray) const {
+    Seen seen{1e9, 0};
+    const auto hit = [&](const Eigen::Vector3d& normal, double distance_m) {
+      const double toward = normal.dot(ray);
+      const double range_m = (distance_m - normal.dot(origin)) / toward;
+      if (toward <= 0 || range_m >= seen.range_m) return;
+      const Eigen::Vector3d point = origin + range_m * ray;
+      const double texture = 1 + 0.4 * std::sin(4 * point.x() + 1) * std::sin(4 * point.y());
+      seen = {range_m, 3000 * texture * toward / (range_m * range_m)};
+    };
+    hit(Eigen::Vector3d::UnitY(), 1.5);
+    hit(Eigen::Vector3d(0.6, 0, 0.8), 5);
+    hit(Eigen::Vector3d(-0.8, 0, 0.6), 4);
+    hit(Eigen::Vector3d(0, -0.8, 0.6), 4);
+    return seen;
+  }
+
+  ImageF ranges_from(const Pose& world_from_camera) const {
+    return image_from(world_from_camera, [](const Seen& seen) { return seen.range_m; });
+  }
+
+  /// A frame without noise, A exposed at the origin and B after this motion.
+  DualFrequencyFrame frame_of(const Pose& a_from_b) const {
+    const auto phase = [&](const Pose& pose, double wavelength_m) {
+      return image_from(pose, [&](const Seen& seen) {
+        return seen.range_m / wavelength_m - std::floor(seen.range_m / wavelength_m);
+      });
+    };
+    const auto amplitude = [&](const Pose& pose) {
+      return image_from(pose, [](const Seen& seen) { return seen.amplitude; });
+    };
+    DualFrequencyFrame frame;
+    frame.phase_a = phase(Pose::Identity(), limits.wavelength_a_m);
+    frame.phase_b = phase(a_from_b, limits.wavelength_b_m);
+    frame.amplitude_a = amplitude(Pose::Identity());
+    frame.amplitude_b = amplitude(a_from_b);
+    return frame;
+  }
+
+  const BeatLimits limits = beat_limits({camera, {29e6, 31e6}}, 20);
+
+ private:
+  template <class Value>
+  ImageF image_from(const Pose& pose, const Value& value) const {
+    ImageF image(rays.x.rows(), rays.x.cols());
+    for (Eigen::Index i = 0; i < image.size(); ++i) {
+      const Eigen::Vector3d ray(rays.x.data()[i], rays.y.data()[i], rays.z.data()[i]);
+      image.data()[i] = static_cast<float>(value(look(pose.translation(), pose.linear() * ray)));
+    }
+    return image;
+  }
+};
+
+/// The noise that frames without any are said to have: 3 mm.
+PhaseSigma said_sigma(const DualFrequencyFrame& frame) {
+  const ImageF sigma = frame.phase_a.isNaN().select(
+      ImageF::Constant(frame.phase_a.rows(), frame.phase_a.cols(), NAN), 6e-4F);
+  PhaseSigma both;
+  both.a_cycles = both.b_cycles = sigma;
+  return both;
+}
+
+Pose pose_of(const Eigen::Vector3d& translation_m, const Eigen::Vector3d& rotation_rad) {
+  Pose pose = Pose::Identity();
+  pose.translation() = translation_m;
+  const double angle = rotation_rad.norm();
+  if (angle > 0) pose.linear() = Eigen::AngleAxisd(angle, rotation_rad / angle).toRotationMatrix();
+  return pose;
+}
+
+/// A tracker that has seen the camera stand still, and knows that its frequencies agree.
+ErrorTracker acquainted(const Corner& corner) {
+  ErrorTracker tracker(corner.limits, corner.camera);
+  const DualFrequencyFrame still = corner.frame_of(Pose::Identity());
+  for (int i = 0; i < 4; ++i) tracker.track(still, said_sigma(still));
+  tracker.forget_last_frame();
+  return tracker;
+}
+
+TEST(ErrorTracker, FindsTheMotionBetweenTheExposures) {
+  struct Motion {
+    Eigen::Vector3d translation_m;
+    Eigen::Vector3d rotation_rad;
+  };
+  const Corner corner;
+  for (const auto& [translation_m, rotation_rad] :
+       {Motion{{0.004, -0.003, 0.009}, {0.002, -0.004, 0.001}},
+        Motion{{0.02, -0.01, 0.05}, {0.004, -0.008, 0.003}},
+        Motion{{0.03, 0.01, 0.08}, {-0.01, 0.06, 0.01}}}) {
+    ErrorTracker tracker = acquainted(corner);
+    const DualFrequencyFrame frame = corner.frame_of(pose_of(translation_m, rotation_rad));
+    const ErrorTracker::Tracked tracked = tracker.track(frame, said_sigma(frame));
+    const ExposureMotion& motion = tracked.errors.motion;
+    // A motion of a centimetre is likely by itself, so a third of it stays open; of a larger one a
+    // twentieth.
+    EXPECT_LT((motion.translation_m - translation_m).norm(), 0.004);
+    EXPECT_LT((motion.rotation_rad - rotation_rad).norm(), 0.1 * rotation_rad.norm() + 0.0003);
+  }
+}
+
+TEST(ErrorTracker, BringsBBackToWhereAWasExposed) {
+  const Corner corner;
+  for (const double turn_rad : {0.004, 0.06}) {
+    ErrorTracker tracker = acquainted(corner);
+    const DualFrequencyFrame frame =
+        corner.frame_of(pose_of({0.01, 0, 0.03 + turn_rad}, {0, turn_rad, 0}));
+    const ErrorTracker::Tracked tracked = tracker.track(frame, said_sigma(frame));
+    SimulatedFrame truth;
+    truth.frame = frame;
+    truth.range_truth_m = corner.ranges_from(Pose::Identity());
+    ImageF seen_b = tracked.b.phase_b;
+    seen_b = (tracked.b.sigma_b_cycles < 1).select(seen_b, NAN);
+    std::vector<double> left_m = residuals_m(truth, seen_b, corner.limits);
+    std::vector<double> without_m = residuals_m(truth, frame.phase_b, corner.limits);
+    EXPECT_LT(rms(left_m), 0.2 * rms(without_m)) << turn_rad;
+    // Going 9 cm ahead and turning takes a fifth of the surface out of B's image.
+    EXPECT_GT(static_cast<double>(left_m.size()), 0.75 * static_cast<double>(without_m.size()));
+  }
+}
+
+TEST(ErrorTracker, KnowsNothingOfBWhereItsImageEnds) {
+  const Corner corner;
+  ErrorTracker tracker = acquainted(corner);
+  const Pose a_from_b = pose_of(Eigen::Vector3d::Zero(), {0, 0.1, 0});
+  const DualFrequencyFrame frame = corner.frame_of(a_from_b);
+  const ErrorTracker::Tracked tracked = tracker.track(frame, said_sigma(frame));
+  const ImageF range_m = corner.ranges_from(Pose::Identity());
+  int outside = 0;
+  int outside_unseen = 0;
+  int inside = 0;
+  int inside_seen = 0;
+  for (Eigen::Index v = 0; v < range_m.rows(); ++v) {
+    for (Eigen::Index u = 0; u < range_m.cols(); ++u) {
+      const Eigen::Vector3d point =
+          range_m(v, u) *
+          Eigen::Vector3d(corner.rays.x(v, u), corner.rays.y(v, u), corner.rays.z(v, u));
+      const auto pixel = project(corner.camera, a_from_b.inverse() * point);
+      ASSERT_TRUE(pixel);
+      const bool unseen = tracked.b.sigma_b_cycles(v, u) == MatchedExposure::unseen_sigma_cycles;
+      // A pixel on both sides of the border is left to the error of the motion.
+      if (pixel->x() < -1.5) {
+        ++outside;
+        outside_unseen += unseen ? 1 : 0;
+      } else if (pixel->x() > 0.5 && pixel->y() > 0.5 && pixel->y() < 70.5) {
+        ++inside;
+        inside_seen += unseen ? 0 : 1;
+      }
+    }
+  }
+  ASSERT_GT(outside, 300);
+  EXPECT_EQ(outside_unseen, outside);
+  EXPECT_GT(inside_seen, 0.95 * inside);
+}
+
+SimulatorOptions switching_camera() {
+  SimulatorOptions simulation = small_camera();
+  simulation.b_delay_share = 1;
+  simulation.max_step_m = 0.1;
+  simulation.max_turn_deg = 6;
+  return simulation;
+}
+
+/// Three runs of twelve frames through the hall, each looked ahead at as the program does.
+double wrong_wraps_percent(const SimulatorOptions& simulation, const UnwrapOptions& options) {
+  const Simulator simulator(make_scene("hall"), simulation);
+  const double wavelength_m = simulator.sensor().modulation.wavelength_a_m();
+  Unwrapper unwrapper(simulator.sensor(), options);
+  double wrong = 0;
+  double all = 0;
+  for (const int first : {0, 20, 40}) {
+    const std::vector<SimulatedFrame> run = run_of(simulator, first, 12);
+    std::vector<DualFrequencyFrame> ahead;
+    for (std::size_t i = 0; i < FrameMeasurer::frames_ahead; ++i) ahead.push_back(run[i].frame);
+    FrameMeasurer measurer(simulator.sensor(), options);
+    measurer.look_ahead(ahead);
+    for (const SimulatedFrame& simulated : run) {
+      const RangeImage image = unwrapper.unwrap(measurer.measure(simulated.frame)).image;
+      for (Eigen::Index i = 0; i < image.reason.size(); ++i) {
+        const double error_m = image.range_m.data()[i] - simulated.range_truth_m.data()[i];
+        if (std::isnan(error_m)) continue;
+        all += 1;
+        wrong += std::abs(error_m) > wavelength_m / 2 ? 1 : 0;
+      }
+    }
+  }
+  return 100 * wrong / all;
+}
+
+TEST(ErrorTracker, UnwrapsACameraThatSwitchesFrequencyFromFrameToFrame) {
+  SimulatorOptions at_once = switching_camera();
+  at_once.b_delay_share = 0;
+  const double at_once_percent = wrong_wraps_percent(at_once, {});
+  // What lies outside B's image has only its neighbours to tell its count.
+  EXPECT_LE(wrong_wraps_percent(switching_camera(), {}), 1.3 * at_once_percent);
+  UnwrapOptions as_it_comes;
+  as_it_comes.systematic_errors = false;
+  EXPECT_GT(wrong_wraps_percent(switching_camera(), as_it_comes), 10 * at_once_percent)
+      << "the motion matters";
+}
+
+/// The same number of NaNs, and the same bits.
+bool is_same(const ImageF& one, const ImageF& other) {
+  return one.rows() == other.rows() && one.cols() == other.cols() &&
+         (one.size() == 0 ||
+          std::memcmp(one.data(), other.data(),
+                      sizeof(float) * static_cast<std::size_t>(one.size())) == 0);
+}
+
+bool is_same(const ErrorTracker::Tracked& one, const ErrorTracker::Tracked& other) {
+  return is_same(one.b.phase_b, other.b.phase_b) &&
+         is_same(one.b.amplitude_b, other.b.amplitude_b) &&
+         is_same(one.b.sigma_b_cycles, other.b.sigma_b_cycles) &&
+         one.errors.camera.coefficient_m == other.errors.camera.coefficient_m &&
+         one.errors.camera.systematic_m == other.errors.camera.systematic_m &&
+         one.errors.motion.translation_m == other.errors.motion.translation_m &&
+         one.errors.motion.rotation_rad == other.errors.motion.rotation_rad;
+}
+
+TEST(ErrorTracker, GoesOnFromASavedStateToTheSameBits) {
+  const Simulator simulator(make_scene("hall"), switching_camera());
+  const std::vector<SimulatedFrame> frames = run_of(simulator, 20, 5);
+  ErrorTracker kept = tracker_of(simulator);
+  for (int i = 0; i < 4; ++i) track(kept, returns_of(frames[static_cast<std::size_t>(i)]));
+  std::stringstream state;
+  kept.save(state);
+  ErrorTracker resumed = tracker_of(simulator);
+  resumed.load(state);
+  const ErrorTracker::Tracked expected = track(kept, returns_of(frames.back()));
+  EXPECT_TRUE(expected.errors.used_last_b) << "so that the last frame is part of the state";
+  EXPECT_TRUE(is_same(track(resumed, returns_of(frames.back())), expected));
+  ErrorTracker fresh = tracker_of(simulator);
+  EXPECT_FALSE(is_same(track(fresh, returns_of(frames.back())), expected))
+      << "what is saved matters";
+  std::stringstream after;
+  std::stringstream after_resumed;
+  kept.save(after);
+  resumed.save(after_resumed);
+  EXPECT_EQ(after.str(), after_resumed.str());
+}
+
+TEST(ErrorTracker, RefusesADamagedState) {
+  const Corner corner;
+  std::stringstream state;
+  acquainted(corner).save(state);
+  const std::string whole = state.str();
+  for (const std::size_t size :
+       {std::size_t{0}, std::size_t{10}, whole.size() / 2, whole.size() - 1}) {
+    std::stringstream cut(whole.substr(0, size));
+    ErrorTracker tracker(corner.limits, corner.camera);
+    EXPECT_THROW(tracker.load(cut), std::exception) << size;
+  }
+}
+
+TEST(ErrorTracker, ForgetsTheLastFrameButNotTheCamera) {
+  const Simulator simulator(make_scene("hall"), switching_camera());
+  const std::vector<SimulatedFrame> frames = run_of(simulator, 20, 4);
+  ErrorTracker tracker = tracker_of(simulator);
+  for (int i = 0; i < 3; ++i) track(tracker, returns_of(frames[static_cast<std::size_t>(i)]));
+  ErrorTracker forgetting = tracker;
+  forgetting.forget_last_frame();
+  EXPECT_EQ(forgetting.camera_errors().coefficient_m, tracker.camera_errors().coefficient_m);
+  EXPECT_EQ(forgetting.camera_errors().frames, 3);
+  EXPECT_TRUE(track(tracker, returns_of(frames.back())).errors.used_last_b);
+  EXPECT_FALSE(track(forgetting, returns_of(frames.back())).errors.used_last_b);
+}
+
+TEST(ErrorTracker, TakesMotionForAnOffsetWhereTheCameraIsUnknown) {
+  SimulatorOptions simulation = small_camera();
+  simulation.offset_b_m = -0.08;
+  const Simulator simulator(make_scene("hall"), simulation);
+  ErrorTracker tracker(beat_limits(simulator.sensor(), 0), CameraModel());
+  const FrameErrors errors = track(tracker, returns_of(simulator.simulate(20))).errors;
+  EXPECT_NEAR(errors.camera.offset_m(), 0.08, 0.015);
+  EXPECT_EQ(errors.motion.translation_m.norm(), 0);
+  EXPECT_EQ(errors.motion.rotation_rad.norm(), 0);
+  EXPECT_EQ(errors.flow_px, 0);
+}
+
+TEST(ErrorTracker, NeedsNoAmplitudes) {
+  SimulatorOptions simulation = small_camera();
+  simulation.offset_b_m = -0.08;
+  simulation.range_noise_m = 0.005;
+  const Simulator simulator(make_scene("hall"), simulation);
+  DualFrequencyFrame frame = returns_of(simulator.simulate(20));
+  frame.amplitude_a.resize(0, 0);
+  frame.amplitude_b.resize(0, 0);
+  ErrorTracker tracker = tracker_of(simulator);
+  const ErrorTracker::Tracked tracked = track(tracker, frame);
+  EXPECT_NEAR(tracked.errors.camera.offset_m(), 0.08, 0.015);
+  EXPECT_EQ(tracked.errors.camera.amplitude_gain, 1);
+  EXPECT_EQ(tracked.b.amplitude_b.size(), 0);
+  EXPECT_LT(tracked.b.sigma_b_cycles.maxCoeff<Eigen::PropagateNumbers>(), 1) << "all is seen";
+}
+
+TEST(ErrorTracker, KnowsNothingOfAFrameWithoutReturns) {
+  const Corner corner;
+  ErrorTracker tracker = acquainted(corner);
+  const CameraErrors before = tracker.camera_errors();
+  DualFrequencyFrame dark = corner.frame_of(Pose::Identity());
+  dark.phase_a.setConstant(NAN);
+  dark.phase_b.setConstant(NAN);
+  const ErrorTracker::Tracked tracked = tracker.track(dark, said_sigma(dark));
+  EXPECT_EQ(tracked.errors.pixels, 0);
+  EXPECT_EQ(tracked.errors.camera.coefficient_m, before.coefficient_m);
+  EXPECT_EQ(tracker.camera_errors().frames, before.frames);
+  EXPECT_TRUE(tracked.b.phase_b.isNaN().all());
+  EXPECT_TRUE((tracked.b.sigma_b_cycles == MatchedExposure::unseen_sigma_cycles).all());
+}
+
+TEST(ErrorTracker, LeavesMissingPixelsOutAndEveryOtherPhaseWithinACycle) {
+  const Simulator simulator(make_scene("hall"), switching_camera());
+  ErrorTracker tracker = tracker_of(simulator);
+  std::mt19937 random(3);
+  for (const SimulatedFrame& simulated : run_of(simulator, 20, 3)) {
+    DualFrequencyFrame frame = returns_of(simulated);
+    for (Eigen::Index i = 0; i < frame.phase_a.size(); ++i) {
+      if (random() % 3 == 0) frame.phase_a.data()[i] = frame.phase_b.data()[i] = NAN;
+    }
+    const ErrorTracker::Tracked tracked = track(tracker, frame);
+    EXPECT_TRUE((tracked.b.phase_b.isNaN() == frame.phase_a.isNaN()).all());
+    for (Eigen::Index i = 0; i < frame.phase_a.size(); ++i) {
+      if (std::isnan(frame.phase_a.data()[i])) continue;
+      const float phase = tracked.b.phase_b.data()[i];
+      ASSERT_TRUE(phase >= 0 && phase < 1) << phase;
+      ASSERT_GT(tracked.b.sigma_b_cycles.data()[i], 0);
+      ASSERT_GT(tracked.b.amplitude_b.data()[i], 0);
+    }
+  }
+}
+
+TEST(ErrorTracker, LeavesAFrameOfOneRowOrColumnAsItIs) {
+  const Corner corner;
+  const DualFrequencyFrame whole = corner.frame_of(Pose::Identity());
+  for (const auto& [rows, cols] : {std::pair{1, 88}, {72, 1}, {1, 1}, {2, 2}}) {
+    CameraModel camera = corner.camera;
+    camera.width_px = cols;
+    camera.height_px = rows;
+    DualFrequencyFrame frame;
+    frame.phase_a = whole.phase_a.topLeftCorner(rows, cols);
+    frame.phase_b = whole.phase_b.topLeftCorner(rows, cols);
+    frame.amplitude_a = whole.amplitude_a.topLeftCorner(rows, cols);
+    frame.amplitude_b = whole.amplitude_b.topLeftCorner(rows, cols);
+    for (const CameraModel& known : {camera, CameraModel()}) {
+      ErrorTracker tracker(corner.limits, known);
+      const ErrorTracker::Tracked tracked = tracker.track(frame, said_sigma(frame));
+      const ImageF change = tracked.b.phase_b - frame.phase_b;
+      EXPECT_LT((change - change.round()).abs().maxCoeff(), 1e-5) << rows << " x " << cols;
+      EXPECT_LT(tracked.b.sigma_b_cycles.maxCoeff(), 1) << rows << " x " << cols;
+    }
+  }
+}
+
+TEST(ErrorTracker, GivesTheSameBitsBesideOthers) {
+  const Simulator simulator(make_scene("hall"), switching_camera());
+  const std::vector<SimulatedFrame> frames = run_of(simulator, 20, 4);
+  const auto last_of = [&] {
+    ErrorTracker tracker = tracker_of(simulator);
+    ErrorTracker::Tracked tracked;
+    for (const SimulatedFrame& simulated : frames) tracked = track(tracker, returns_of(simulated));
+    return tracked;
+  };
+  const ErrorTracker::Tracked alone = last_of();
+  std::vector<ErrorTracker::Tracked> beside(3);
+  std::vector<std::thread> threads;
+  for (ErrorTracker::Tracked& tracked : beside) {
+    threads.emplace_back([&tracked, &last_of] { tracked = last_of(); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const ErrorTracker::Tracked& tracked : beside) EXPECT_TRUE(is_same(tracked, alone));
+}
+
+TEST(FrameMeasurer, KnowsTheCameraFromTheFirstFrameOnAfterLookingAhead) {
+  SimulatorOptions simulation = small_camera();
+  simulation.offset_b_m = -0.08;
+  const Simulator simulator(make_scene("hall"), simulation);
+  std::vector<DualFrequencyFrame> frames;
+  for (const SimulatedFrame& simulated : run_of(simulator, 20, FrameMeasurer::frames_ahead)) {
+    frames.push_back(simulated.frame);
+  }
+  FrameMeasurer measurer(simulator.sensor(), {});
+  measurer.look_ahead(frames);
+  const MeasuredFrame first = measurer.measure(frames.front());
+  EXPECT_EQ(first.errors.camera.frames, FrameMeasurer::frames_ahead + 1);
+  EXPECT_NEAR(first.errors.camera.offset_m(), 0.08, 0.006);
+}
+
+TEST(FrameMeasurer, LeavesBAsItIsForMethodsThatDoNotCompareFrequencies) {
+  SimulatorOptions simulation = small_camera();
+  simulation.offset_b_m = -0.08;
+  const Simulator simulator(make_scene("hall"), simulation);
+  const DualFrequencyFrame frame = returns_of(simulator.simulate(20));
+  for (const char* method : {"none", "pixel", "single", "paper", "jump", "joint"}) {
+    UnwrapOptions options;
+    options.method = method;
+    const bool compares = method == std::string("jump") || method == std::string("joint");
+    const MeasuredFrame measured = FrameMeasurer(simulator.sensor(), options).measure(frame);
+    EXPECT_EQ(is_same(measured.returns.phase_b, frame.phase_b), !compares) << method;
+    EXPECT_EQ(measured.residual_sigma_m > 0, compares) << method;
+    options.systematic_errors = false;
+    const MeasuredFrame noise_alone = FrameMeasurer(simulator.sensor(), options).measure(frame);
+    EXPECT_TRUE(is_same(noise_alone.returns.phase_b, frame.phase_b)) << method;
+    EXPECT_EQ(noise_alone.residual_sigma_m, 0) << method;
   }
 }
 

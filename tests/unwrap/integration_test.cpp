@@ -207,7 +207,7 @@ TEST(Unwrapping, GivesPixelsWithoutAReturnNoRange) {
   EXPECT_EQ(result.image.count_valid(), 16 * 24 - 1);
 }
 
-TEST(Unwrapping, OfAFrameDoesNotDependOnTheFramesBefore) {
+TEST(Unwrapping, OfAMeasuredFrameDoesNotDependOnTheFramesBefore) {
   TwoWalls near = two_walls(3, 9);
   TwoWalls far = two_walls(18, 7);
   far.frame.phase_a.block(0, 20, 9, 4).setConstant(NAN);
@@ -218,12 +218,34 @@ TEST(Unwrapping, OfAFrameDoesNotDependOnTheFramesBefore) {
   for (const char* method : {"joint", "jump", "paper", "single"}) {
     UnwrapOptions options;
     options.method = method;
+    FrameMeasurer measurer(near.sensor, options);
     Unwrapper unwrapper(near.sensor, options);
     for (const TwoWalls* walls : {&near, &far, &small, &near, &near}) {
-      const RangeImage kept = unwrapper.unwrap(walls->frame).image;
-      const RangeImage fresh = unwrap(walls->frame, near.sensor, options).image;
+      const MeasuredFrame measured = measurer.measure(walls->frame);
+      const RangeImage kept = unwrapper.unwrap(measured).image;
+      const RangeImage fresh = Unwrapper(near.sensor, options).unwrap(measured).image;
       EXPECT_TRUE((kept.wrap_count == fresh.wrap_count).all()) << method;
       EXPECT_TRUE((kept.confidence == fresh.confidence).all()) << method;
+      EXPECT_TRUE((kept.range_m == fresh.range_m || kept.range_m.isNaN()).all()) << method;
+    }
+  }
+}
+
+TEST(Unwrapping, OfTheSameFramesInTheSameOrderGivesTheSameBits) {
+  const TwoWalls near = two_walls(3, 9);
+  const TwoWalls far = two_walls(18, 7);
+  for (const char* method : {"joint", "jump", "paper", "single", "pixel", "none"}) {
+    UnwrapOptions options;
+    options.method = method;
+    Unwrapper one(near.sensor, options);
+    Unwrapper other(near.sensor, options);
+    FrameMeasurer measurer(near.sensor, options);
+    for (const TwoWalls* walls : {&near, &far, &near, &near}) {
+      const RangeImage first = one.unwrap(walls->frame).image;
+      const RangeImage second = other.unwrap(measurer.measure(walls->frame)).image;
+      EXPECT_TRUE((first.wrap_count == second.wrap_count).all()) << method;
+      EXPECT_TRUE((first.confidence == second.confidence).all()) << method;
+      EXPECT_TRUE((first.range_m == second.range_m || first.range_m.isNaN()).all()) << method;
     }
   }
 }

@@ -9,6 +9,8 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -211,14 +213,16 @@ TEST(Joint, ReportsCountsThatThePairCannotTellApart) {
   EXPECT_EQ(count_reason(certain, InvalidReason::ambiguous), 0);
 }
 
-TEST(Joint, GivesTheSameBitsFrameAfterFrame) {
+TEST(Joint, GivesTheSameBitsWhateverItsBuffersHeldBefore) {
   const Simulator simulator(make_scene("corridor"), {});
   const SimulatedFrame first = simulator.simulate(10);
   const SimulatedFrame second = simulator.simulate(60);
+  FrameMeasurer measurer(simulator.sensor(), {});
   Unwrapper unwrapper(simulator.sensor(), {});
-  unwrapper.unwrap(first.frame);
-  const RangeImage used = unwrapper.unwrap(second.frame).image;
-  const RangeImage fresh = unwrap(second.frame, simulator.sensor(), {}).image;
+  unwrapper.unwrap(measurer.measure(first.frame));
+  const MeasuredFrame measured = measurer.measure(second.frame);
+  const RangeImage used = unwrapper.unwrap(measured).image;
+  const RangeImage fresh = Unwrapper(simulator.sensor(), {}).unwrap(measured).image;
   EXPECT_TRUE((used.wrap_count == fresh.wrap_count).all());
   EXPECT_TRUE((used.confidence == fresh.confidence).all());
   EXPECT_TRUE((used.range_m == fresh.range_m || used.range_m.isNaN()).all());
@@ -260,33 +264,53 @@ TEST(Fusion, HasLessNoiseThanEitherFrequencyAndPredictsIt) {
   EXPECT_NEAR(fused.measured_m / fused.predicted_m, 1, 0.06);
 }
 
-/// Mean error of the ranges with right counts where B was taken a whole frame after A.
-double mean_error_m(const UnwrapOptions& options) {
+/// Mean errors of the ranges with right counts, of frames one after the other, where B was taken a
+/// whole frame after A. The first frames are looked ahead at, as the program does.
+std::vector<double> mean_errors_m(const UnwrapOptions& options) {
   SimulatorOptions simulation;
   simulation.subpixels = 1;
   simulation.b_delay_share = 1;
   simulation.max_step_m = 0.07;
   const Simulator simulator(make_scene("corridor"), simulation);
-  const SimulatedFrame simulated = simulator.simulate(40);
-  const RangeImage image = unwrap(simulated.frame, simulator.sensor(), options).image;
-  const ImageF error = image.range_m - simulated.range_truth_m;
-  double sum = 0;
-  int count = 0;
-  for (Eigen::Index i = 0; i < error.size(); ++i) {
-    if (image.reason.data()[i] != 0 || !(std::abs(error.data()[i]) < 0.3)) continue;
-    sum += error.data()[i];
-    ++count;
+  std::vector<SimulatedFrame> run;
+  std::vector<DualFrequencyFrame> ahead;
+  for (int i = 0; i < FrameMeasurer::frames_ahead; ++i) {
+    run.push_back(simulator.simulate(40 + i));
+    ahead.push_back(run.back().frame);
   }
-  return sum / count;
+  FrameMeasurer measurer(simulator.sensor(), options);
+  measurer.look_ahead(ahead);
+  Unwrapper unwrapper(simulator.sensor(), options);
+  std::vector<double> means_m;
+  for (const SimulatedFrame& simulated : run) {
+    const RangeImage image = unwrapper.unwrap(measurer.measure(simulated.frame)).image;
+    const ImageF error = image.range_m - simulated.range_truth_m;
+    double sum = 0;
+    int count = 0;
+    for (Eigen::Index i = 0; i < error.size(); ++i) {
+      if (image.reason.data()[i] != 0 || !(std::abs(error.data()[i]) < 0.3)) continue;
+      sum += error.data()[i];
+      ++count;
+    }
+    means_m.push_back(sum / count);
+  }
+  return means_m;
+}
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 TEST(Fusion, AllowsForTheMotionBetweenTheExposures) {
   UnwrapOptions as_it_comes;
-  as_it_comes.correct_exposure = false;
+  as_it_comes.systematic_errors = false;
   // The camera walks down the corridor at 7 cm a frame. Most of what it sees are walls along its
   // way, which stay as far; the rest comes nearer.
-  EXPECT_LT(mean_error_m(as_it_comes), -0.003);
-  EXPECT_NEAR(mean_error_m({}), 0, 0.001);
+  EXPECT_LT(mean(mean_errors_m(as_it_comes)), -0.002);
+  // On one frame motion along the view and an offset between the frequencies differ only by where
+  // walls lie along the way. Of 6 cm the tracker takes 3 mm for an offset, frame after frame since
+  // all move alike, and B, which is off by that, has half of the weight.
+  for (const double mean_m : mean_errors_m({})) EXPECT_NEAR(mean_m, 0, 0.002);
 }
 
 TEST(Fusion, LeavesAPixelAloneWhoseFrequenciesDisagree) {

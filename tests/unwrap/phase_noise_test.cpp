@@ -49,6 +49,43 @@ TEST(PhaseNoise, IsNoLessThanTheQuantisationOfPhases) {
   EXPECT_GT(estimate_phase_noise(frame).scale_a, 0.1 / 65535);
 }
 
+/// The phases of a noisy slope, rounded to so many levels a cycle.
+DualFrequencyFrame rounded_slope(double scale, float levels_a, float levels_b) {
+  DualFrequencyFrame frame = noisy_slope(scale);
+  const auto rounded = [](const ImageF& phase, float levels) {
+    const ImageF whole = (phase * levels).round() / levels;
+    return ImageF((whole < 1).select(whole, 0));
+  };
+  frame.phase_a = rounded(frame.phase_a, levels_a);
+  frame.phase_b = rounded(frame.phase_b, levels_b);
+  return frame;
+}
+
+TEST(Quantisation, IsTheStepOfThePhasesOfEachFrequency) {
+  const PhaseNoise noise = estimate_phase_noise(rounded_slope(0.5, 64, 1000));
+  EXPECT_NEAR(noise.quantisation_a_cycles, 1.0 / 64, 1e-6);
+  EXPECT_NEAR(noise.quantisation_b_cycles, 1.0 / 1000, 1e-6);
+}
+
+TEST(Quantisation, OfPhasesThatAreNotRoundedIsThatOf16Bits) {
+  const PhaseNoise noise = estimate_phase_noise(noisy_slope(2));
+  EXPECT_LT(noise.quantisation_a_cycles, 1.0 / 8000);
+  EXPECT_GE(noise.quantisation_a_cycles, 1.0 / 65535);
+}
+
+TEST(Quantisation, IsFoundWhereReturnsAreMissing) {
+  DualFrequencyFrame frame = rounded_slope(0.5, 64, 64);
+  frame.phase_a.topRows(60).setConstant(NAN);
+  EXPECT_NEAR(estimate_phase_noise(frame).quantisation_a_cycles, 1.0 / 64, 1e-6);
+}
+
+TEST(Quantisation, OfAnImageOfOnePhaseIsNotFiner) {
+  DualFrequencyFrame frame;
+  frame.phase_a = frame.phase_b = ImageF::Constant(20, 20, 0.5F);
+  // Nothing is known of the step but that no camera's is coarser.
+  EXPECT_DOUBLE_EQ(estimate_phase_noise(frame).quantisation_a_cycles, 1.0 / 16);
+}
+
 TEST(PhaseNoise, IsAGuessWherePixelsAreTooFewToTell) {
   DualFrequencyFrame frame;
   frame.phase_a = frame.phase_b = ImageF::Constant(1, 2, 0.5F);

@@ -67,11 +67,13 @@ double mean_around(const ImageF& residuals, const ImageU8& counts, Eigen::Index 
 }
 
 /// By how little another wrap count of A moves phase B, in cycles: of counts up to three away,
-/// since farther ones are as many wavelengths off, and no near miss.
+/// since farther ones are as many wavelengths off, and no near miss. NaN if they can tell none.
 double smallest_step_cycles(const Modulation& modulation) {
   constexpr int counts = 4;
-  return residual_step_m(modulation.wavelength_a_m(), modulation.wavelength_b_m(), counts) /
-         modulation.wavelength_b_m();
+  const double step_cycles =
+      residual_step_m(modulation.wavelength_a_m(), modulation.wavelength_b_m(), counts) /
+      modulation.wavelength_b_m();
+  return step_cycles < 1 ? step_cycles : nan;
 }
 
 /// Points of one frame in another: how many fall on a range, and how many of these it sees through.

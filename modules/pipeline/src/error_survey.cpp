@@ -14,7 +14,7 @@ namespace {
 /// Errors from here on are told. Calibrated cameras stay below; motion and light that comes by
 /// other ways make some millimetres of each.
 constexpr double least_offset_m = 0.01;
-constexpr double least_periodic_m = 0.005;
+constexpr double least_periodic_m = 0.008;
 constexpr double least_per_decade_m = 0.005;
 constexpr double least_systematic_m = 0.015;
 constexpr double least_flow_px = 1.5;
@@ -59,7 +59,7 @@ std::vector<std::string> remarks_about(const ErrorSurvey& survey) {
   std::vector<std::string> remarks;
   if (survey.camera.frames > 0) {
     const double offset_m = survey.camera.offset_m();
-    const double periodic_m = survey.camera.periodic_rms_m();
+    const double periodic_m = survey.camera.periodic_rms_m;
     const double per_decade_m = survey.camera.per_decade_m();
     if (std::abs(offset_m) >= least_offset_m) {
       remarks.push_back(formatted(

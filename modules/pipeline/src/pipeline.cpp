@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <optional>
 
 #include <omp.h>
@@ -178,12 +179,12 @@ void MapRun::advance(FrameSource& source, const MapHooks& hooks) {
     return !is_interrupted_;
   };
   while (may_go_on()) {
-    const bool is_first = frames_.empty();
-    const int batch = is_first ? std::max(FrameMeasurer::frames_ahead, omp_get_max_threads())
-                               : omp_get_max_threads();
-    std::vector<SourcedFrame> frames = take(source, batch);
+    if (frames_.empty() && ahead_.empty()) {
+      ahead_ = take(source, FrameMeasurer::frames_ahead);
+      look_ahead(ahead_, measurer_);
+    }
+    std::vector<SourcedFrame> frames = take_next(source);
     if (frames.empty()) break;
-    if (is_first) look_ahead(frames, measurer_);
     const auto prepared =
         prepare_all(frames, measurer_, errors_, unwrappers_, sensor_, rays_, options_);
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -194,6 +195,17 @@ void MapRun::advance(FrameSource& source, const MapHooks& hooks) {
       last_ = *std::move(frames[i].frame);
     }
   }
+}
+
+/// The next frames, one a thread: those that were looked at ahead come first.
+std::vector<SourcedFrame> MapRun::take_next(FrameSource& source) {
+  const auto wanted = static_cast<std::size_t>(omp_get_max_threads());
+  if (ahead_.empty()) return take(source, static_cast<int>(wanted));
+  const auto end = ahead_.begin() + static_cast<std::ptrdiff_t>(std::min(wanted, ahead_.size()));
+  std::vector<SourcedFrame> frames(std::make_move_iterator(ahead_.begin()),
+                                   std::make_move_iterator(end));
+  ahead_.erase(ahead_.begin(), end);
+  return frames;
 }
 
 RoomMap MapRun::finish() {

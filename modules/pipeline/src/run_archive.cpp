@@ -49,6 +49,7 @@ void MapRun::load(std::istream& in) {
     boost::archive::binary_iarchive archive(in);
     archive >> frames_;
   }
+  ahead_.clear();
   measurer_.load(in);
   mapper_.load(in);
 }

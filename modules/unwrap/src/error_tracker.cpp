@@ -41,7 +41,7 @@ constexpr double memory = 0.98;
 constexpr std::size_t least_samples = 100;
 
 /// Motion up to this is small: B sees in every pixel what A sees there.
-constexpr double still_px = 1.5;
+constexpr double still_px = 0.7;
 
 /// B fits A if as many samples are as predicted.
 constexpr double good_support = 0.8;
@@ -62,12 +62,12 @@ Terms prior_precision() {
 
 /// True if a fit without much motion may miss some: residuals fit badly, or all are off alike, or
 /// the motion is more than expected.
-bool may_have_moved(const ResidualFit& fit, const CameraErrors& camera) {
-  constexpr double much_m = 0.02;
+bool may_have_moved(const ResidualFit& fit) {
+  constexpr double much_systematic_m = 0.012;
+  constexpr double much_constant_m = 0.02;
   constexpr double much_nats = 1;
-  const double expected_m = camera.frames > 0 ? camera.systematic_m : 0;
-  return fit.support() < good_support || fit.systematic_m() > expected_m + much_m ||
-         std::abs(fit.constant_m()) > much_m || fit.motion_cost() > much_nats;
+  return fit.support() < good_support || fit.systematic_m() > much_systematic_m ||
+         std::abs(fit.constant_m()) > much_constant_m || fit.motion_cost() > much_nats;
 }
 
 /// True if the first fit explains the residuals clearly better than the second.
@@ -170,7 +170,7 @@ FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposureP
   const bool is_first = camera_errors_.frames == 0;
   ResidualFit fit(samples, pair, geometry, camera_errors_, prompt_exposures);
   fit.find_motion(Eigen::Vector3d::Zero(), is_first);
-  if (geometry.knows_camera() && may_have_moved(fit, camera_errors_)) {
+  if (geometry.knows_camera() && may_have_moved(fit)) {
     ResidualFit moved(samples, pair, geometry, camera_errors_, late_exposures);
     moved.find_motion(pair.has_amplitude()
                           ? align_exposures(pair.amplitude_a, pair.amplitude_b, camera_)
@@ -194,7 +194,7 @@ FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposureP
                      own);
     fit.refine(own);
   }
-  if (fit.support() >= least_support) {
+  if (fit.support() >= least_support && information.allFinite() && gradient.allFinite()) {
     learn(information / correlated_samples, gradient / correlated_samples, fit);
   }
 
@@ -205,6 +205,7 @@ FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposureP
   errors.pixels = static_cast<int>(samples.size());
   errors.camera.coefficient_m[0] += fit.constant_m();
   errors.camera.amplitude_gain = fit.amplitude_gain();
+  errors.camera.periodic_rms_m = camera_errors_.periodic_rms_m;
   errors.camera.systematic_m = std::max(fit.systematic_m(), camera_errors_.systematic_m);
   errors.camera.frames = camera_errors_.frames;
   return errors;
@@ -221,6 +222,10 @@ void ErrorTracker::learn(const TermsMatrix& information, const Terms& gradient,
   const double before_m2 = camera_errors_.systematic_m * camera_errors_.systematic_m;
   const double now_m2 = fit.systematic_m() * fit.systematic_m();
   camera_errors_.systematic_m = std::sqrt((1 - share) * before_m2 + share * now_m2);
+  const double periodic_m = fit.periodic_rms_m();
+  camera_errors_.periodic_rms_m =
+      std::sqrt((1 - share) * camera_errors_.periodic_rms_m * camera_errors_.periodic_rms_m +
+                share * periodic_m * periodic_m);
   camera_errors_.amplitude_gain += share * (fit.amplitude_gain() - camera_errors_.amplitude_gain);
   ++camera_errors_.frames;
 }

@@ -236,6 +236,9 @@ void ResidualFit::find_constant() {
 }
 
 void ResidualFit::weigh(double systematic_m) {
+  // However well residuals agree: no pixel is worth a thousand others.
+  constexpr double least_m = 0.005;
+  systematic_m = std::max(systematic_m, least_m);
   fill_weights(static_cast<int>(weight_.size()), error_m_.data(), seen_.variance_m2.data(),
                static_cast<float>(systematic_m * systematic_m), weight_.data());
 }
@@ -368,6 +371,24 @@ double ResidualFit::cost(double systematic_m) const {
     sum += std::isnan(square) ? square_sigmas / 2 : square / 2 / (1 + square / square_sigmas);
   }
   return sum / correlated_samples + motion_cost();
+}
+
+double ResidualFit::periodic_rms_m() const {
+  std::vector<float> periodic_m(samples_->size());
+  predict_camera_errors(table_, static_cast<int>(periodic_m.size()), samples_->phase_a.data(),
+                        seen_.phase_b.data(), nullptr, periodic_m.data());
+  double sum = 0;
+  double squares = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < periodic_m.size(); ++i) {
+    if (std::isnan(error_m_[i])) continue;
+    sum += periodic_m[i];
+    squares += periodic_m[i] * periodic_m[i];
+    ++count;
+  }
+  if (count == 0) return 0;
+  const double mean = sum / count;
+  return std::sqrt(std::max(squares / count - mean * mean, 0.0));
 }
 
 double ResidualFit::support() const {

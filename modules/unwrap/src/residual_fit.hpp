@@ -55,6 +55,8 @@ class ResidualFit {
   /// How badly samples and motion fit, nats: what tells one explanation from another.
   /// `systematic_m` is what residuals have besides noise, the same for all that are compared.
   double cost(double systematic_m) const;
+  /// Standard deviation over the samples of what is predicted of them as periodic.
+  double periodic_rms_m() const;
   /// The share of the samples that B saw as predicted.
   double support() const;
   /// By how far the motion shifts the image, pixels; median over the samples.

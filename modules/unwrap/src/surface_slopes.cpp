@@ -83,8 +83,10 @@ TOFMAP_VECTOR_CLONES void fill_gradients(int cols, const RowOfRays& rays_, const
     const float bz = (rays.below[2][i] - rays.above[2][i]) / pixels;
     const float volume =
         (ay * bz - az * by) * ux + (az * bx - ax * bz) * uy + (ax * by - ay * bx) * uz;
-    const float across = across_m[i] / volume;
-    const float along = along_m[i] / volume;
+    // An image of one row or column has no slope along the other.
+    const float per_volume = volume > 0 ? 1 / volume : 0.0F;
+    const float across = across_m[i] * per_volume;
+    const float along = along_m[i] * per_volume;
     gradient_x[i] = across * (by * uz - bz * uy) + along * (uy * az - uz * ay);
     gradient_y[i] = across * (bz * ux - bx * uz) + along * (uz * ax - ux * az);
     gradient_z[i] = across * (bx * uy - by * ux) + along * (ux * ay - uy * ax);

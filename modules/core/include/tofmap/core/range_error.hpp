@@ -18,8 +18,7 @@ namespace tofmap {
 //   ε_f     what of the systematic errors is not known. Averaging over pixels does not lower it.
 //
 // `PhaseNoise`, `PhaseSigma`: the noise. `CameraErrors` in tofmap/unwrap/frame_errors.hpp: what is
-// known of μ_A − μ_B, and the standard deviation of ε_A − ε_B. `RangeImage::systematic_sigma_m`:
-// that of a range in the end.
+// known of μ_A − μ_B, and the standard deviation of ε_A − ε_B.
 
 /// The noise of the phases of one frame.
 struct PhaseNoise {

@@ -140,12 +140,15 @@ class MapRun {
   RoomMap finish();
 
  private:
+  std::vector<SourcedFrame> take_next(FrameSource& source);
+
   SensorModel sensor_;
   PipelineOptions options_;
   PixelRays rays_;
   RoomMapper mapper_;
   FrameMeasurer measurer_;
   ErrorTally errors_;
+  std::vector<SourcedFrame> ahead_;    ///< looked at ahead, and still to be mapped
   std::vector<Unwrapper> unwrappers_;  ///< one a thread
   std::vector<FrameRecord> frames_;
   DualFrequencyFrame last_;  ///< that could be read; empty before

@@ -23,13 +23,12 @@ struct CameraErrors {
   std::array<double, coefficients> coefficient_m{};
   double reference_amplitude = 1;
   double amplitude_gain = 1;  ///< of B against A
+  double periodic_rms_m = 0;  ///< of the periodic part, at the phases that were seen
   double systematic_m = 0;    ///< standard deviation of what μ leaves; averaging does not lower it
   int frames = 0;             ///< that took part; 0: nothing is known
 
   double offset_m() const { return coefficient_m.front(); }
   double per_decade_m() const { return coefficient_m.back(); }
-  /// Root mean square of the periodic part over all phases.
-  double periodic_rms_m() const;
 };
 
 /// How the camera moved between the exposures of A and B: to `translation_m`, and by the rotation

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
+
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/range_image.hpp>
 #include <tofmap/unwrap/beat.hpp>
@@ -43,6 +45,10 @@ class Unwrapper {
  public:
   /// Throws UsageError if options are not allowed.
   Unwrapper(const SensorModel& sensor, const UnwrapOptions& options);
+
+  /// Looks at the first frames of a recording, so that the camera is known from the first one on.
+  /// Call it before any other; the frames are unwrapped afterwards.
+  void look_ahead(std::span<const DualFrequencyFrame> frames) { measurer_.look_ahead(frames); }
 
   /// The next frame of the camera. Throws UsageError if its images differ in size.
   UnwrapResult unwrap(const DualFrequencyFrame& frame);
