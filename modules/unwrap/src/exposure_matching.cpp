@@ -21,8 +21,7 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 using Plane = std::vector<float>;
 
 /// B sees the surface that A sees only if its amplitude is A's times the gain and the square of the
-/// ranges' ratio, to a third (textures that are blurred otherwise) and four standard deviations.
-constexpr float tolerated_ratio = 1.42F;
+/// ranges' ratio, to same_light_ratio and four standard deviations.
 constexpr float ratio_sigmas = 4;
 
 /// The nearest counts are looked up where each of them puts the surface in B; all farther ones
@@ -53,7 +52,7 @@ TOFMAP_VECTOR_CLONES void compare_light(int count, const Light& light_, const fl
     const float sigma_b = light.sigma_b_cycles[i];
     const float noise = turn * std::sqrt(sigma_a * sigma_a + sigma_b * sigma_b);
     // Of a logarithm, to first order.
-    const float tolerated = tolerated_ratio * (1 + ratio_sigmas * noise);
+    const float tolerated = same_light_ratio * (1 + ratio_sigmas * noise);
     same[i] = greater <= tolerated * lesser ? 1.0F : 0.0F;
   }
 }
@@ -162,7 +161,14 @@ class WarpedMatching {
         slopes_(pair, geometry),
         warped_(static_cast<std::size_t>(pair.phase_a.cols())),
         best_cycles_(static_cast<std::size_t>(pair.phase_a.cols())),
-        is_lost_(best_cycles_.size()) {}
+        is_lost_(best_cycles_.size()),
+        found_(best_cycles_.size()) {
+    for (int n = 0; n < geometry.limits.count_a; ++n) {
+      shift_cycles_.push_back(
+          static_cast<float>(residual_shift_cycles(geometry.limits.wavelength_ratio(), n)));
+      farthest_cycles_.push_back(farthest_phase_cycles(geometry.limits, n));
+    }
+  }
 
   void match(Eigen::Index row, MatchedExposure& out) {
     slopes_.find(row);
@@ -247,13 +253,12 @@ class WarpedMatching {
       const float rest = pair.phase_a[i] * static_cast<float>(ratio) - warped_.phase_b[at] -
                          warped_.predicted_m[at] / wavelength_b_m;
       for (int n = group; n < end; ++n) {
-        if (pair.phase_a[i] > farthest_phase_cycles(geometry_.limits, n)) break;
-        const float residual =
-            std::abs(to_half_cycle(rest + static_cast<float>(residual_shift_cycles(ratio, n))));
+        const auto count = static_cast<std::size_t>(n);
+        if (pair.phase_a[i] > farthest_cycles_[count]) break;
+        const float residual = std::abs(to_half_cycle(rest + shift_cycles_[count]));
         if (residual >= best_cycles_[at]) continue;
         best_cycles_[at] = residual;
         const float corrected = warped_.phase_b[at] + warped_.predicted_m[at] / wavelength_b_m;
-        found_.resize(best_cycles_.size());
         found_[at] = {corrected - std::floor(corrected), warped_.amplitude_b[at],
                       warped_.sigma_b[at]};
       }
@@ -287,6 +292,8 @@ class WarpedMatching {
   Plane best_cycles_;
   std::vector<char> is_lost_;
   std::vector<Found> found_;
+  Plane shift_cycles_;     ///< what each count adds to the residual
+  Plane farthest_cycles_;  ///< phase up to which each count is within the limits
 };
 
 }  // namespace

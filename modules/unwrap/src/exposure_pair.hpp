@@ -14,6 +14,10 @@
 
 namespace tofmap {
 
+/// Amplitudes of A and B that see the same surface differ by no larger factor, the gain between
+/// them apart: textures may be blurred otherwise.
+inline constexpr float same_light_ratio = 1.42F;
+
 /// The images of A and those of one B; amplitudes may be empty.
 struct ExposurePair {
   const ImageF& phase_a;

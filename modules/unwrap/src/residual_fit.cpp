@@ -394,15 +394,14 @@ double ResidualFit::periodic_rms_m() const {
 double ResidualFit::support() const {
   constexpr float tolerated_m = 0.03F;
   constexpr float sigmas = 3;
-  constexpr float tolerated_ratio = 1.42F;
   const auto gain = static_cast<float>(amplitude_gain_);
   int good = 0;
   for (std::size_t i = 0; i < error_m_.size(); ++i) {
     if (std::isnan(error_m_[i])) continue;
     const float tolerance_m2 = sigmas * sigmas * (seen_.variance_m2[i] + tolerated_m * tolerated_m);
     const bool is_same_light =
-        seen_.amplitude_ratio.empty() || (seen_.amplitude_ratio[i] < tolerated_ratio * gain &&
-                                          seen_.amplitude_ratio[i] * tolerated_ratio > gain);
+        seen_.amplitude_ratio.empty() || (seen_.amplitude_ratio[i] < same_light_ratio * gain &&
+                                          seen_.amplitude_ratio[i] * same_light_ratio > gain);
     good += is_same_light && error_m_[i] * error_m_[i] < tolerance_m2 ? 1 : 0;
   }
   return static_cast<double>(good) / static_cast<double>(std::max<std::size_t>(1, error_m_.size()));
