@@ -116,6 +116,18 @@ void print_conditions(const std::vector<Checks>& checks) {
   print_kept("all", all);
 }
 
+/// All rows together: what share of the wraps is right at each confidence.
+void print_reliability(const Grid& grid) {
+  Calibration all;
+  for (const GridRow& row : grid.rows) all.add(row.joint.calibration);
+  std::printf(
+      "\n| confidence of joint from | mean | right wraps, %% | pixels, %% |\n|---|---|---|---|\n");
+  for (const Calibration::Bin& bin : all.reliability()) {
+    std::printf("| %g | %.5f | %.3f | %.2f |\n", bin.least_confidence, bin.mean_confidence,
+                100 * bin.right_share, 100 * bin.pixel_share);
+  }
+}
+
 struct Failure {
   const GridRow* row;
   Condition condition;
@@ -177,6 +189,7 @@ void print_grid(const Grid& grid) {
   print_groups(group_rows(grid, checks));
   print_conditions(checks);
   print_failures(grid, checks);
+  print_reliability(grid);
 }
 
 void write_grid_csv(const Grid& grid, const std::filesystem::path& path) {

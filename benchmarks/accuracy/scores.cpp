@@ -34,6 +34,11 @@ void Calibration::add(float confidence, bool is_right) {
   confidence_[bin] += confidence;
   right_[bin] += is_right ? 1 : 0;
   all_ += 1;
+  const auto above = std::upper_bound(limits.begin(), limits.end(), double{confidence});
+  Tally& tally = tallies_[static_cast<std::size_t>(above - limits.begin() - 1)];
+  tally.pixels += 1;
+  tally.confidence += confidence;
+  tally.right += is_right ? 1 : 0;
 }
 
 void Calibration::add(const Calibration& other) {
@@ -42,12 +47,28 @@ void Calibration::add(const Calibration& other) {
     right_[b] += other.right_[b];
   }
   all_ += other.all_;
+  for (std::size_t k = 0; k < limits.size(); ++k) {
+    tallies_[k].pixels += other.tallies_[k].pixels;
+    tallies_[k].confidence += other.tallies_[k].confidence;
+    tallies_[k].right += other.tallies_[k].right;
+  }
 }
 
 double Calibration::error_percent() const {
   double sum = 0;
   for (std::size_t b = 0; b < bins; ++b) sum += std::abs(confidence_[b] - right_[b]);
   return all_ > 0 ? 100 * sum / all_ : 0;
+}
+
+std::vector<Calibration::Bin> Calibration::reliability() const {
+  std::vector<Bin> out;
+  for (std::size_t k = 0; k < limits.size(); ++k) {
+    const Tally& tally = tallies_[k];
+    if (tally.pixels == 0) continue;
+    out.push_back({limits[k], tally.confidence / tally.pixels, tally.right / tally.pixels,
+                   tally.pixels / all_});
+  }
+  return out;
 }
 
 double Score::wrong_percent() const {

@@ -34,8 +34,29 @@ class Calibration {
   /// Mean difference between confidence and share of right wraps, weighted by pixels.
   double error_percent() const;
 
+  /// The pixels whose confidence is at least c_k and less than c_(k+1); the last bin has no end.
+  struct Bin {
+    double least_confidence = 0;
+    double mean_confidence = 0;
+    double right_share = 0;
+    double pixel_share = 0;  ///< of all pixels
+  };
+
+  /// Finer than those of error_percent where confidences are high; without bins that are empty.
+  std::vector<Bin> reliability() const;
+
  private:
   static constexpr std::size_t bins = 20;
+  static constexpr std::array<double, 12> limits{0,    0.3,  0.5,  0.7,   0.8,   0.9,
+                                                 0.95, 0.98, 0.99, 0.995, 0.999, 0.9999};
+
+  struct Tally {
+    double pixels = 0;
+    double confidence = 0;
+    double right = 0;
+  };
+
+  std::array<Tally, limits.size()> tallies_{};
   std::array<double, bins> confidence_{};
   std::array<double, bins> right_{};
   double all_ = 0;

@@ -127,6 +127,7 @@ TEST_P(CountPropagationOn, GivesTheBeliefsOfThePlainVersion) {
       // of them has passed many pixels.
       EXPECT_NEAR(fast.probability.data()[p], *best, 0.05);
       EXPECT_NEAR(plain[p][fast.count.data()[p]], *best, 0.05);
+      EXPECT_NEAR(fast.probability.data()[p] + fast.other_probability.data()[p], 1, 1e-5);
     }
   }
 }

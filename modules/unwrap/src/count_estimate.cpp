@@ -97,7 +97,7 @@ void adopt(const DualFrequencyFrame& pixels, const NoisyFrame& blocks, int block
       const Eigen::Index col = u / block_px;
       const float pixel_sigma = static_cast<float>(block_px) * blocks.sigma.a_cycles(row, col);
       if (std::isnan(pixels.phase_a(v, u)) || pixel_sigma <= loud_cycles) continue;
-      if (coarse.probability(row, col) <= fine.probability(v, u)) continue;
+      if (coarse.other_probability(row, col) >= fine.other_probability(v, u)) continue;
       const float phase = pixels.phase_a(v, u);
       const float block_phase = blocks.frame.phase_a(row, col);
       const auto count = [&](std::uint8_t n) {
@@ -108,6 +108,8 @@ void adopt(const DualFrequencyFrame& pixels, const NoisyFrame& blocks, int block
       fine.count(v, u) = adopted;
       fine.probability(v, u) =
           joint_probability(coarse.probability(row, col), fine.probability(v, u), agree);
+      fine.other_probability(v, u) =
+          agree ? coarse.other_probability(row, col) : 1 - fine.probability(v, u);
       fine.rival(v, u) = count(coarse.rival(row, col));
       fine.rival_probability(v, u) = coarse.rival_probability(row, col);
     }

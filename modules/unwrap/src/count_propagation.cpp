@@ -201,6 +201,7 @@ struct BlockBeliefs {
   Row rival;
   Row best_count;
   Row rival_count;
+  Row others;  ///< of all other counts together
 };
 
 /// Equation 15, where all messages have come in.
@@ -210,6 +211,7 @@ TOFMAP_VECTOR_CLONES void read_block(const Block& block, BlockBeliefs& out) {
   out.best.fill(-1);
   out.rival.fill(0);
   out.rival_count.fill(0);
+  out.others.fill(0);
   for (int n = 0; n < block.counts; ++n) {
     const Factors of(block, n);
     const auto count = static_cast<float>(n);
@@ -220,6 +222,8 @@ TOFMAP_VECTOR_CLONES void read_block(const Block& block, BlockBeliefs& out) {
                            widened(of.back_second[i]);
       sum[i] += belief;
       const bool is_best = belief > out.best[i];
+      const float overtaken = out.best[i] > 0 ? out.best[i] : 0;
+      out.others[i] += is_best ? overtaken : belief;
       const bool is_rival = belief > out.rival[i];
       const float beaten = is_rival ? belief : out.rival[i];
       const float beaten_count = is_rival ? count : out.rival_count[i];
@@ -231,6 +235,7 @@ TOFMAP_VECTOR_CLONES void read_block(const Block& block, BlockBeliefs& out) {
   }
 #pragma GCC ivdep
   for (int i = 0; i < lanes; ++i) {
+    out.others[i] /= sum[i];
     out.best[i] /= sum[i];
     out.rival[i] = (out.rival[i] > 0 ? out.rival[i] : 0) / sum[i];
   }
@@ -292,6 +297,7 @@ void CountPropagation::read_backward(const CountModel& model, CountBeliefs& beli
         const auto at = static_cast<std::size_t>(i);
         beliefs.count(v, u) = static_cast<std::uint8_t>(read.best_count[at]);
         beliefs.probability(v, u) = read.best[at];
+        beliefs.other_probability(v, u) = read.others[at];
         beliefs.rival(v, u) = static_cast<std::uint8_t>(read.rival_count[at]);
         beliefs.rival_probability(v, u) = read.rival[at];
       }
@@ -331,8 +337,12 @@ CountBeliefs CountPropagation::run(const CountModel& model, int iterations) {
   reset(model);
   const int rows = model.layout().rows();
   const int cols = model.layout().cols();
-  CountBeliefs beliefs{ImageU8(rows, cols), ImageF(rows, cols), ImageU8(rows, cols),
-                       ImageF(rows, cols), iterations};
+  CountBeliefs beliefs{.count = ImageU8(rows, cols),
+                       .probability = ImageF(rows, cols),
+                       .other_probability = ImageF(rows, cols),
+                       .rival = ImageU8(rows, cols),
+                       .rival_probability = ImageF(rows, cols),
+                       .iterations = iterations};
   for (int i = 0; i + 1 < iterations; ++i) {
     sweep_forward(model, i == 0);
     sweep_backward(model);

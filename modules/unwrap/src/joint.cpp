@@ -3,6 +3,7 @@
 
 #include "joint.hpp"
 
+#include "count_confidence.hpp"
 #include "counted_ranges.hpp"
 #include "tofmap/unwrap/range_fusion.hpp"
 
@@ -39,15 +40,16 @@ UnwrapResult unwrap_jointly(CountEstimator& estimator, const MeasuredFrame& fram
                             const BeatLimits& limits, const UnwrapOptions& options) {
   const CountBeliefs beliefs = estimator.estimate(
       frame.returns, limits, frame.sigma, frame.residual_sigma_m, count_estimation(options));
+  const ImageF confidence = count_confidence(beliefs);
   UnwrapResult result;
   if (options.fuse_frequencies) {
     const FusedRanges fused =
         fuse_ranges(frame.returns, beliefs.count, limits, frame.sigma, frame.residual_sigma_m);
     result.image =
-        make_range_image(fused.range_m, fused.sigma_m, beliefs.count, beliefs.probability);
+        make_range_image(fused.range_m, fused.sigma_m, beliefs.count, confidence);
   } else {
     result.image = make_range_image(frame.returns.phase_a, frame.sigma.a_cycles, beliefs.count,
-                                    beliefs.probability, limits);
+                                    confidence, limits);
   }
   drop_ambiguous(beliefs, limits, result.image);
   result.iterations = beliefs.iterations;

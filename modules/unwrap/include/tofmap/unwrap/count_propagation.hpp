@@ -15,6 +15,8 @@ namespace tofmap {
 struct CountBeliefs {
   ImageU8 count;
   ImageF probability;        ///< of that count
+  ImageF other_probability;  ///< of all other counts together: what probability lacks to 1, and
+                             ///< exact where that is lost in rounding
   ImageU8 rival;             ///< the second most likely count
   ImageF rival_probability;  ///< its probability; 0 where there is one count only
   int iterations = 0;
