@@ -16,6 +16,9 @@
 #include <gtest/gtest.h>
 
 #include <tofmap/acquisition/simulator.hpp>
+#include <tofmap/core/frequency_residual.hpp>
+#include <tofmap/core/median.hpp>
+#include <tofmap/unwrap/beat.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap {
@@ -104,22 +107,45 @@ double count_wrong(const Recording& recording, const std::string& method) {
   return wrong;
 }
 
+/// The inter-frequency residual at the true counts, median over the frames, metres.
+double median_residual_m(const Recording& recording) {
+  const double wavelength_a_m = recording.sensor.modulation.wavelength_a_m();
+  const double wavelength_b_m = recording.sensor.modulation.wavelength_b_m();
+  std::vector<double> residuals_m;
+  for (const SimulatedFrame& simulated : recording.frames) {
+    for (Eigen::Index i = 0; i < simulated.range_truth_m.size(); ++i) {
+      const double phase_a = simulated.frame.phase_a.data()[i];
+      const double count = std::round(simulated.range_truth_m.data()[i] / wavelength_a_m - phase_a);
+      const double residual_m = frequency_residual_m(
+          wavelength_a_m, wavelength_b_m, phase_a + count, simulated.frame.phase_b.data()[i]);
+      if (!std::isnan(residual_m)) residuals_m.push_back(residual_m);
+    }
+  }
+  return median(residuals_m);
+}
+
 class JointUnderCameraErrors : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(In, JointUnderCameraErrors,
                          testing::Values("hall", "flat", "room", "random", "passage"),
                          [](const auto& scene) { return std::string(scene.param); });
 
-// Enabled with the error model: without it the best-lit surfaces take any count.
 TEST_P(JointUnderCameraErrors, IsNoWorseThanTheBetterOfPixelAndJump) {
+  int compared = 0;
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
     const SimulatorOptions camera = drawn_camera(seed);
     const Recording recording = record(GetParam(), camera);
+    // Where all residuals are off by half a step, other counts explain them as well: no method
+    // knows (docs/unwrapping.md, 'What does not hold').
+    const double step_m = residual_step_m(beat_limits(recording.sensor, 0));
+    if (std::abs(median_residual_m(recording)) > step_m / 2) continue;
+    ++compared;
     const double joint = count_wrong(recording, "joint");
     const double better = std::min(count_wrong(recording, "pixel"), count_wrong(recording, "jump"));
     // Three standard errors of a difference of counts, as if pixels were wrong one by one.
     const double allowance = 3 * std::sqrt(joint + better);
     EXPECT_LE(joint, better + allowance) << describe(GetParam(), camera);
   }
+  EXPECT_GE(compared, 6);
 }
 
 }  // namespace

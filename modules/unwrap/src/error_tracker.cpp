@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <istream>
+#include <optional>
 #include <ostream>
 #include <stdexcept>
 #include <vector>
@@ -58,6 +59,12 @@ Terms prior_precision() {
   precision[0] = 1 / (prior_offset_m * prior_offset_m);
   precision[ErrorTracker::terms - 1] = 1 / (prior_per_decade_m * prior_per_decade_m);
   return precision;
+}
+
+std::optional<ApparentRotation> apparent_rotation(const ExposurePair& pair,
+                                                  const CameraModel& camera) {
+  if (!pair.has_amplitude()) return std::nullopt;
+  return align_exposures(pair.amplitude_a, pair.amplitude_b, camera);
 }
 
 /// True if a fit without much motion may miss some: residuals fit badly, or all are off alike, or
@@ -172,10 +179,12 @@ FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposureP
   fit.find_motion(Eigen::Vector3d::Zero(), is_first);
   if (geometry.knows_camera() && may_have_moved(fit)) {
     ResidualFit moved(samples, pair, geometry, camera_errors_, late_exposures);
-    moved.find_motion(pair.has_amplitude()
-                          ? align_exposures(pair.amplitude_a, pair.amplitude_b, camera_)
-                          : Eigen::Vector3d(Eigen::Vector3d::Zero()),
-                      true);
+    const auto apparent = apparent_rotation(pair, camera_);
+    if (apparent) {
+      fit.expect(*apparent);
+      moved.expect(*apparent);
+    }
+    moved.find_motion(apparent ? apparent->rotation_rad : Eigen::Vector3d::Zero(), true);
     if (explains_better(moved, fit)) fit = moved;
   }
 
@@ -202,6 +211,7 @@ FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposureP
   errors.camera = own;
   errors.motion = fit.motion();
   errors.flow_px = fit.flow_px();
+  errors.support = fit.support();
   errors.pixels = static_cast<int>(samples.size());
   errors.camera.coefficient_m[0] += fit.constant_m();
   errors.camera.amplitude_gain = fit.amplitude_gain();
@@ -241,16 +251,16 @@ void ErrorTracker::match_moved(const SurfaceSamples& samples, const ExposurePair
   if (!same_size(last_.phase, pair.phase_b) || !pair.has_amplitude()) return match_own();
   const ExposurePair with_last{pair.phase_a, pair.amplitude_a, pair.sigma_a_cycles,
                                last_.phase,  last_.amplitude,  last_.sigma_cycles};
-  ResidualFit own(samples, pair, geometry, camera, late_exposures);
-  own.find_motion(tracked.errors.motion.rotation_rad, false);
   ResidualFit last(samples, with_last, geometry, camera, late_exposures);
-  last.find_motion(align_exposures(pair.amplitude_a, last_.amplitude, camera_), false);
+  const auto apparent = apparent_rotation(with_last, camera_);
+  if (apparent) last.expect(*apparent);
+  last.find_motion(apparent ? apparent->rotation_rad : Eigen::Vector3d::Zero(), false);
   if (last.support() < least_support) return match_own();
   const auto match_last = [&] {
     match_exposure(with_last, geometry, camera, last.motion(), tracked.b);
   };
   tracked.errors.used_last_b = true;
-  if (last.support() > own.support()) {
+  if (last.support() > tracked.errors.support) {
     match_last();
     match_own();
   } else {

@@ -5,12 +5,14 @@
 
 #include "exposure_pair.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <tofmap/core/median.hpp>
@@ -48,8 +50,15 @@ struct Alignment {
 
 /// The least-squares problem of one step, and how badly the images agree before it, 0 … 1.
 struct Problem {
+  /// Of the logarithm that errors are weighed by.
+  static constexpr double tolerated = 0.2;
+
   Eigen::Matrix4d information = Eigen::Matrix4d::Identity();
   Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
+  /// What noise of unit variance between neighbours would add to the information.
+  Eigen::Matrix3d of_noise = Eigen::Matrix3d::Zero();
+  double weighted_squares = 0;
+  double weights = 0;
   double disagreement = 1;
 };
 
@@ -76,7 +85,7 @@ std::optional<Sampled> sample(const ImageF& image, double col, double row) {
 }
 
 Problem compare(const Level& level, const CameraModel& camera, const Alignment& alignment) {
-  constexpr double tolerated = 0.2;  // of a logarithm
+  constexpr double tolerated = Problem::tolerated;
   const auto block = static_cast<double>(level.block_px);
   const double half = (block - 1) / 2;
   Problem problem;
@@ -100,14 +109,16 @@ Problem compare(const Level& level, const CameraModel& camera, const Alignment& 
       sum += 1 - share;
       ++blocks;
       // Turning by ω moves a ray p to p − ω × p.
-      const double across = b->across * camera.fx_px / block;
-      const double along = b->along * camera.fy_px / block;
+      const Eigen::Vector3d by_col = camera.fx_px / block * Eigen::Vector3d(x * y, -(1 + x * x), y);
+      const Eigen::Vector3d by_row = camera.fy_px / block * Eigen::Vector3d(1 + y * y, -x * y, -x);
       Eigen::Vector4d row;
-      row << across * Eigen::Vector3d(x * y, -(1 + x * x), y) +
-                 along * Eigen::Vector3d(1 + y * y, -x * y, -x),
-          -1;
+      row << b->across * by_col + b->along * by_row, -1;
+      problem.of_noise +=
+          share * share * (by_col * by_col.transpose() + by_row * by_row.transpose());
       problem.information += share * share * row * row.transpose();
       problem.gradient += share * share * error * row;
+      problem.weighted_squares += share * share * error * error;
+      problem.weights += share * share;
     }
   }
   if (blocks > 0) problem.disagreement = sum / blocks;
@@ -151,26 +162,51 @@ void descend(const Level& level, const CameraModel& camera, Alignment& alignment
   }
 }
 
+/// How well the rotation is known, gain apart. Differences of neighbours that are no more than
+/// noise tell nothing.
+Eigen::Matrix3d covariance_of(const Problem& problem) {
+  // Neighbouring blocks show the same texture, and the parallax of one surface.
+  constexpr double correlated_blocks = 10;
+  constexpr double least_sigma_rad = 0.003;
+  constexpr double most_sigma_rad = 1;
+  const double variance = problem.weighted_squares / std::max(problem.weights, 1.0);
+  const Eigen::Vector3d with_gain = problem.information.topRightCorner<3, 1>();
+  const Eigen::Matrix3d of_texture = problem.information.topLeftCorner<3, 3>() -
+                                     with_gain * with_gain.transpose() / problem.information(3, 3) -
+                                     variance * problem.of_noise;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(of_texture);
+  const double most_variance = most_sigma_rad * most_sigma_rad;
+  const double squares = correlated_blocks * std::max(variance, 1e-12);
+  const Eigen::Vector3d along_axes =
+      squares * axes.eigenvalues().cwiseMax(squares / most_variance).cwiseInverse();
+  return axes.eigenvectors() * along_axes.asDiagonal() * axes.eigenvectors().transpose() +
+         Eigen::Matrix3d::Identity() * least_sigma_rad * least_sigma_rad;
+}
+
 }  // namespace
 
-Eigen::Vector3d align_exposures(const ImageF& amplitude_a, const ImageF& amplitude_b,
-                                const CameraModel& camera) {
+std::optional<ApparentRotation> align_exposures(const ImageF& amplitude_a,
+                                                const ImageF& amplitude_b,
+                                                const CameraModel& camera) {
   // Blocks that make an image of about 22 x 18, and of twice that.
   constexpr Eigen::Index coarse_cols = 22;
   const Eigen::Index coarse_px = std::max<Eigen::Index>(2, amplitude_a.cols() / coarse_cols);
   if (amplitude_a.rows() < 4 * coarse_px || amplitude_a.cols() < 4 * coarse_px) {
-    return Eigen::Vector3d::Zero();
+    return std::nullopt;
   }
   const Level coarse(amplitude_a, amplitude_b, coarse_px);
   Alignment alignment;
   alignment.gain = median_gain(coarse);
-  if (std::isnan(alignment.gain)) return Eigen::Vector3d::Zero();
+  if (std::isnan(alignment.gain)) return std::nullopt;
   search(coarse, camera, alignment);
   descend(coarse, camera, alignment);
-  descend(Level(amplitude_a, amplitude_b, std::max<Eigen::Index>(1, coarse_px / 2)), camera,
-          alignment);
+  const Level fine(amplitude_a, amplitude_b, std::max<Eigen::Index>(1, coarse_px / 2));
+  descend(fine, camera, alignment);
   const Eigen::AngleAxisd rotation(alignment.rotation);
-  return rotation.angle() * rotation.axis();
+  const ApparentRotation out{rotation.angle() * rotation.axis(),
+                             covariance_of(compare(fine, camera, alignment))};
+  if (!out.rotation_rad.allFinite() || !out.covariance_rad2.allFinite()) return std::nullopt;
+  return out;
 }
 
 }  // namespace tofmap

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
 #include <tofmap/core/camera.hpp>
@@ -9,11 +11,19 @@
 
 namespace tofmap {
 
-/// The rotation of the camera between two exposures, a rotation vector in the frame of A, at which
-/// their amplitudes agree best. Needs no range: translation is neglected. Searches up to a tenth of
-/// the image's width, by blocks of pixels, coarse to fine. Zero where amplitudes are missing or
-/// dark.
-Eigen::Vector3d align_exposures(const ImageF& amplitude_a, const ImageF& amplitude_b,
-                                const CameraModel& camera);
+/// The rotation that shifts the image from one exposure to another as the camera's motion does.
+/// Parallax takes part in it: over surfaces around the range r, a translation t looks like the
+/// rotation (−t_y / r, t_x / r, 0) (docs/unwrapping.md, equation 25).
+struct ApparentRotation {
+  Eigen::Vector3d rotation_rad;  ///< rotation vector in the frame of the first exposure
+  Eigen::Matrix3d covariance_rad2;
+};
+
+/// The apparent rotation at which the amplitudes of both exposures agree best. Needs no range.
+/// Searches up to a tenth of the image's width, by blocks of pixels, coarse to fine. Nothing where
+/// images are too small, or amplitudes are missing or dark.
+std::optional<ApparentRotation> align_exposures(const ImageF& amplitude_a,
+                                                const ImageF& amplitude_b,
+                                                const CameraModel& camera);
 
 }  // namespace tofmap

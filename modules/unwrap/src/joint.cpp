@@ -45,8 +45,7 @@ UnwrapResult unwrap_jointly(CountEstimator& estimator, const MeasuredFrame& fram
   if (options.fuse_frequencies) {
     const FusedRanges fused =
         fuse_ranges(frame.returns, beliefs.count, limits, frame.sigma, frame.residual_sigma_m);
-    result.image =
-        make_range_image(fused.range_m, fused.sigma_m, beliefs.count, confidence);
+    result.image = make_range_image(fused.range_m, fused.sigma_m, beliefs.count, confidence);
   } else {
     result.image = make_range_image(frame.returns.phase_a, frame.sigma.a_cycles, beliefs.count,
                                     confidence, limits);

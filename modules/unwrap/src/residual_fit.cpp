@@ -3,7 +3,11 @@
 
 #include "residual_fit.hpp"
 
+#include "camera_error_terms.hpp"
+#include "constant_search.hpp"
 #include "median.hpp"
+#include "robust_cost.hpp"
+#include "weighted_products.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,101 +16,23 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include <tofmap/core/median.hpp>
-#include <tofmap/core/vector_clones.hpp>
-#include <tofmap/unwrap/diagonal_layout.hpp>
 
 namespace tofmap {
 namespace {
 
-/// How far the residuals of one frame may lie off what all frames together say.
+/// How far the residuals of one frame may lie off what all frames together say; and those of the
+/// first frame off zero.
 constexpr double prior_constant_m = 0.03;
+constexpr double prior_offset_m = 0.06;
 
 /// Samples of one surface err alike: so many count as one that is independent.
 constexpr double correlated_samples = 30;
 
 /// What is left of systematic errors before any is known.
 constexpr double unknown_systematic_m = 0.04;
-
-constexpr int lanes = DiagonalLayout::lanes;
-
-/// Σ a b c.
-TOFMAP_VECTOR_CLONES float dot(int count, const float* a, const float* b) {
-  std::array<float, lanes> sums{};
-  int i = 0;
-  for (; i + lanes <= count; i += lanes) {
-#pragma GCC ivdep
-    for (int k = 0; k < lanes; ++k) sums[static_cast<std::size_t>(k)] += a[i + k] * b[i + k];
-  }
-  float sum = 0;
-  for (const float lane : sums) sum += lane;
-  for (; i < count; ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-/// Geman and McClure's weights over the variance; 0 where there is no residual.
-TOFMAP_VECTOR_CLONES void fill_weights(int count, const float* error_m, const float* variance_m2,
-                                       float systematic_m2, float* weight) {
-  constexpr float square_sigmas = 9;
-#pragma GCC ivdep
-  for (int i = 0; i < count; ++i) {
-    const float variance = variance_m2[i] + systematic_m2;
-    const float share = 1 / (1 + error_m[i] * error_m[i] / (square_sigmas * variance));
-    weight[i] = error_m[i] == error_m[i] ? share * share / variance : 0.0F;
-  }
-}
-
-/// Number by number: weighted products of all pairs of columns, and of each with `right`.
-template <int terms>
-void add_products(const std::array<const float*, terms>& columns, const std::vector<float>& weight,
-                  const std::vector<float>& right, Eigen::Matrix<double, terms, terms>& information,
-                  Eigen::Matrix<double, terms, 1>& gradient) {
-  const auto count = static_cast<int>(weight.size());
-  std::vector<float> weighted(weight.size());
-  for (int a = 0; a < terms; ++a) {
-    const float* column = columns[static_cast<std::size_t>(a)];
-    for (std::size_t i = 0; i < weight.size(); ++i) weighted[i] = weight[i] * column[i];
-    for (int b = 0; b <= a; ++b) {
-      information(a, b) += dot(count, weighted.data(), columns[static_cast<std::size_t>(b)]);
-      information(b, a) = information(a, b);
-    }
-    gradient[a] += dot(count, weighted.data(), right.data());
-  }
-}
-
-/// The factors of the camera's coefficients, number by number.
-std::vector<std::vector<float>> camera_terms(const SurfaceSamples& samples,
-                                             const std::vector<float>& phase_b,
-                                             double reference_amplitude) {
-  std::vector<std::vector<float>> terms(ErrorTracker::terms,
-                                        std::vector<float>(samples.size(), 0.0F));
-  constexpr float turn = 2 * std::numbers::pi_v<float>;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    terms.front()[i] = 1;
-    if (std::isnan(phase_b[i])) continue;
-    const std::array<float, 2> base_cosine{std::cos(turn * samples.phase_a[i]),
-                                           std::cos(turn * phase_b[i])};
-    const std::array<float, 2> base_sine{std::sin(turn * samples.phase_a[i]),
-                                         std::sin(turn * phase_b[i])};
-    std::array<float, 2> cosine = base_cosine;
-    std::array<float, 2> sine = base_sine;
-    for (std::size_t k = 1; k <= CameraErrors::harmonics; ++k) {
-      for (std::size_t f = 0; f < 2; ++f) {
-        terms[4 * k - 3 + 2 * f][i] = cosine[f];
-        terms[4 * k - 2 + 2 * f][i] = sine[f];
-        const float next = cosine[f] * base_cosine[f] - sine[f] * base_sine[f];
-        sine[f] = sine[f] * base_cosine[f] + cosine[f] * base_sine[f];
-        cosine[f] = next;
-      }
-    }
-    if (!samples.amplitude_a.empty()) {
-      terms.back()[i] =
-          std::log10(samples.amplitude_a[i] / static_cast<float>(reference_amplitude));
-    }
-  }
-  return terms;
-}
 
 }  // namespace
 
@@ -193,45 +119,25 @@ void ResidualFit::associate() {
                seen_.phase_b.data(), predicted_m_.data(), error_m_.data(), range_m_.data());
 }
 
-/// The constant, nearest to zero, that most of some samples agree on.
+/// The constant that is likeliest by some of the samples.
 void ResidualFit::find_constant() {
   constexpr std::size_t enough = 300;
-  constexpr double spacing_m = 0.01;
-  constexpr float clearly_better = 1.05F;
   const std::size_t stride = 1 + samples_->size() / enough;
-  std::vector<float> phase_a;
-  std::vector<float> phase_b;
-  std::vector<float> predicted;
-  std::vector<float> variance;
+  PredictedSamples some;
   for (std::size_t i = 0; i < samples_->size(); i += stride) {
     if (std::isnan(seen_.phase_b[i])) continue;
-    phase_a.push_back(samples_->phase_a[i]);
-    phase_b.push_back(seen_.phase_b[i]);
-    predicted.push_back(predicted_m_[i]);
-    variance.push_back(seen_.variance_m2[i] +
-                       static_cast<float>(unknown_systematic_m * unknown_systematic_m));
+    some.phase_a.push_back(samples_->phase_a[i]);
+    some.phase_b.push_back(seen_.phase_b[i]);
+    some.predicted_m.push_back(predicted_m_[i]);
+    some.variance_m2.push_back(seen_.variance_m2[i]);
+    if (!samples_->amplitude_a.empty()) some.amplitude_a.push_back(samples_->amplitude_a[i]);
   }
-  std::vector<float> shifted(predicted.size());
-  std::vector<float> error(predicted.size());
-  std::vector<float> range(predicted.size());
-  const double reach_m = residual_step_m(geometry_->limits) / 2;
-  float best = 0;
-  for (int k = 0; (k + 1) / 2 * spacing_m < reach_m; ++k) {
-    const double tried_m = (k % 2 == 1 ? 1 : -1) * (k + 1) / 2 * spacing_m;
-    for (std::size_t i = 0; i < shifted.size(); ++i) {
-      shifted[i] = predicted[i] + static_cast<float>(tried_m);
-    }
-    find_nearest(geometry_->limits, static_cast<int>(shifted.size()), phase_a.data(),
-                 phase_b.data(), shifted.data(), error.data(), range.data());
-    float score = 0;
-    for (std::size_t i = 0; i < error.size(); ++i) {
-      score += std::exp(-error[i] * error[i] / (2 * variance[i]));
-    }
-    if (score > clearly_better * best) {
-      best = score;
-      constant_m_ = tried_m;
-    }
-  }
+  // All that was predicted had the constant so far, which is 0.
+  constant_m_ =
+      likeliest_constant_m(geometry_->limits,
+                           {constant_sigma_m(), unknown_systematic_m,
+                            std::max(1.0, correlated_samples / static_cast<double>(stride))},
+                           some);
   predict();
 }
 
@@ -239,8 +145,7 @@ void ResidualFit::weigh(double systematic_m) {
   // However well residuals agree: no pixel is worth a thousand others.
   constexpr double least_m = 0.005;
   systematic_m = std::max(systematic_m, least_m);
-  fill_weights(static_cast<int>(weight_.size()), error_m_.data(), seen_.variance_m2.data(),
-               static_cast<float>(systematic_m * systematic_m), weight_.data());
+  fill_robust_weights(error_m_, seen_.variance_m2, systematic_m, weight_);
 }
 
 /// Equation 17: how the residual changes with the motion.
@@ -263,10 +168,49 @@ void ResidualFit::add_motion_prior(MotionMatrix& information, MotionVector& grad
   MotionVector precision;
   precision << Eigen::Vector3d::Constant(1 / (prior_.translation_m * prior_.translation_m)),
       Eigen::Vector3d::Constant(1 / (prior_.rotation_rad * prior_.rotation_rad));
-  MotionVector so_far;
-  so_far << motion_.translation_m, motion_.rotation_rad;
+  const MotionVector so_far = motion_so_far();
   information.diagonal() += precision;
   gradient -= precision.cwiseProduct(so_far);
+  if (!apparent_) return;
+  const ApparentEquations apparent = apparent_equations();
+  information += apparent.by_motion.transpose() * apparent.information * apparent.by_motion;
+  gradient += apparent.by_motion.transpose() * apparent.information * apparent.off_rad;
+}
+
+ResidualFit::MotionVector ResidualFit::motion_so_far() const {
+  MotionVector so_far;
+  so_far << motion_.translation_m, motion_.rotation_rad;
+  return so_far;
+}
+
+/// What the apparent rotation says of the motion, by parallax at the mean of 1 / range.
+ResidualFit::ApparentEquations ResidualFit::apparent_equations() const {
+  constexpr float nearest_m = 0.3F;
+  constexpr double least_translation_m = 0.02;
+  double sum = 0;
+  double squares = 0;
+  for (const float range_m : range_m_) {
+    const double nearness = 1 / std::max(range_m, nearest_m);
+    sum += nearness;
+    squares += nearness * nearness;
+  }
+  const double count = std::max<double>(1, static_cast<double>(range_m_.size()));
+  const double mean = sum / count;
+  const double spread = std::max(squares / count - mean * mean, 0.0);
+  ApparentEquations out;
+  out.by_motion.setZero();
+  out.by_motion.rightCols<3>().setIdentity();
+  out.by_motion(0, 1) = -mean;
+  out.by_motion(1, 0) = mean;
+  out.off_rad = apparent_->rotation_rad - out.by_motion * motion_so_far();
+  // Surfaces at other ranges shift otherwise, and any of them may have decided.
+  const double translation_m =
+      std::max(motion_.translation_m.head<2>().norm(), least_translation_m);
+  const Eigen::Matrix3d covariance = apparent_->covariance_rad2 + Eigen::Matrix3d::Identity() *
+                                                                      translation_m *
+                                                                      translation_m * spread;
+  out.information = covariance.inverse();
+  return out;
 }
 
 /// One step of Gauss and Newton for the motion and, if wanted, the constant.
@@ -282,7 +226,7 @@ void ResidualFit::step(bool with_constant) {
   Eigen::Matrix<double, unknowns, 1> gradient = Eigen::Matrix<double, unknowns, 1>::Zero();
   std::vector<float> errors = error_m_;
   for (float& error : errors) error = std::isnan(error) ? 0.0F : error;
-  add_products<unknowns>(columns, weight_, errors, information, gradient);
+  add_weighted_products<unknowns>(columns, weight_, errors, information, gradient);
   information /= correlated_samples;
   gradient /= correlated_samples;
 
@@ -292,7 +236,7 @@ void ResidualFit::step(bool with_constant) {
   information.topLeftCorner<motion_terms, motion_terms>() = of_motion;
   gradient.head<motion_terms>() = motion_gradient;
   constexpr double fixed = 1e9;
-  const double precision = with_constant ? 1 / (prior_constant_m * prior_constant_m) : fixed;
+  const double precision = with_constant ? 1 / (constant_sigma_m() * constant_sigma_m()) : fixed;
   information(motion_terms, motion_terms) += precision;
   gradient[motion_terms] -= precision * constant_m_;
 
@@ -332,7 +276,7 @@ void ResidualFit::add_camera_equations(ErrorTracker::TermsMatrix& information,
                                        ErrorTracker::Terms& gradient) const {
   constexpr int of_camera = ErrorTracker::terms;
   constexpr int all = of_camera + motion_terms;
-  const auto terms = camera_terms(*samples_, seen_.phase_b, camera_.reference_amplitude);
+  const auto terms = camera_error_terms(*samples_, seen_.phase_b, camera_.reference_amplitude);
   std::array<const float*, all> columns{};
   for (std::size_t k = 0; k < of_camera; ++k) columns[k] = terms[k].data();
   for (std::size_t k = 0; k < motion_terms; ++k) columns[of_camera + k] = jacobian_[k].data();
@@ -343,7 +287,7 @@ void ResidualFit::add_camera_equations(ErrorTracker::TermsMatrix& information,
   }
   Eigen::Matrix<double, all, all> products = Eigen::Matrix<double, all, all>::Zero();
   Eigen::Matrix<double, all, 1> with_right = Eigen::Matrix<double, all, 1>::Zero();
-  add_products<all>(columns, weight_, right, products, with_right);
+  add_weighted_products<all>(columns, weight_, right, products, with_right);
   MotionMatrix of_motion = products.bottomRightCorner<motion_terms, motion_terms>();
   MotionVector motion_gradient = with_right.tail<motion_terms>();
   add_motion_prior(of_motion, motion_gradient);
@@ -356,21 +300,38 @@ void ResidualFit::add_camera_equations(ErrorTracker::TermsMatrix& information,
 }
 
 double ResidualFit::motion_cost() const {
-  return motion_.translation_m.squaredNorm() / (2 * prior_.translation_m * prior_.translation_m) +
-         motion_.rotation_rad.squaredNorm() / (2 * prior_.rotation_rad * prior_.rotation_rad);
+  const double by_prior =
+      motion_.translation_m.squaredNorm() / (2 * prior_.translation_m * prior_.translation_m) +
+      motion_.rotation_rad.squaredNorm() / (2 * prior_.rotation_rad * prior_.rotation_rad);
+  if (!apparent_) return by_prior;
+  const ApparentEquations apparent = apparent_equations();
+  return by_prior + 0.5 * apparent.off_rad.dot(apparent.information * apparent.off_rad);
+}
+
+double ResidualFit::constant_sigma_m() const {
+  return camera_.frames > 0 ? prior_constant_m : prior_offset_m;
 }
 
 double ResidualFit::cost(double systematic_m) const {
-  constexpr float square_sigmas = 9;
-  const auto systematic_m2 = static_cast<float>(systematic_m * systematic_m);
-  double sum = 0;
-  for (std::size_t i = 0; i < error_m_.size(); ++i) {
-    const float variance = seen_.variance_m2[i] + systematic_m2;
-    const float square = error_m_[i] * error_m_[i] / variance;
-    // Geman and McClure's; a sample that B did not see costs as much as one that does not fit.
-    sum += std::isnan(square) ? square_sigmas / 2 : square / 2 / (1 + square / square_sigmas);
+  return (robust_cost(error_m_, seen_.variance_m2, systematic_m) + light_cost()) /
+             correlated_samples +
+         motion_cost();
+}
+
+/// How badly B's amplitudes fit A's: both see the same surface only if the motion is right.
+double ResidualFit::light_cost() const {
+  if (seen_.amplitude_ratio.empty()) return 0;
+  constexpr double light_sigma = 0.15;  // of the logarithm, by textures
+  // The noise of a logarithm of an amplitude is that of its phase in radians.
+  const double rad_per_m = 2 * std::numbers::pi / geometry_->limits.wavelength_a_m;
+  std::vector<float> off(seen_.amplitude_ratio.size());
+  std::vector<float> variance(off.size());
+  for (std::size_t i = 0; i < off.size(); ++i) {
+    const float ratio = seen_.amplitude_ratio[i] / static_cast<float>(amplitude_gain_);
+    off[i] = std::log(ratio) + 0 * error_m_[i];
+    variance[i] = static_cast<float>(rad_per_m * rad_per_m) * seen_.variance_m2[i];
   }
-  return sum / correlated_samples + motion_cost();
+  return robust_cost(off, variance, light_sigma);
 }
 
 double ResidualFit::periodic_rms_m() const {

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "exposure_alignment.hpp"
 #include "exposure_pair.hpp"
 #include "residual_samples.hpp"
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -32,8 +34,11 @@ class ResidualFit {
   ResidualFit(const SurfaceSamples& samples, const ExposurePair& pair, const PairGeometry& geometry,
               const CameraErrors& camera, const MotionPrior& prior);
 
+  /// Also fits the apparent rotation between the exposures, from now on.
+  void expect(const ApparentRotation& apparent) { apparent_ = apparent; }
+
   /// Finds the motion, from `rotation_rad` on. With `any_constant` the camera's offset is in doubt,
-  /// too, as on a first frame: the constant that most samples agree on is looked for.
+  /// too, as on a first frame: the likeliest constant is looked for.
   void find_motion(const Eigen::Vector3d& rotation_rad, bool any_constant);
 
   /// The same from the motion found so far on, with other knowledge of the camera.
@@ -50,9 +55,10 @@ class ResidualFit {
   double constant_m() const { return constant_m_; }
   /// Standard deviation of the residuals, noise apart; robust.
   double systematic_m() const { return systematic_m_; }
-  /// How badly the motion fits its prior, nats.
+  /// How badly the motion fits its prior and the apparent rotation, nats.
   double motion_cost() const;
-  /// How badly samples and motion fit, nats: what tells one explanation from another.
+  /// How badly residuals, amplitudes and motion fit, nats: what tells one explanation from another.
+  /// Infinite if B saw none of the samples.
   /// `systematic_m` is what residuals have besides noise, the same for all that are compared.
   double cost(double systematic_m) const;
   /// Standard deviation over the samples of what is predicted of them as periodic.
@@ -69,22 +75,35 @@ class ResidualFit {
   using MotionVector = Eigen::Matrix<double, motion_terms, 1>;
   using MotionMatrix = Eigen::Matrix<double, motion_terms, motion_terms>;
 
+  /// Of the apparent rotation: how it changes with the motion, what the motion leaves of it, and
+  /// the inverse of its covariance.
+  struct ApparentEquations {
+    Eigen::Matrix<double, 3, motion_terms> by_motion;
+    Eigen::Vector3d off_rad;
+    Eigen::Matrix3d information;
+  };
+
   void look_up();
   void predict();
   void associate();
   void find_constant();
   void weigh(double systematic_m);
   void step(bool with_constant);
+  double constant_sigma_m() const;
+  double light_cost() const;
   double spread() const;
   double median_amplitude_ratio() const;
   void fill_jacobian();
   void add_motion_prior(MotionMatrix& information, MotionVector& gradient) const;
+  ApparentEquations apparent_equations() const;
+  MotionVector motion_so_far() const;
 
   const SurfaceSamples* samples_;
   const ExposurePair* pair_;
   const PairGeometry* geometry_;
   CameraErrors camera_;
   MotionPrior prior_;
+  std::optional<ApparentRotation> apparent_;
   CameraErrorTable table_;
   ExposureMotion motion_;
   double constant_m_ = 0;

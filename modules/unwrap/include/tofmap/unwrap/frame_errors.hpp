@@ -44,6 +44,8 @@ struct FrameErrors {
   ExposureMotion motion;
   double flow_px = 0;        ///< by how far the motion shifts the image from A to B; median
   bool used_last_b = false;  ///< the B of the frame before was nearer in time, and took part
+  double support =
+      0;  ///< share of the pixels that took part whose residual and amplitude are as predicted
   int pixels = 0;  ///< that took part in the estimate; 0: too few, and only `camera` is known
 };
 
