@@ -181,8 +181,8 @@ std::vector<GridPlace> grid_places(const GridSettings& settings) {
     base.width_px = frozen::width_px;
     base.height_px = frozen::height_px;
   }
-  if (settings.quick) {
-    scenes.resize(2);
+  if (settings.quick) scenes.resize(2);
+  if (settings.quick || settings.half) {
     base.width_px /= 2;
     base.height_px /= 2;
   }

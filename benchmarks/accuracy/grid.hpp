@@ -40,7 +40,8 @@ struct Grid {
 
 struct GridSettings {
   bool frozen = false;
-  bool quick = false;  ///< two scenes, small images, no pairs of errors
+  bool half = false;   ///< images of half the width and height
+  bool quick = false;  ///< two scenes, half images, one seed each, no pairs of errors
 };
 
 /// The places and combinations of the settings, measured: rays are cast once a place and motion.

@@ -8,7 +8,7 @@
 //     bench_unwrap_accuracy --departures [--divide N] [SEQ …]
 //                                                       from the paper to jump, step by step
 //     bench_unwrap_accuracy --frozen [--divide N]       methods against frozen data (frozen.hpp)
-//     bench_unwrap_accuracy --grid [--frozen] [--quick] [--csv FILE]
+//     bench_unwrap_accuracy --grid [--frozen] [--half] [--quick] [--csv FILE]
 //                                                       methods against errors of cameras
 //
 // SEQ are recordings with range_truth/ besides those that are simulated. N divides the number of
@@ -72,6 +72,8 @@ int main(int count, char** values) {
   app.add_flag("--departures", arguments.only_departures, "what sets jump apart from the paper")
       ->excludes(frozen)
       ->excludes(grid);
+  app.add_flag("--half", arguments.grid.half, "a grid of images of half the width and height")
+      ->needs(grid);
   app.add_flag("--quick", arguments.grid.quick, "a small grid")->needs(grid);
   app.add_option("--csv", arguments.csv, "file for all rows of the grid")->needs(grid);
   CLI11_PARSE(app, count, values);
