@@ -60,6 +60,19 @@ TEST(SurfaceCloud, HasLessNoiseThanItsRangesAndPredictsIt) {
   EXPECT_NEAR(std::sqrt(predicted2 / count) / error, 1, 0.25);
 }
 
+TEST(SurfaceCloud, DoesNotAverageSystematicErrors) {
+  const CameraModel camera = test::small_camera();
+  RangeImage image =
+      test::box_ranges(camera, {-50, -50, -50}, {50, 50, 4}, Pose::Identity(), 0.001F);
+  image.systematic_m = 0.01;
+  const SurfaceCloud cloud = surface_cloud(image, pixel_rays(camera), {});
+  for (const SurfacePoint& point : cloud.points) {
+    // Noise and what is systematic of 49 pixels add little: 0.0101² / 49, a slope aside.
+    ASSERT_GE(point.sigma_m, 0.01F);
+    ASSERT_LT(point.sigma_m, 0.012F);
+  }
+}
+
 TEST(SurfaceCloud, DoesNotMixTheSidesOfAnEdge) {
   const CameraModel camera = test::small_camera();
   RangeImage near = test::box_ranges(camera, {-50, -50, -50}, {50, 50, 2}, Pose::Identity());

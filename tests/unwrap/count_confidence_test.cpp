@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "count_confidence.hpp"
+
 #include "fast_math.hpp"
 
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
+
 #include <tofmap/core/range_image.hpp>
 
 namespace tofmap {
@@ -26,21 +28,56 @@ CountBeliefs beliefs_against(const std::vector<float>& others) {
   return beliefs;
 }
 
+/// The confidence where all pixels have this noise, a share of the residual step.
+ImageF confidence_at(const CountBeliefs& beliefs, float noise_share) {
+  return count_confidence(
+      beliefs, ImageF::Constant(beliefs.count.rows(), beliefs.count.cols(), noise_share));
+}
+
+/// Noise of all sizes, as shares of the residual step.
+std::vector<float> noises() {
+  std::vector<float> shares;
+  for (float share = 1e-3F; share < 2000; share *= 1.3F) shares.push_back(share);
+  return shares;
+}
+
 TEST(CountConfidence, RisesWithTheOdds) {
   std::vector<float> others;
   for (double exponent = -0.05; exponent > -36; exponent -= 0.05) {
     others.push_back(static_cast<float>(std::pow(10, exponent)));
   }
-  const ImageF confidence = count_confidence(beliefs_against(others));
-  for (Eigen::Index i = 1; i < confidence.size(); ++i) {
-    EXPECT_GE(confidence(i), confidence(i - 1)) << others[static_cast<std::size_t>(i)];
+  for (const float noise : noises()) {
+    const ImageF confidence = confidence_at(beliefs_against(others), noise);
+    for (Eigen::Index i = 1; i < confidence.size(); ++i) {
+      ASSERT_GE(confidence(i), confidence(i - 1))
+          << others[static_cast<std::size_t>(i)] << " at " << noise;
+    }
+    EXPECT_GT(confidence(0), 0);
+    EXPECT_LE(confidence.maxCoeff(), 1);
   }
-  EXPECT_GT(confidence(0), 0);
-  EXPECT_LE(confidence.maxCoeff(), 1);
+}
+
+TEST(CountConfidence, ChangesLittleWithLittleNoise) {
+  constexpr float largest_step = 0.12F;  // of the steepest curves, a tenth of an octave apart
+  for (const float other : {0.5F, 1e-2F, 1e-4F, 1e-6F, 1e-12F}) {
+    float before = confidence_at(beliefs_against({other}), 1e-3F)(0);
+    for (float noise = 1e-3F; noise < 10; noise *= 1.07F) {
+      const float now = confidence_at(beliefs_against({other}), noise)(0);
+      EXPECT_NEAR(now, before, largest_step) << other << " at " << noise;
+      before = now;
+    }
+  }
+}
+
+TEST(CountConfidence, IsLessAtEdgesThatNoiseDoesNotExplain) {
+  // Log odds of ten: an edge where noise is low, and half of what there is where it is not.
+  const CountBeliefs beliefs = beliefs_against({4.5e-5F});
+  EXPECT_LT(confidence_at(beliefs, 0.03F)(0), 0.7F);
+  EXPECT_GT(confidence_at(beliefs, 0.7F)(0), 0.9F);
 }
 
 TEST(CountConfidence, TellsBeliefsApartThatRoundToOne) {
-  const ImageF confidence = count_confidence(beliefs_against({1e-9F, 1e-20F, 1e-30F}));
+  const ImageF confidence = confidence_at(beliefs_against({1e-9F, 1e-20F, 1e-30F}), 0.3F);
   EXPECT_LT(confidence(0), confidence(1));
   EXPECT_LT(confidence(1), confidence(2));
   // A step of the 16-bit images that confidences are written to.
@@ -49,14 +86,14 @@ TEST(CountConfidence, TellsBeliefsApartThatRoundToOne) {
 
 TEST(CountConfidence, IsLessThanTheBelief) {
   for (const float other : {0.2F, 0.01F, 1e-4F, 1e-7F}) {
-    EXPECT_LT(count_confidence(beliefs_against({other}))(0), 1 - other);
+    EXPECT_LT(confidence_at(beliefs_against({other}), 0.3F)(0), 1 - other);
   }
 }
 
 TEST(CountConfidence, IsFiniteWithoutRivalsAndZeroWithoutACount) {
   CountBeliefs beliefs = beliefs_against({0, 0.5F});
   beliefs.count(1) = invalid_wrap_count;
-  const ImageF confidence = count_confidence(beliefs);
+  const ImageF confidence = confidence_at(beliefs, 0.3F);
   EXPECT_GT(confidence(0), 0.999F);
   EXPECT_LE(confidence(0), 1);
   EXPECT_EQ(confidence(1), 0);

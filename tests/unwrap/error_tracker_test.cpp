@@ -325,6 +325,29 @@ TEST(ErrorTracker, BringsBBackToWhereAWasExposed) {
   }
 }
 
+TEST(ErrorTracker, FindsTheWholeMotionWhereSlopesAreNoisy) {
+  // Noise in slopes makes turns look smaller than they are, if nothing averages it.
+  SimulatorOptions simulation;
+  simulation.range_noise_m = 0.05;
+  simulation.b_delay_share = 0.5;
+  simulation.max_turn_deg = 3;
+  const Simulator simulator(make_scene("room"), simulation);
+  ErrorTracker tracker = tracker_of(simulator);
+  double found_rad = 0;
+  double true_rad = 0;
+  for (int i = 20; i < 28; ++i) {
+    const SimulatedFrame frame = simulator.simulate(i);
+    const Pose turn =
+        frame.world_from_camera.inverse() * simulator.simulate(i + 1).world_from_camera;
+    const Eigen::AngleAxisd true_turn(turn.linear());
+    const Eigen::Vector3d axis = true_turn.axis();
+    true_rad += 0.5 * true_turn.angle();
+    found_rad += track(tracker, returns_of(frame)).errors.motion.rotation_rad.dot(axis);
+  }
+  ASSERT_GT(true_rad / 8, 0.005);
+  EXPECT_NEAR(found_rad / true_rad, 1, 0.15);
+}
+
 TEST(ErrorTracker, KnowsNothingOfBWhereItsImageEnds) {
   const Corner corner;
   ErrorTracker tracker = acquainted(corner);
@@ -403,6 +426,21 @@ TEST(ErrorTracker, UnwrapsACameraThatSwitchesFrequencyFromFrameToFrame) {
   as_it_comes.systematic_errors = false;
   EXPECT_GT(wrong_wraps_percent(switching_camera(), as_it_comes), 10 * at_once_percent)
       << "the motion matters";
+}
+
+TEST(ErrorTracker, ExpectsACameraThatWasLateToBeLate) {
+  const Simulator simulator(make_scene("hall"), switching_camera());
+  ErrorTracker tracker = tracker_of(simulator);
+  int late = 0;
+  for (const SimulatedFrame& frame : run_of(simulator, 20, 6)) {
+    track(tracker, returns_of(frame));
+    EXPECT_EQ(tracker.camera_errors().late_frames, ++late);
+  }
+  SimulatorOptions prompt;
+  const Simulator at_once(make_scene("hall"), prompt);
+  ErrorTracker other = tracker_of(at_once);
+  for (const SimulatedFrame& frame : run_of(at_once, 20, 3)) track(other, returns_of(frame));
+  EXPECT_EQ(other.camera_errors().late_frames, 0);
 }
 
 /// The same number of NaNs, and the same bits.
@@ -496,7 +534,8 @@ TEST(ErrorTracker, NeedsNoAmplitudes) {
   EXPECT_NEAR(tracked.errors.camera.offset_m(), 0.08, 0.015);
   EXPECT_EQ(tracked.errors.camera.amplitude_gain, 1);
   EXPECT_EQ(tracked.b.amplitude_b.size(), 0);
-  EXPECT_LT(tracked.b.sigma_b_cycles.maxCoeff<Eigen::PropagateNumbers>(), 1) << "all is seen";
+  const auto seen = (tracked.b.sigma_b_cycles < 1).count();
+  EXPECT_GT(seen, 0.8 * static_cast<double>(frame.phase_a.size())) << "all but edges";
 }
 
 TEST(ErrorTracker, KnowsNothingOfAFrameWithoutReturns) {

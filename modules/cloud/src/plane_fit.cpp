@@ -294,9 +294,9 @@ PlaneFits::PlaneFits(const RangeImage& image, const PixelRays& rays, const Cloud
       const float range_m = image.range_m(row, col);
       const float q = 1 / (range_m * ray_z);
       // dq / dr = −q / r.
-      const float sigma = image.sigma_m(row, col) * q / range_m;
+      const float q_per_m = q / range_m;
       q_[at] = q;
-      variance_[at] = sigma * sigma;
+      variance_[at] = static_cast<float>(image.variance_m2(row, col)) * q_per_m * q_per_m;
     }
   }
   if (rows_ == 0 || cols_ < 2) return;

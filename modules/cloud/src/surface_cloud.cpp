@@ -54,7 +54,7 @@ SurfacePoint surface_point(const PlaneWindows& fits, const PlaneRow& planes,
                            const RangeImage& image, const PixelRays& rays, int row, int col,
                            const CloudOptions& options) {
   SurfacePoint raw = point_on_ray(rays, row, col, image.range_m(row, col));
-  raw.sigma_m = image.sigma_m(row, col);
+  raw.sigma_m = static_cast<float>(std::sqrt(image.variance_m2(row, col)));
   raw.confidence = image.confidence(row, col);
   const auto i = static_cast<std::size_t>(col);
   if (!image.valid(row, col) || planes.neighbours[i] == 0 || !(planes.q0[i] > 0)) return raw;
@@ -72,7 +72,8 @@ SurfacePoint surface_point(const PlaneWindows& fits, const PlaneRow& planes,
   const float range_m = 1 / (planes.q0[i] * ray_z);
   SurfacePoint point = point_on_ray(rays, row, col, range_m);
   point.getNormalVector3fMap() = -away;
-  point.sigma_m = std::sqrt(planes.q0_variance[i]) * range_m / planes.q0[i];
+  const double noise_m = std::sqrt(planes.q0_variance[i]) * range_m / planes.q0[i];
+  point.sigma_m = static_cast<float>(std::hypot(noise_m, image.systematic_m));
   point.normal_sigma_rad = tilt_rad;
   point.confidence = raw.confidence;
   return point;

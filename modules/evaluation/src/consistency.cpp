@@ -102,8 +102,8 @@ Overlap overlap(const RangedFrame& from, const RangedFrame& to, const CameraMode
       if (row < 0 || col < 0 || row >= to.image.rows() || col >= to.image.cols()) continue;
       if (!to.image.valid(row, col)) continue;
       const double behind_m = to.image.range_m(row, col) - point_m.norm();
-      const double sigma_m = std::hypot(from.image.sigma_m(v, u), to.image.sigma_m(row, col));
-      const double tolerance_m = std::max(least_tolerance_m, sigmas * sigma_m);
+      const double variance_m2 = from.image.variance_m2(v, u) + to.image.variance_m2(row, col);
+      const double tolerance_m = std::max(least_tolerance_m, sigmas * std::sqrt(variance_m2));
       if (behind_m < -tolerance_m) continue;  // hidden: neither for nor against
       ++result.points;
       result.seen_through += behind_m > tolerance_m ? 1 : 0;

@@ -102,10 +102,10 @@ std::optional<Vote> vote(const Region& region, const RangeImage& image, double w
   std::map<int, Ballot> ballots;
   for (const auto& [in, out] : region.border) {
     const double step_m = image.range_m(out.row, out.col) - image.range_m(in.row, in.col);
-    const double noise_m =
-        std::hypot(image.sigma_m(in.row, in.col), image.sigma_m(out.row, out.col));
+    const double error_m =
+        std::sqrt(image.variance_m2(in.row, in.col) + image.variance_m2(out.row, out.col));
     const double wraps = std::round(step_m / wavelength_m);
-    const double tolerated_m = tolerated_wavelengths * wavelength_m + tolerated_sigmas * noise_m;
+    const double tolerated_m = tolerated_wavelengths * wavelength_m + tolerated_sigmas * error_m;
     if (std::abs(step_m - wraps * wavelength_m) > tolerated_m) continue;
     Ballot& ballot = ballots[static_cast<int>(wraps)];
     ++ballot.pairs;
@@ -135,8 +135,9 @@ double beat_cost(const Region& region, int change, const RangeImage& image,
     const double residual = frequency_residual_cycles(
         static_cast<float>(a_cycles), frame.phase_b(at.row, at.col), static_cast<float>(b_per_a));
     // The range is the mean of A's and B's, their difference twice as uncertain.
-    const double sigma = 2 * image.sigma_m(at.row, at.col) / modulation.wavelength_a_m();
-    sum += std::min(sure_nats, residual * residual / (2 * sigma * sigma));
+    const double wavelength_m = modulation.wavelength_a_m();
+    const double variance = 4 * image.variance_m2(at.row, at.col) / (wavelength_m * wavelength_m);
+    sum += std::min(sure_nats, residual * residual / (2 * variance));
   }
   return sum;
 }

@@ -31,9 +31,10 @@ bool has_neighbour_behind(const RangeImage& image, const PixelRays& rays, Eigen:
          c <= std::min(image.cols() - 1, col + 1); ++c) {
       if ((r == row && c == col) || !image.valid(r, c)) continue;
       const Eigen::Vector3f line = image.range_m(r, c) * ray_at(rays, r, c) - point;
-      const float sigma = std::hypot(image.sigma_m(r, c), image.sigma_m(row, col));
+      const auto variance_m2 =
+          static_cast<float>(image.variance_m2(r, c) + image.variance_m2(row, col));
       const float gap2 = line.squaredNorm();
-      if (gap2 > limits.min_gap_sigmas2 * sigma * sigma &&
+      if (gap2 > limits.min_gap_sigmas2 * variance_m2 &&
           -ray.dot(line) < limits.min_cos * std::sqrt(gap2)) {
         return true;
       }

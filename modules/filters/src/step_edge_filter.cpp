@@ -45,8 +45,9 @@ class StepFinder {
     const float spacing_rad =
         std::hypot(rays_.x(r, c) - rays_.x(row, col), rays_.y(r, c) - rays_.y(row, col),
                    rays_.z(r, c) - rays_.z(row, col));
-    const float noise_m = std::hypot(image_.sigma_m(row, col), image_.sigma_m(r, c));
-    const float least_m = slope_ * spacing_rad * std::min(own_m, other_m) + sigmas_ * noise_m;
+    const auto error_m =
+        static_cast<float>(std::sqrt(image_.variance_m2(row, col) + image_.variance_m2(r, c)));
+    const float least_m = slope_ * spacing_rad * std::min(own_m, other_m) + sigmas_ * error_m;
     const float difference_m = other_m - own_m;
     if (std::abs(difference_m) <= least_m) return 0;
     return difference_m > 0 ? 1 : -1;

@@ -18,10 +18,18 @@ constexpr double steepest_rad = 80 * std::numbers::pi / 180;
 
 double square(double value) { return value * value; }
 
+/// Of a range or a depth. Averaging lowers that of noise alone.
+struct Variance {
+  double noise_m2;
+  double systematic_m2;
+
+  double sum_m2() const { return noise_m2 + systematic_m2; }
+};
+
 /// The surface of a view at a place between its pixels.
 struct Sample {
   double depth_m;
-  double variance_m2;  ///< of the depth
+  Variance variance;  ///< of the depth
   double confidence;
 };
 
@@ -71,7 +79,8 @@ class OtherView {
         confidence = std::min<double>(confidence, image_.confidence(row + r, col + c));
       }
     }
-    return Sample{1 / inverse, variance, confidence};
+    const double systematic_m = image_.systematic_m * rays_.z(row, col);
+    return Sample{1 / inverse, {variance, square(systematic_m)}, confidence};
   }
 
   bool have_one_surface(Eigen::Index row, Eigen::Index col) const {
@@ -80,11 +89,12 @@ class OtherView {
     const double spacing_rad = std::hypot(rays_.x(row, col + 1) - rays_.x(row, col),
                                           rays_.y(row, col + 1) - rays_.y(row, col));
     constexpr double sigmas = 3;
-    const double noise_m =
-        sigmas * std::numbers::sqrt2 * image_.sigma_m.block<2, 2>(row, col).maxCoeff();
+    const double largest_sigma_m =
+        std::hypot(image_.sigma_m.block<2, 2>(row, col).maxCoeff(), image_.systematic_m);
+    const double error_m = sigmas * std::numbers::sqrt2 * largest_sigma_m;
     const double diagonal_rad = std::numbers::sqrt2 * spacing_rad;
     return ranges.maxCoeff() - ranges.minCoeff() <=
-           std::tan(steepest_rad) * diagonal_rad * ranges.minCoeff() + noise_m;
+           std::tan(steepest_rad) * diagonal_rad * ranges.minCoeff() + error_m;
   }
 
   const RangeImage& image_;
@@ -96,7 +106,7 @@ class OtherView {
 /// Where a ray meets the surface of another view.
 struct Meeting {
   double range_m;
-  double variance_m2;  ///< of the range, by the other view's noise
+  Variance variance;  ///< of the range, by the errors of the other view
   double confidence;
 };
 
@@ -107,7 +117,7 @@ struct Finding {
 };
 
 /// Follows a ray from a range on to where it meets the surface of the other view.
-Finding look(const OtherView& other, const Eigen::Vector3d& ray, double range_m, double sigma_m,
+Finding look(const OtherView& other, const Eigen::Vector3d& ray, double range_m, double variance_m2,
              const FusionOptions& options) {
   /// How far the surface is behind the point of the ray, in the other camera's depth.
   struct Gap {
@@ -125,7 +135,7 @@ Finding look(const OtherView& other, const Eigen::Vector3d& ray, double range_m,
   if (!first) return finding;
   // Along the ray a surface may be off by noise and, the more it slants, by what poses shift it.
   const double reach_m =
-      2 * (options.max_sigmas * std::sqrt(square(sigma_m) + first->sample.variance_m2) +
+      2 * (options.max_sigmas * std::sqrt(variance_m2 + first->sample.variance.sum_m2()) +
            options.tolerance_m / std::cos(steepest_rad));
   finding.is_seen_through = first->behind_m > reach_m;
 
@@ -147,12 +157,14 @@ Finding look(const OtherView& other, const Eigen::Vector3d& ray, double range_m,
   }
   if (!(slope > 0)) return finding;
   finding.is_seen_through = false;
-  finding.meeting = Meeting{at_m + behind_m / slope, gap->sample.variance_m2 / square(slope),
+  const Variance& depth = gap->sample.variance;
+  finding.meeting = Meeting{at_m + behind_m / slope,
+                            {depth.noise_m2 / square(slope), depth.systematic_m2 / square(slope)},
                             gap->sample.confidence};
   return finding;
 }
 
-/// A weighted mean and its variance.
+/// A weighted mean and the variance of its noise.
 struct Mean {
   double value = 0;
   double weight = 0;
@@ -171,33 +183,33 @@ constexpr double least_trust = 0.01;
 /// Ranges are never surer than that.
 constexpr double least_sigma_m = 1e-4;
 
-double weight_of(double confidence, double variance_m2) {
-  return std::max(confidence, least_trust) / std::max(variance_m2, square(least_sigma_m));
+double weight_of(double confidence, const Variance& variance) {
+  return std::max(confidence, least_trust) / std::max(variance.sum_m2(), square(least_sigma_m));
 }
 
 void fuse_pixel(Eigen::Index row, Eigen::Index col, const std::vector<OtherView>& others,
                 const PixelRays& rays, const FusionOptions& options, RangeImage& out) {
   constexpr int least_seen_through = 2;
   const double range_m = out.range_m(row, col);
-  const double sigma_m = out.sigma_m(row, col);
+  const Variance variance{square(out.sigma_m(row, col)), square(out.systematic_m)};
   const Eigen::Vector3d ray(rays.x(row, col), rays.y(row, col), rays.z(row, col));
   Mean mean;
-  mean.add(weight_of(out.confidence(row, col), square(sigma_m)), range_m, square(sigma_m));
+  mean.add(weight_of(out.confidence(row, col), variance), range_m, variance.noise_m2);
   int seen_through = 0;
   int agreeing = 0;
   for (const OtherView& other : others) {
-    const Finding finding = look(other, ray, range_m, sigma_m, options);
+    const Finding finding = look(other, ray, range_m, variance.sum_m2(), options);
     seen_through += finding.is_seen_through ? 1 : 0;
     if (!finding.meeting) continue;
     const Meeting& meeting = *finding.meeting;
     const double tolerated_m2 =
-        square(options.max_sigmas) * (square(sigma_m) + meeting.variance_m2) +
+        square(options.max_sigmas) * (variance.sum_m2() + meeting.variance.sum_m2()) +
         square(options.tolerance_m);
     const double room = 1 - square(meeting.range_m - range_m) / tolerated_m2;
     if (!(room > 0)) continue;
     ++agreeing;
-    mean.add(square(room) * weight_of(meeting.confidence, meeting.variance_m2), meeting.range_m,
-             meeting.variance_m2);
+    mean.add(square(room) * weight_of(meeting.confidence, meeting.variance), meeting.range_m,
+             meeting.variance.noise_m2);
   }
   if (seen_through >= least_seen_through && seen_through > agreeing) {
     out.invalidate(row, col, InvalidReason::seen_through);

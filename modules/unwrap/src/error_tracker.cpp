@@ -163,7 +163,8 @@ ErrorTracker::Tracked ErrorTracker::track(const DualFrequencyFrame& frame,
     tracked.errors.camera.systematic_m = unknown_systematic_m;
   }
   if (tracked.errors.flow_px <= still_px) {
-    match_still_exposure(pair, geometry, tracked.errors.camera, tracked.errors.motion, tracked.b);
+    match_still_exposure(pair, geometry, tracked.errors.camera,
+                         {tracked.errors.motion, tracked.errors.flow_px}, tracked.b);
   } else {
     match_moved(samples, pair, geometry, tracked);
   }
@@ -175,9 +176,10 @@ ErrorTracker::Tracked ErrorTracker::track(const DualFrequencyFrame& frame,
 FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposurePair& pair,
                                   const PairGeometry& geometry) {
   const bool is_first = camera_errors_.frames == 0;
+  bool is_late = camera_errors_.late_frames > 0;  // then this frame may well be, too
   ResidualFit fit(samples, pair, geometry, camera_errors_, prompt_exposures);
   fit.find_motion(Eigen::Vector3d::Zero(), is_first);
-  if (geometry.knows_camera() && may_have_moved(fit)) {
+  if (geometry.knows_camera() && (is_late || may_have_moved(fit))) {
     ResidualFit moved(samples, pair, geometry, camera_errors_, late_exposures);
     const auto apparent = apparent_rotation(pair, camera_);
     if (apparent) {
@@ -185,7 +187,8 @@ FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposureP
       moved.expect(*apparent);
     }
     moved.find_motion(apparent ? apparent->rotation_rad : Eigen::Vector3d::Zero(), true);
-    if (explains_better(moved, fit)) fit = moved;
+    is_late = is_late ? !explains_better(fit, moved) : explains_better(moved, fit);
+    if (is_late) fit = moved;
   }
 
   // The frame's own samples, on top of what was known; where little was, more than once, as better
@@ -205,6 +208,7 @@ FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposureP
   }
   if (fit.support() >= least_support && information.allFinite() && gradient.allFinite()) {
     learn(information / correlated_samples, gradient / correlated_samples, fit);
+    camera_errors_.late_frames = is_late ? camera_errors_.late_frames + 1 : 0;
   }
 
   FrameErrors errors;
@@ -246,7 +250,8 @@ void ErrorTracker::match_moved(const SurfaceSamples& samples, const ExposurePair
                                const PairGeometry& geometry, Tracked& tracked) {
   const CameraErrors& camera = tracked.errors.camera;
   const auto match_own = [&] {
-    match_exposure(pair, geometry, camera, tracked.errors.motion, tracked.b);
+    match_exposure(pair, geometry, camera, {tracked.errors.motion, tracked.errors.flow_px},
+                   tracked.b);
   };
   if (!same_size(last_.phase, pair.phase_b) || !pair.has_amplitude()) return match_own();
   const ExposurePair with_last{pair.phase_a, pair.amplitude_a, pair.sigma_a_cycles,
@@ -257,7 +262,7 @@ void ErrorTracker::match_moved(const SurfaceSamples& samples, const ExposurePair
   last.find_motion(apparent ? apparent->rotation_rad : Eigen::Vector3d::Zero(), false);
   if (last.support() < least_support) return match_own();
   const auto match_last = [&] {
-    match_exposure(with_last, geometry, camera, last.motion(), tracked.b);
+    match_exposure(with_last, geometry, camera, {last.motion(), last.flow_px()}, tracked.b);
   };
   tracked.errors.used_last_b = true;
   if (last.support() > tracked.errors.support) {

@@ -28,6 +28,9 @@ constexpr float ratio_sigmas = 4;
 /// where the first of them does, as parallax is small there.
 constexpr int counts_apart = 3;
 
+/// Motion up to this leaves in B's pixels what it has left in A's, at the edges of surfaces, too.
+constexpr double unmoved_px = 0.15;
+
 /// Amplitudes and noise of pixels of A, and those of B that are compared with them.
 struct Light {
   const float* amplitude_a;
@@ -56,6 +59,64 @@ TOFMAP_VECTOR_CLONES void compare_light(int count, const Light& light_, const fl
     same[i] = greater <= tolerated * lesser ? 1.0F : 0.0F;
   }
 }
+
+/// Not 0 in the pixels of B beside which the surface ends: it steps or bends there, along a row or
+/// along a column. `before` and `after` are the phases of the pixels on both sides.
+TOFMAP_VECTOR_CLONES void mark_edges(int count, const float* phase, const float* sigma_cycles,
+                                     const float* before, const float* after, float least_cycles,
+                                     std::uint8_t* is_edge) {
+  constexpr float sigmas = 4 * 2.45F;  // √6: the noise of a second difference
+  constexpr float share_of_slope = 0.5F;
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) {
+    const bool is_whole = before[i] == before[i] && after[i] == after[i] && phase[i] == phase[i];
+    const float rise = to_half_cycle(is_whole ? phase[i] - before[i] : 0.0F);
+    const float next = to_half_cycle(is_whole ? after[i] - phase[i] : 0.0F);
+    const float bend = next > rise ? next - rise : rise - next;
+    const float slope = rise + next > 0 ? rise + next : -(rise + next);
+    const float straight = sigmas * sigma_cycles[i] + least_cycles;
+    const bool is_bent = bend > straight && bend > share_of_slope * slope;
+    is_edge[i] |= is_bent ? 1 : 0;
+  }
+}
+
+/// Where B's surfaces end.
+ImageU8 find_edges(const ExposurePair& pair, double wavelength_b_m) {
+  constexpr double least_bend_m = 0.08;
+  const auto least_cycles = static_cast<float>(least_bend_m / wavelength_b_m);
+  const ImageF& phase = pair.phase_b;
+  ImageU8 edges = ImageU8::Zero(phase.rows(), phase.cols());
+  const auto cols = static_cast<int>(phase.cols());
+  for (Eigen::Index v = 0; v < phase.rows(); ++v) {
+    const Eigen::Index first = v * cols;
+    const float* row = phase.data() + first;
+    const float* sigma = pair.sigma_b_cycles.data() + first;
+    std::uint8_t* out = edges.data() + first;
+    if (cols > 2) mark_edges(cols - 2, row + 1, sigma + 1, row, row + 2, least_cycles, out + 1);
+    if (v == 0 || v + 1 == phase.rows()) continue;
+    mark_edges(cols, row, sigma, row - cols, row + cols, least_cycles, out);
+  }
+  return edges;
+}
+
+/// The noise of B's phase, and what the place in B is uncertain by, on the surface's slope.
+class PlacedSigma {
+ public:
+  PlacedSigma(const ExposureStep& step, const BeatLimits& limits)
+      : place_(static_cast<float>(step.place_sigma_px() / limits.wavelength_b_m)),
+        rough_place_(static_cast<float>(step.rough_sigma_px() / limits.wavelength_b_m)) {}
+
+  float cycles(float sigma_cycles, const SurfaceSlopes& slopes, std::size_t i) const {
+    const float across = place_ * slopes.across_m[i];
+    const float along = place_ * slopes.along_m[i];
+    const float rough = rough_place_ * slopes.rough_m[i];
+    return std::sqrt(sigma_cycles * sigma_cycles + across * across + along * along + rough * rough);
+  }
+
+ private:
+  float place_;  ///< cycles for a slope of one metre a pixel
+  float rough_place_;
+};
 
 /// u · t − q · (ω × u), equation 17 without what depends on the range; and q · t, which is divided
 /// by it.
@@ -152,13 +213,15 @@ struct WarpedRow {
 class WarpedMatching {
  public:
   WarpedMatching(const ExposurePair& pair, const PairGeometry& geometry, const CameraErrors& camera,
-                 const ExposureMotion& motion)
+                 const ExposureStep& step)
       : pair_(pair),
         geometry_(geometry),
         table_(camera),
         gain_(static_cast<float>(camera.amplitude_gain)),
-        warp_(geometry.camera, motion),
+        warp_(geometry.camera, step.motion),
+        sigma_(step, geometry.limits),
         slopes_(pair, geometry),
+        edges_(find_edges(pair, geometry.limits.wavelength_b_m)),
         warped_(static_cast<std::size_t>(pair.phase_a.cols())),
         best_cycles_(static_cast<std::size_t>(pair.phase_a.cols())),
         is_lost_(best_cycles_.size()),
@@ -215,6 +278,8 @@ class WarpedMatching {
     const auto u = static_cast<Eigen::Index>(col + 0.5F);
     const auto v = static_cast<Eigen::Index>(row + 0.5F);
     const Eigen::Index place = v * pair_.phase_b.cols() + u;
+    // A pixel less or more makes it another surface.
+    if (edges_.data()[place] != 0) return;
     warped_.phase_b[i] = pair_.phase_b.data()[place];
     warped_.sigma_b[i] = pair_.sigma_b_cycles.data()[place];
     if (pair_.has_amplitude()) warped_.amplitude_b[i] = pair_.amplitude_b.data()[place];
@@ -260,7 +325,7 @@ class WarpedMatching {
         best_cycles_[at] = residual;
         const float corrected = warped_.phase_b[at] + warped_.predicted_m[at] / wavelength_b_m;
         found_[at] = {corrected - std::floor(corrected), warped_.amplitude_b[at],
-                      warped_.sigma_b[at]};
+                      sigma_.cycles(warped_.sigma_b[at], slopes_, at)};
       }
     }
   }
@@ -287,7 +352,9 @@ class WarpedMatching {
   CameraErrorTable table_;
   float gain_;
   ExposureWarp warp_;
+  PlacedSigma sigma_;
   SurfaceSlopes slopes_;
+  ImageU8 edges_;
   WarpedRow warped_;
   Plane best_cycles_;
   std::vector<char> is_lost_;
@@ -297,6 +364,17 @@ class WarpedMatching {
 };
 
 }  // namespace
+
+double ExposureStep::rough_sigma_px() const {
+  // Half a pixel at most, all of it alike.
+  return std::min(0.3, flow_px);
+}
+
+double ExposureStep::place_sigma_px() const {
+  // Motion is known to a tenth; surfaces are straight to a tenth of a pixel.
+  constexpr double share = 0.1;
+  return share * std::min(1.0, flow_px);
+}
 
 MatchedExposure unmatched(const ExposurePair& pair) {
   const auto is_missing = pair.phase_a.isNaN();
@@ -312,21 +390,23 @@ MatchedExposure unmatched(const ExposurePair& pair) {
 }
 
 void match_exposure(const ExposurePair& pair, const PairGeometry& geometry,
-                    const CameraErrors& camera, const ExposureMotion& motion,
-                    MatchedExposure& out) {
-  WarpedMatching matching(pair, geometry, camera, motion);
+                    const CameraErrors& camera, const ExposureStep& step, MatchedExposure& out) {
+  WarpedMatching matching(pair, geometry, camera, step);
   for (Eigen::Index row = 0; row < pair.phase_a.rows(); ++row) matching.match(row, out);
 }
 
 void match_still_exposure(const ExposurePair& pair, const PairGeometry& geometry,
-                          const CameraErrors& camera, const ExposureMotion& motion,
+                          const CameraErrors& camera, const ExposureStep& step,
                           MatchedExposure& out) {
   const auto cols = static_cast<std::size_t>(pair.phase_a.cols());
   const CameraErrorTable table(camera);
   const auto per_wavelength = static_cast<float>(1 / geometry.limits.wavelength_b_m);
-  const Eigen::Vector3f t = motion.translation_m.cast<float>();
-  const Eigen::Vector3f w = motion.rotation_rad.cast<float>();
+  const Eigen::Vector3f t = step.motion.translation_m.cast<float>();
+  const Eigen::Vector3f w = step.motion.rotation_rad.cast<float>();
   const SmallMotion small{t.x(), t.y(), t.z(), w.x(), w.y(), w.z()};
+  const PlacedSigma sigma(step, geometry.limits);
+  const bool may_miss = geometry.knows_camera() && step.flow_px > unmoved_px;
+  const ImageU8 edges = may_miss ? find_edges(pair, geometry.limits.wavelength_b_m) : ImageU8();
   // How far away a surface is matters little beyond the fourth wavelength.
   BeatLimits near_counts = geometry.limits;
   near_counts.count_a = std::min(near_counts.count_a, 4);
@@ -362,8 +442,8 @@ void match_still_exposure(const ExposurePair& pair, const PairGeometry& geometry
         corrected[i] = in.phase_a[i] == in.phase_a[i] ? 0.0F : nan;
         continue;
       }
-      if (of.same[i] == 0) continue;
-      out.sigma_b_cycles(row, u) = in.sigma_b[i];
+      if (of.same[i] == 0 || (may_miss && edges(row, u) != 0)) continue;
+      out.sigma_b_cycles(row, u) = sigma.cycles(in.sigma_b[i], slopes, i);
       if (in.amplitude_b != nullptr) out.amplitude_b(row, u) = in.amplitude_b[i];
     }
   }

@@ -382,7 +382,11 @@ double ResidualFit::flow_px() const {
     const float along = row[i] - static_cast<float>(samples_->row[i]);
     if (!std::isnan(across + along)) flow.push_back(std::hypot(across, along));
   }
-  return flow.empty() ? 0 : double{median_of_positive(flow)};
+  if (flow.empty()) return 0;
+  const auto most =
+      flow.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(flow.size()));
+  std::nth_element(flow.begin(), most, flow.end());
+  return double{*most};
 }
 
 double ResidualFit::median_amplitude_ratio() const {

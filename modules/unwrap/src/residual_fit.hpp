@@ -65,7 +65,7 @@ class ResidualFit {
   double periodic_rms_m() const;
   /// The share of the samples that B saw as predicted.
   double support() const;
-  /// By how far the motion shifts the image, pixels; median over the samples.
+  /// By how far the motion shifts the image, pixels: nine of ten samples by less.
   double flow_px() const;
   /// Median of B's amplitude over A's; 1 without amplitudes.
   double amplitude_gain() const { return amplitude_gain_; }

@@ -4,6 +4,7 @@
 #include "residual_samples.hpp"
 
 #include "fast_math.hpp"
+#include "surface_slopes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +18,8 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// Neighbours this far apart make the slope of a surface.
-constexpr Eigen::Index slope_reach_px = 2;
+/// Neighbours this far away tell whether a surface bends; slopes reach as far at least.
+constexpr Eigen::Index bend_reach_px = 2;
 constexpr int widest_reach_px = 3;
 
 /// Phases noisier than this wrap too often to be averaged by their differences.
@@ -54,30 +55,45 @@ WindowMean window_mean(const ImageF& phase, Eigen::Index row, Eigen::Index col,
   return {mean - std::floor(mean), pixels};
 }
 
-/// The slope of A's range at a pixel, metres a pixel; nothing where the surface bends or ends.
-std::optional<Eigen::Vector2f> slope_m(const ExposurePair& pair, Eigen::Index v, Eigen::Index u,
-                                       float wavelength_m) {
-  constexpr float largest_bend_m = 0.08F;
-  constexpr float sigmas = 4;
+/// True if A's surface neither bends nor ends at a pixel.
+bool is_smooth(const ExposurePair& pair, Eigen::Index v, Eigen::Index u, float wavelength_m) {
   const ImageF& phase = pair.phase_a;
   const float here = phase(v, u);
-  const float before = phase(v, u - slope_reach_px);
-  const float after = phase(v, u + slope_reach_px);
-  const float over = phase(v - slope_reach_px, u);
-  const float under = phase(v + slope_reach_px, u);
-  if (std::isnan(before + after + over + under)) return std::nullopt;
-  const float left = to_half_cycle(here - before);
-  const float right = to_half_cycle(after - here);
-  const float above = to_half_cycle(here - over);
-  const float below = to_half_cycle(under - here);
-  const float bend_m = std::max(std::abs(left - right), std::abs(above - below)) * wavelength_m;
+  const float before = phase(v, u - bend_reach_px);
+  const float after = phase(v, u + bend_reach_px);
+  const float over = phase(v - bend_reach_px, u);
+  const float under = phase(v + bend_reach_px, u);
+  if (std::isnan(before + after + over + under)) return false;
   const float sigma_m = pair.sigma_a_cycles(v, u) * wavelength_m;
-  if (!(bend_m < largest_bend_m + sigmas * sigma_m)) return std::nullopt;
-  // What noise alone would make of a slope is worse than none.
-  constexpr float loud_m = 0.1F;
-  if (sigma_m > loud_m) return Eigen::Vector2f::Zero();
-  const float scale = wavelength_m / (2 * slope_reach_px);
-  return Eigen::Vector2f((left + right) * scale, (above + below) * scale);
+  const float tolerated = tolerated_bend(sigma_m) / wavelength_m;
+  return is_straight(to_half_cycle(here - before), to_half_cycle(after - here), tolerated) &&
+         is_straight(to_half_cycle(here - over), to_half_cycle(under - here), tolerated);
+}
+
+/// The slope of A's range, metres a pixel: that of the plane through the pairs of pixels on
+/// opposite sides of a pixel, which reach as far as `reach` and lie on one line with it. A slope
+/// that is mostly noise would make motion look smaller than it is: then there is none.
+Eigen::Vector2f slope_m(const ExposurePair& pair, Eigen::Index v, Eigen::Index u,
+                        Eigen::Index reach, float wavelength_m) {
+  constexpr float loud_m = 0.035F;
+  const ImageF& phase = pair.phase_a;
+  const float middle = phase(v, u);
+  const float sigma_m = pair.sigma_a_cycles(v, u) * wavelength_m;
+  const float tolerated = tolerated_bend(sigma_m) / wavelength_m;
+  Eigen::Vector2f moment = Eigen::Vector2f::Zero();
+  Eigen::Vector2f square = Eigen::Vector2f::Zero();
+  for (Eigen::Index dv = 0; dv <= reach; ++dv) {
+    for (Eigen::Index du = dv == 0 ? 1 : -reach; du <= reach; ++du) {
+      const float ahead = to_half_cycle(phase(v + dv, u + du) - middle);
+      const float behind = to_half_cycle(phase(v - dv, u - du) - middle);
+      if (std::isnan(ahead + behind) || !is_straight(-behind, ahead, tolerated)) continue;
+      const Eigen::Vector2f offset(static_cast<float>(du), static_cast<float>(dv));
+      moment += offset * (ahead - behind);
+      square += 2 * offset.cwiseProduct(offset);
+    }
+  }
+  if (!(sigma_m * sigma_m < loud_m * loud_m * square.minCoeff())) return Eigen::Vector2f::Zero();
+  return wavelength_m * moment.cwiseQuotient(square);
 }
 
 /// True if the whole window has returns.
@@ -102,9 +118,9 @@ void append_ray(const PixelRays& rays, Eigen::Index v, Eigen::Index u, const Eig
   };
   const Eigen::Vector3f here = ray(v, u);
   const Eigen::Vector3f across =
-      (ray(v, u + slope_reach_px) - ray(v, u - slope_reach_px)) / (2 * slope_reach_px);
+      (ray(v, u + bend_reach_px) - ray(v, u - bend_reach_px)) / (2 * bend_reach_px);
   const Eigen::Vector3f along =
-      (ray(v + slope_reach_px, u) - ray(v - slope_reach_px, u)) / (2 * slope_reach_px);
+      (ray(v + bend_reach_px, u) - ray(v - bend_reach_px, u)) / (2 * bend_reach_px);
   const Eigen::Vector3f gradient =
       (slope.x() * along.cross(here) + slope.y() * here.cross(across)) /
       across.cross(along).dot(here);
@@ -129,8 +145,7 @@ void append_sample(const ExposurePair& pair, const PairGeometry& geometry, doubl
   const auto reach =
       window_reach(std::hypot(sigma_a * wavelength_a_m, sigma_b * wavelength_b_m), residual_step_m);
   if (!reach || !is_whole(pair.phase_a, v, u, *reach)) return;
-  const auto slope = slope_m(pair, v, u, wavelength_a_m);
-  if (!slope) return;
+  if (!is_smooth(pair, v, u, wavelength_a_m)) return;
   const WindowMean mean = window_mean(pair.phase_a, v, u, *reach);
   const float sigma_m = sigma_a * wavelength_a_m / std::sqrt(mean.pixels);
   samples.row.push_back(static_cast<int>(v));
@@ -139,7 +154,9 @@ void append_sample(const ExposurePair& pair, const PairGeometry& geometry, doubl
   samples.phase_a.push_back(mean.phase);
   samples.variance_a_m2.push_back(sigma_m * sigma_m);
   if (pair.has_amplitude()) samples.amplitude_a.push_back(pair.amplitude_a(v, u));
-  if (geometry.knows_camera()) append_ray(geometry.rays, v, u, *slope, samples);
+  if (!geometry.knows_camera()) return;
+  const Eigen::Index slope_reach = std::max<Eigen::Index>(*reach, bend_reach_px);
+  append_ray(geometry.rays, v, u, slope_m(pair, v, u, slope_reach, wavelength_a_m), samples);
 }
 
 constexpr Eigen::Index nowhere = -1;
@@ -170,7 +187,7 @@ SurfaceSamples gather_samples(const ExposurePair& pair, const PairGeometry& geom
   const Eigen::Index cols = pair.phase_a.cols();
   const auto stride = static_cast<Eigen::Index>(
       std::max(1.0, std::round(std::sqrt(static_cast<double>(rows * cols) / enough))));
-  constexpr Eigen::Index margin = std::max<Eigen::Index>(slope_reach_px, widest_reach_px);
+  constexpr Eigen::Index margin = std::max<Eigen::Index>(bend_reach_px, widest_reach_px);
   const Eigen::Index first = std::max(margin, stride / 2);
   SurfaceSamples samples;
   for (Eigen::Index v = first; v + margin < rows; v += stride) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <tofmap/core/vector_clones.hpp>
 
@@ -14,10 +15,6 @@ namespace tofmap {
 namespace {
 
 constexpr Eigen::Index reach_px = 2;
-
-/// The slopes must fit on both sides of a pixel this well, besides noise.
-constexpr float largest_bend_m = 0.08F;
-constexpr float bend_sigmas = 4;
 
 /// From this noise on a slope is more noise than slope.
 constexpr float loud_m = 0.1F;
@@ -33,7 +30,7 @@ struct Around {
 };
 
 TOFMAP_VECTOR_CLONES void fill_slopes(int cols, const Around& around_, float wavelength_m,
-                                      float* across_m, float* along_m) {
+                                      float* across_m, float* along_m, float* rough_m) {
   const Around around = around_;
   constexpr float pixels = 2 * reach_px;
 #pragma GCC ivdep
@@ -46,13 +43,16 @@ TOFMAP_VECTOR_CLONES void fill_slopes(int cols, const Around& around_, float wav
     const float right = step(around.right[i] - here);
     const float above = step(here - around.above[i]);
     const float below = step(around.below[i] - here);
-    const float bend_x = left > right ? left - right : right - left;
-    const float bend_y = above > below ? above - below : below - above;
-    const float bend_m = (bend_x > bend_y ? bend_x : bend_y) * wavelength_m;
     const float sigma_m = around.sigma_cycles[i] * wavelength_m;
-    const bool is_smooth = bend_m < largest_bend_m + bend_sigmas * sigma_m && sigma_m < loud_m;
-    across_m[i] = is_smooth ? (left + right) * wavelength_m / pixels : 0.0F;
-    along_m[i] = is_smooth ? (above + below) * wavelength_m / pixels : 0.0F;
+    const float tolerated = tolerated_bend(sigma_m) / wavelength_m;
+    const bool is_smooth =
+        is_straight(left, right, tolerated) && is_straight(above, below, tolerated);
+    const bool has_slope = is_smooth && sigma_m < loud_m;
+    const float across = (left + right) * wavelength_m / pixels;
+    const float along = (above + below) * wavelength_m / pixels;
+    across_m[i] = has_slope ? across : 0.0F;
+    along_m[i] = has_slope ? along : 0.0F;
+    rough_m[i] = is_smooth ? 0.0F : std::sqrt(across * across + along * along);
   }
 }
 
@@ -107,7 +107,7 @@ void copy_padded(const ImageF& image, Eigen::Index row, float* to) {
 SurfaceSlopes::SurfaceSlopes(const ExposurePair& pair, const PairGeometry& geometry)
     : pair_(pair), geometry_(geometry) {
   const auto cols = static_cast<std::size_t>(pair.phase_a.cols());
-  for (auto* plane : {&across_m, &along_m, &gradient_x, &gradient_y, &gradient_z}) {
+  for (auto* plane : {&across_m, &along_m, &rough_m, &gradient_x, &gradient_y, &gradient_z}) {
     plane->assign(cols, 0.0F);
   }
   phase_.resize(cols + 2 * reach_px);
@@ -124,7 +124,8 @@ void SurfaceSlopes::find(Eigen::Index row) {
       static_cast<int>(cols),
       {phase_.data() + reach_px, phase_.data(), phase_.data() + 2 * reach_px, phases + above * cols,
        phases + below * cols, pair_.sigma_a_cycles.data() + row * cols},
-      static_cast<float>(geometry_.limits.wavelength_a_m), across_m.data(), along_m.data());
+      static_cast<float>(geometry_.limits.wavelength_a_m), across_m.data(), along_m.data(),
+      rough_m.data());
   if (!geometry_.knows_camera()) return;
   RowOfRays rays{};
   const std::array<const ImageF*, 3> planes{&geometry_.rays.x, &geometry_.rays.y,

@@ -10,6 +10,19 @@
 
 namespace tofmap {
 
+/// A bend of a range with this noise that is none, metres over four pixels. What a plane seen
+/// aslant bends by is left to `is_straight`.
+inline float tolerated_bend(float sigma_m) { return 0.08F + 4 * sigma_m; }
+
+/// True if a range rises alike on both sides of a pixel: by `before` up to it, and by `after` from
+/// it on. `tolerated` is a bend that is none.
+inline bool is_straight(float before, float after, float tolerated) {
+  constexpr float share_of_rise = 0.25F;
+  const float bend = before > after ? before - after : after - before;
+  const float rise = before + after > 0 ? before + after : -(before + after);
+  return bend < tolerated || bend < share_of_rise * rise;
+}
+
 /// The slope of A's range along one row of the image, from wrapped phases, so that no wrap count is
 /// needed: metres a pixel, and as a gradient on the sphere of rays, metres a radian. 0 where the
 /// surface bends or ends, and where noise would make most of it. Neighbours two pixels away decide;
@@ -20,7 +33,8 @@ class SurfaceSlopes {
 
   void find(Eigen::Index row);
 
-  std::vector<float> across_m, along_m;                   ///< a pixel
+  std::vector<float> across_m, along_m;  ///< a pixel
+  std::vector<float> rough_m;  ///< how steep it is where the surface bends or ends; 0 elsewhere
   std::vector<float> gradient_x, gradient_y, gradient_z;  ///< a radian; 0 without a camera
 
  private:

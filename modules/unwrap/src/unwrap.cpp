@@ -54,6 +54,7 @@ UnwrapResult Unwrapper::unwrap(const MeasuredFrame& measured) {
   };
   UnwrapResult result = unwrap_measured();
   result.errors = measured.errors;
+  result.image.systematic_m = range_systematic_m(measured.errors.camera);
   const auto because_saturated = static_cast<std::uint8_t>(InvalidReason::saturated);
   result.image.reason = (measured.saturated != 0).select(because_saturated, result.image.reason);
   result.phase_noise_cycles = median_phase_noise_cycles(measured);

@@ -21,9 +21,10 @@
 namespace tofmap {
 
 /// A point on a surface as one frame saw it: position in metres, unit normal towards the
-/// camera, standard deviation along the viewing ray and of the normal's direction (radians),
-/// probability that its wrap count is right. A pixel without a point is NaN throughout; one
-/// without a normal (too few neighbours on its surface) has a position and a NaN normal.
+/// camera, standard deviation along the viewing ray (noise and systematic error) and of the
+/// normal's direction (radians), probability that its wrap count is right. A pixel without a
+/// point is NaN throughout; one without a normal (too few neighbours on its surface) has a
+/// position and a NaN normal.
 struct EIGEN_ALIGN16 SurfacePoint {
   PCL_ADD_POINT4D;
   PCL_ADD_NORMAL4D;
@@ -55,9 +56,10 @@ struct CloudOptions {
 /// In inverse depth a plane is linear in the pixel's tangents, q = 1/z = a x + b y + c, at
 /// any slant. Each pixel takes the neighbours in its window that lie on its own surface, as
 /// far as their predicted noise can tell, fits that plane with weights from their noise, and
-/// is moved along its ray onto it; its sigma_m is the fit's. Windows grow where noise alone would
-/// leave the normal less certain than the options allow. `rays` are those of the camera
-/// that took the image. The result does not depend on the number of threads.
+/// is moved along its ray onto it; its sigma_m is the fit's, together with the image's
+/// systematic_m. Windows grow where noise alone would leave the normal less certain than the
+/// options allow. `rays` are those of the camera that took the image. The result does not depend on
+/// the number of threads.
 SurfaceCloud surface_cloud(const RangeImage& image, const PixelRays& rays,
                            const CloudOptions& options);
 

@@ -31,7 +31,7 @@ inline constexpr std::uint8_t invalid_wrap_count = 255;
 /// Unwrapped radial ranges. A pixel is valid or invalid in all planes at once.
 struct RangeImage {
   ImageF range_m;      ///< radial, metres; NaN where invalid
-  ImageF sigma_m;      ///< predicted standard deviation of range_m; NaN where invalid
+  ImageF sigma_m;      ///< predicted standard deviation of the noise of range_m; NaN where invalid
   ImageU8 wrap_count;  ///< whole wavelengths of A added; invalid_wrap_count where invalid
   ImageF confidence;   ///< probability that the wrap count is right, 0 … 1; 0 where invalid
   ImageU8 reason;      ///< InvalidReason as a number; 0 where valid
@@ -39,6 +39,9 @@ struct RangeImage {
   /// too: its noise is not independent of theirs, and one pixel by itself would have the variance
   /// averaged_px · sigma_m². 0 x 0: all pixels are by themselves.
   ImageF averaged_px;
+  /// Standard deviation of the error of valid ranges besides noise, metres, as far as the camera
+  /// shows it: averaging over pixels and frames does not lower it (tofmap/core/range_error.hpp).
+  double systematic_m = 0;
 
   RangeImage() = default;
 
@@ -53,6 +56,12 @@ struct RangeImage {
   /// averaged_px, 1 where pixels are by themselves.
   float averaged(Eigen::Index row, Eigen::Index col) const {
     return averaged_px.size() == 0 ? 1.0F : averaged_px(row, col);
+  }
+
+  /// Variance of a range, noise and systematic error together; NaN where invalid.
+  double variance_m2(Eigen::Index row, Eigen::Index col) const {
+    const double noise_m = sigma_m(row, col);
+    return noise_m * noise_m + systematic_m * systematic_m;
   }
 
   /// Makes the pixel invalid in all planes.

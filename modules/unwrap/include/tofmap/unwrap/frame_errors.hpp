@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 
 #include <Eigen/Core>
 
@@ -26,10 +27,17 @@ struct CameraErrors {
   double periodic_rms_m = 0;  ///< of the periodic part, at the phases that were seen
   double systematic_m = 0;    ///< standard deviation of what μ leaves; averaging does not lower it
   int frames = 0;             ///< that took part; 0: nothing is known
+  int late_frames = 0;        ///< in a row up to the last: B came later than right after A
 
   double offset_m() const { return coefficient_m.front(); }
   double per_decade_m() const { return coefficient_m.back(); }
 };
+
+/// Standard deviation of a range's systematic error, as far as the other frequency tells: both err
+/// alike much and independently, and the mean of both errs no more.
+inline double range_systematic_m(const CameraErrors& camera) {
+  return camera.systematic_m / std::numbers::sqrt2;
+}
 
 /// How the camera moved between the exposures of A and B: to `translation_m`, and by the rotation
 /// vector `rotation_rad`, in the camera frame of A.
@@ -42,7 +50,7 @@ struct ExposureMotion {
 struct FrameErrors {
   CameraErrors camera;  ///< as this frame shows it, on top of the frames before
   ExposureMotion motion;
-  double flow_px = 0;        ///< by how far the motion shifts the image from A to B; median
+  double flow_px = 0;  ///< by how far the motion shifts the image from A to B: most of it by less
   bool used_last_b = false;  ///< the B of the frame before was nearer in time, and took part
   double support =
       0;  ///< share of the pixels that took part whose residual and amplitude are as predicted
