@@ -66,16 +66,14 @@ TOFMAP_VECTOR_CLONES void mark_edges(int count, const float* phase, const float*
                                      const float* before, const float* after, float least_cycles,
                                      std::uint8_t* is_edge) {
   constexpr float sigmas = 4 * 2.45F;  // √6: the noise of a second difference
-  constexpr float share_of_slope = 0.5F;
+  constexpr float share_of_rise = 0.5F;
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
     const bool is_whole = before[i] == before[i] && after[i] == after[i] && phase[i] == phase[i];
     const float rise = to_half_cycle(is_whole ? phase[i] - before[i] : 0.0F);
     const float next = to_half_cycle(is_whole ? after[i] - phase[i] : 0.0F);
-    const float bend = next > rise ? next - rise : rise - next;
-    const float slope = rise + next > 0 ? rise + next : -(rise + next);
-    const float straight = sigmas * sigma_cycles[i] + least_cycles;
-    const bool is_bent = bend > straight && bend > share_of_slope * slope;
+    const float tolerated = sigmas * sigma_cycles[i] + least_cycles;
+    const bool is_bent = is_whole && !is_straight(rise, next, tolerated, share_of_rise);
     is_edge[i] |= is_bent ? 1 : 0;
   }
 }

@@ -15,9 +15,8 @@ namespace tofmap {
 inline float tolerated_bend(float sigma_m) { return 0.08F + 4 * sigma_m; }
 
 /// True if a range rises alike on both sides of a pixel: by `before` up to it, and by `after` from
-/// it on. `tolerated` is a bend that is none.
-inline bool is_straight(float before, float after, float tolerated) {
-  constexpr float share_of_rise = 0.25F;
+/// it on. A bend is none up to `tolerated`, and up to this share of what the range rises by.
+inline bool is_straight(float before, float after, float tolerated, float share_of_rise = 0.25F) {
   const float bend = before > after ? before - after : after - before;
   const float rise = before + after > 0 ? before + after : -(before + after);
   return bend < tolerated || bend < share_of_rise * rise;
