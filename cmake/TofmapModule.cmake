@@ -62,10 +62,11 @@ function(tofmap_add_module name)
 endfunction()
 
 # Has the loops of files of this folder become vector instructions: no error flags of the C library,
-# no traps. Headers precompiled otherwise do not fit these flags.
+# no traps. Headers precompiled otherwise do not fit these flags. Vectors are passed to functions
+# that are inlined alone, so that it does not matter how a processor would pass them.
 function(tofmap_vectorize)
   set_source_files_properties(${ARGN} PROPERTIES
-    COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math" SKIP_PRECOMPILE_HEADERS ON)
+    COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math;-Wno-psabi" SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
 # PCL without its directory-wide flags: a target that carries its include folders

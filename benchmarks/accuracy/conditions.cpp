@@ -82,6 +82,19 @@ Check compare_worst(const Score& value, const Score& reference, double factor) {
           .allowance = standard_errors * counting_error_percent(a, b, factor)};
 }
 
+/// The calibration error against 1 %.
+Check check_calibration(const Score& score) {
+  const auto frames = static_cast<double>(score.frames.size());
+  std::vector<double> errors;
+  for (const FrameScore& frame : score.frames) {
+    errors.push_back(frames * score.calibration.error_percent_of(frame.calibration));
+  }
+  return {.applies = true,
+          .value = score.calibration.error_percent(),
+          .limit = 1,
+          .allowance = standard_errors * standard_error(errors)};
+}
+
 }  // namespace
 
 const char* name_of(Condition condition) {
@@ -111,7 +124,7 @@ Checks check_row(const Grid& grid, const GridRow& row) {
     checks[2] = compare_worst(row.joint, reference, 2);
     checks[3] = compare_means(row.joint, reference, 2, sure_pixels);
   }
-  checks[4] = {.applies = true, .value = row.joint.calibration.error_percent(), .limit = 1};
+  checks[4] = check_calibration(row.joint);
   return checks;
 }
 

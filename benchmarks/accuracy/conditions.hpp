@@ -30,7 +30,8 @@ const char* name_of(Condition condition);
 /// - of counting: wrong wraps are counts of pixels, n of them have a standard error of √n (Poisson)
 ///   as if each pixel were wrong by itself. It matters where there are a few pixels.
 /// If nothing separates the two, a row fails about once in 700 times. A worst frame has the second
-/// alone; calibration errors none, since each comes from hundreds of thousands of pixels.
+/// alone, a calibration error the first alone: wrong wraps come as whole surfaces, so that frames
+/// differ in the share of right ones by much more than pixels that are wrong by themselves would.
 struct Check {
   bool applies = false;  ///< mean_kept, worst_kept and surest_kept: not in ambient light, nor
                          ///< where nothing is wrong

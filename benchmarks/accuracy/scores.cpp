@@ -60,6 +60,15 @@ double Calibration::error_percent() const {
   return all_ > 0 ? 100 * sum / all_ : 0;
 }
 
+double Calibration::error_percent_of(const Calibration& some) const {
+  double sum = 0;
+  for (std::size_t b = 0; b < bins; ++b) {
+    const double excess = some.confidence_[b] - some.right_[b];
+    sum += confidence_[b] > right_[b] ? excess : -excess;
+  }
+  return all_ > 0 ? 100 * sum / all_ : 0;
+}
+
 std::vector<Calibration::Bin> Calibration::reliability() const {
   std::vector<Bin> out;
   for (std::size_t k = 0; k < limits.size(); ++k) {
@@ -117,8 +126,9 @@ void add_frame(const DualFrequencyFrame& frame, const RangeImage& image, const I
     const bool is_wrong = error_m > wavelength_a_m / 2;
     if (!is_wrong) added.square_error_m2 += error_m * error_m;
     pixels.push_back({image.confidence.data()[i], is_wrong});
-    score.calibration.add(image.confidence.data()[i], !is_wrong);
+    added.calibration.add(image.confidence.data()[i], !is_wrong);
   }
+  score.calibration.add(added.calibration);
   added.pixels = static_cast<double>(pixels.size());
   added.wrong = count_wrong(pixels, pixels.size());
   std::ranges::stable_sort(pixels, std::ranges::greater(), &Pixel::confidence);

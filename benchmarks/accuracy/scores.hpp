@@ -10,21 +10,6 @@
 
 namespace tofmap::accuracy {
 
-/// Pixels of one frame. A wrap is wrong if the range is off by more than half a wavelength of A.
-struct FrameScore {
-  double returns = 0;          ///< with a phase at both frequencies, and a truth
-  double pixels = 0;           ///< of these, with a range
-  double wrong = 0;            ///< of these, with a wrong wrap
-  double sure = 0;             ///< the most confident ones, 90 % of the returns
-  double sure_wrong = 0;       ///< of these, with a wrong wrap
-  double square_error_m2 = 0;  ///< sum over the pixels with a right wrap
-  bool is_converged = false;   ///< no curl is left; of methods of phase jumps
-  double milliseconds = 0;
-
-  double wrong_percent() const { return pixels > 0 ? 100 * wrong / pixels : 0; }
-  double sure_wrong_percent() const { return sure > 0 ? 100 * sure_wrong / sure : 0; }
-};
-
 /// Shares of right wraps against confidences, in 20 bins.
 class Calibration {
  public:
@@ -33,6 +18,10 @@ class Calibration {
 
   /// Mean difference between confidence and share of right wraps, weighted by pixels.
   double error_percent() const;
+
+  /// What some of these pixels, those of one frame, add to error_percent(): its sum over all
+  /// frames.
+  double error_percent_of(const Calibration& some) const;
 
   /// The pixels whose confidence is at least c_k and less than c_(k+1); the last bin has no end.
   struct Bin {
@@ -60,6 +49,22 @@ class Calibration {
   std::array<double, bins> confidence_{};
   std::array<double, bins> right_{};
   double all_ = 0;
+};
+
+/// Pixels of one frame. A wrap is wrong if the range is off by more than half a wavelength of A.
+struct FrameScore {
+  double returns = 0;          ///< with a phase at both frequencies, and a truth
+  double pixels = 0;           ///< of these, with a range
+  double wrong = 0;            ///< of these, with a wrong wrap
+  double sure = 0;             ///< the most confident ones, 90 % of the returns
+  double sure_wrong = 0;       ///< of these, with a wrong wrap
+  double square_error_m2 = 0;  ///< sum over the pixels with a right wrap
+  bool is_converged = false;   ///< no curl is left; of methods of phase jumps
+  double milliseconds = 0;
+  Calibration calibration;
+
+  double wrong_percent() const { return pixels > 0 ? 100 * wrong / pixels : 0; }
+  double sure_wrong_percent() const { return sure > 0 ? 100 * sure_wrong / sure : 0; }
 };
 
 /// All frames of a case.

@@ -30,8 +30,13 @@ CountBeliefs beliefs_against(const std::vector<float>& others) {
 
 /// The confidence where all pixels have this noise, a share of the residual step.
 ImageF confidence_at(const CountBeliefs& beliefs, float noise_share) {
+  const BeatLimits limits = beat_limits({.modulation = {29e6, 31e6}}, 0);
+  const double cycles =
+      noise_share * residual_step_m(limits) / (std::numbers::sqrt2 * limits.wavelength_a_m);
   return count_confidence(
-      beliefs, ImageF::Constant(beliefs.count.rows(), beliefs.count.cols(), noise_share));
+      beliefs,
+      ImageF::Constant(beliefs.count.rows(), beliefs.count.cols(), static_cast<float>(cycles)),
+      limits);
 }
 
 /// Noise of all sizes, as shares of the residual step.

@@ -3,11 +3,13 @@
 
 #include "ambient_noise.hpp"
 
+#include "fast_math.hpp"
 #include "phase_differences.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 #include <tofmap/core/vector_clones.hpp>
@@ -15,7 +17,7 @@
 namespace tofmap {
 namespace {
 
-constexpr Eigen::Index block_px = 16;
+constexpr int block_px = 16;
 
 /// Standard deviations below which half of all normal numbers lie, and nearly all.
 constexpr float half_sigmas = 0.6745F;
@@ -23,22 +25,22 @@ constexpr float most_sigmas = 2.5F;
 
 /// Differences of one block: how many there are, and how many are small.
 struct Shares {
-  float all = 0;
-  float below_half = 0;
-  float below_most = 0;
+  int all = 0;
+  int below_half = 0;
+  int below_most = 0;
 };
 
 /// Rows of 1 and 0: is there a difference, and is it below each limit.
 TOFMAP_VECTOR_CLONES void compare(int count, const float* cycles, const float* relative_sigma,
-                                  float scale, float* present, float* below_half,
-                                  float* below_most) {
+                                  float scale, int* present, int* below_half, int* below_most) {
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
     const float size = cycles[i] < 0 ? -cycles[i] : cycles[i];
     const float sigma = scale * relative_sigma[i];
-    present[i] = sigma < 1e9F ? 1.0F : 0.0F;
-    below_half[i] = size < half_sigmas * sigma && sigma < 1e9F ? 1.0F : 0.0F;
-    below_most[i] = size < most_sigmas * sigma && sigma < 1e9F ? 1.0F : 0.0F;
+    const int is_present = sigma < 1e9F ? 1 : 0;
+    present[i] = is_present;
+    below_half[i] = size < half_sigmas * sigma ? is_present : 0;
+    below_most[i] = size < most_sigmas * sigma ? is_present : 0;
   }
 }
 
@@ -62,9 +64,9 @@ class BlockShares {
     const auto width = static_cast<std::size_t>(phase.cols());
     std::vector<float> cycles(width);
     std::vector<float> sigma(width);
-    std::vector<float> present(width);
-    std::vector<float> below_half(width);
-    std::vector<float> below_most(width);
+    std::vector<int> present(width);
+    std::vector<int> below_half(width);
+    std::vector<int> below_most(width);
     // Of 8000 differences in a direction some 300 are in a block, which tell its noise to a tenth.
     constexpr Eigen::Index enough = 8000;
     const Eigen::Index step = std::max<Eigen::Index>(1, phase.size() / enough);
@@ -73,13 +75,15 @@ class BlockShares {
                                          cycles.data(), sigma.data());
       compare(count, cycles.data(), sigma.data(), static_cast<float>(scale), present.data(),
               below_half.data(), below_most.data());
-      for (int i = 0; i < count; ++i) {
-        const Eigen::Index block = (v / block_px) * cols_ + i / block_px;
-        Shares& shares = shares_[static_cast<std::size_t>(block)];
-        const auto at = static_cast<std::size_t>(i);
-        shares.all += present[at];
-        shares.below_half += below_half[at];
-        shares.below_most += below_most[at];
+      Shares* block = &shares_[static_cast<std::size_t>(v / block_px * cols_)];
+      for (int first = 0; first < count; first += block_px, ++block) {
+        const int end = std::min(first + block_px, count);
+        const auto sum = [&](const std::vector<int>& flags) {
+          return std::accumulate(flags.begin() + first, flags.begin() + end, 0);
+        };
+        block->all += sum(present);
+        block->below_half += sum(below_half);
+        block->below_most += sum(below_most);
       }
     }
   }
@@ -110,16 +114,19 @@ double solve(const Function& function, double value) {
 
 /// The factor of a block's noise; 1 where nothing else is certain.
 double factor_of(const Shares& shares) {
-  constexpr float enough = 60;
+  constexpr int enough = 60;
   constexpr double certain = 1.4;     // more than chance and curved surfaces make of it
   constexpr double flat_ratio = 0.3;  // from here on the ratio does not tell edges apart
   if (shares.all < enough) return 1;
-  const double below_half = shares.below_half / shares.all;
+  const double below_half = static_cast<double>(shares.below_half) / shares.all;
+  static const double if_quieter = share_below(half_sigmas, 1 / certain);
+  static const double if_louder = share_below(half_sigmas, certain);
+  if (below_half <= if_quieter && below_half >= if_louder) return 1;
   const double by_half =
       solve([](double sigma) { return share_below(half_sigmas, sigma); }, below_half);
-  if (by_half < 1) return by_half < 1 / certain ? by_half : 1;
+  if (by_half < 1) return by_half;
   // Differences across edges lie above both limits, and leave the ratio of the shares as it is.
-  const double ratio = shares.below_half / std::max(shares.below_most, 1.0F);
+  const double ratio = static_cast<double>(shares.below_half) / std::max(shares.below_most, 1);
   const double by_ratio = ratio < flat_ratio ? by_half
                                              : solve(
                                                    [](double sigma) {
@@ -131,26 +138,52 @@ double factor_of(const Shares& shares) {
   return factor > certain ? factor : 1;
 }
 
-/// Bilinear between the centres of blocks.
-ImageF interpolated(const ImageF& blocks, Eigen::Index rows, Eigen::Index cols) {
+/// Between which blocks' centres a pixel of a row or column lies, and how near to the later one.
+struct Between {
+  Eigen::Index before;
+  Eigen::Index after;
+  float share;
+
+  Between(Eigen::Index pixel, Eigen::Index blocks) {
+    const Eigen::Index shifted = pixel + block_px / 2;
+    after = std::min(shifted / block_px, blocks - 1);
+    before = std::max<Eigen::Index>(shifted / block_px - 1, 0);
+    share = (static_cast<float>(shifted % block_px) + 0.5F) / block_px;
+  }
+};
+
+/// exp of numbers between the centres of the blocks of one row.
+TOFMAP_VECTOR_CLONES void fill_factors(int cols, const float* before, const float* after,
+                                       const float* share, float* factors) {
+#pragma GCC ivdep
+  for (int i = 0; i < cols; ++i) {
+    const float logarithm = before[i] + share[i] * (after[i] - before[i]);
+    const float lesser = exp_of_negative(logarithm < 0 ? logarithm : -logarithm);
+    factors[i] = logarithm < 0 ? lesser : 1 / lesser;
+  }
+}
+
+/// exp of an image, bilinear between the centres of blocks.
+ImageF exp_between(const ImageF& blocks, Eigen::Index rows, Eigen::Index cols) {
   ImageF out(rows, cols);
-  const auto place = [](Eigen::Index pixel, Eigen::Index count) {
-    const float at = (static_cast<float>(pixel) + 0.5F) / block_px - 0.5F;
-    return std::clamp(at, 0.0F, static_cast<float>(count - 1));
-  };
+  std::vector<Between> across;
+  Eigen::ArrayXf share(cols);
+  for (Eigen::Index u = 0; u < cols; ++u) {
+    share[u] = across.emplace_back(u, blocks.cols()).share;
+  }
+  Eigen::ArrayXf before(cols);
+  Eigen::ArrayXf after(cols);
   for (Eigen::Index v = 0; v < rows; ++v) {
-    const float y = place(v, blocks.rows());
-    const auto row = static_cast<Eigen::Index>(y);
-    const Eigen::Index next_row = std::min(row + 1, blocks.rows() - 1);
-    const float down = y - static_cast<float>(row);
+    const Between along(v, blocks.rows());
+    const Eigen::ArrayXf row = (1 - along.share) * blocks.row(along.before).transpose() +
+                               along.share * blocks.row(along.after).transpose();
     for (Eigen::Index u = 0; u < cols; ++u) {
-      const float x = place(u, blocks.cols());
-      const auto col = static_cast<Eigen::Index>(x);
-      const Eigen::Index next_col = std::min(col + 1, blocks.cols() - 1);
-      const float right = x - static_cast<float>(col);
-      out(v, u) = (1 - down) * ((1 - right) * blocks(row, col) + right * blocks(row, next_col)) +
-                  down * ((1 - right) * blocks(next_row, col) + right * blocks(next_row, next_col));
+      const Between& place = across[static_cast<std::size_t>(u)];
+      before[u] = row[place.before];
+      after[u] = row[place.after];
     }
+    fill_factors(static_cast<int>(cols), before.data(), after.data(), share.data(),
+                 out.data() + v * cols);
   }
   return out;
 }
@@ -170,7 +203,7 @@ ImageF find_ambient_noise(const DualFrequencyFrame& frame, const PhaseNoise& noi
     }
   }
   if ((logarithms == 0).all()) return {};
-  return interpolated(logarithms, frame.phase_a.rows(), frame.phase_a.cols()).exp();
+  return exp_between(logarithms, frame.phase_a.rows(), frame.phase_a.cols());
 }
 
 }  // namespace tofmap

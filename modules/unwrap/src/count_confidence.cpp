@@ -52,15 +52,17 @@ constexpr auto bent_lines = [] {
   return lines;
 }();
 
-/// Beliefs in the chosen counts and in all others, and noise as a share of the residual step.
+/// Beliefs in the chosen counts and in all others, and noise.
 struct Pixels {
   const float* best;
   const float* others;
-  const float* noise_share;
+  const float* sigma_a_cycles;
   const std::uint8_t* counts;
 };
 
-TOFMAP_VECTOR_CLONES void fill_confidence(int count, const Pixels& pixels_, float* confidence) {
+/// `steps_per_cycle`: the noise of the residual over the residual step, for a noise of one cycle.
+TOFMAP_VECTOR_CLONES void fill_confidence(int count, const Pixels& pixels_, float steps_per_cycle,
+                                          float* confidence) {
   const Pixels pixels = pixels_;
   constexpr float least = 1e-37F;  // smaller numbers are no normal floats
   constexpr auto last_curve = static_cast<float>(curves.size() - 1);
@@ -68,14 +70,17 @@ TOFMAP_VECTOR_CLONES void fill_confidence(int count, const Pixels& pixels_, floa
   for (int i = 0; i < count; ++i) {
     const float other = pixels.others[i] > least ? pixels.others[i] : least;
     const float believed = std::numbers::ln2_v<float> * (log2_of(pixels.best[i]) - log2_of(other));
-    const float share = pixels.noise_share[i] > least ? pixels.noise_share[i] : least;
+    const float noise = steps_per_cycle * pixels.sigma_a_cycles[i];
+    const float share = noise > least ? noise : least;
     const float place = (log2_of(share) - first_noise_octaves) / curve_octaves;
     const float at_least_first = place > 0 ? place : 0;
     const float curve = at_least_first < last_curve ? at_least_first : last_curve;
     float right = 0;
+#pragma GCC unroll 8
     for (std::size_t c = 0; c < curves.size(); ++c) {
       const BentLine& line = bent_lines[c];
       float odds = line.start + line.slope * (believed - believed_odds[0]);
+#pragma GCC unroll 8
       for (std::size_t k = 0; k < line.bends.size(); ++k) {
         const float beyond = believed - believed_odds[k + 1];
         odds += line.bends[k] * (beyond > 0 ? beyond : 0);
@@ -92,12 +97,15 @@ TOFMAP_VECTOR_CLONES void fill_confidence(int count, const Pixels& pixels_, floa
 
 }  // namespace
 
-ImageF count_confidence(const CountBeliefs& beliefs, const ImageF& noise_share) {
+ImageF count_confidence(const CountBeliefs& beliefs, const ImageF& sigma_a_cycles,
+                        const BeatLimits& limits) {
+  const double steps_per_cycle =
+      std::numbers::sqrt2 * limits.wavelength_a_m / residual_step_m(limits);
   ImageF confidence(beliefs.count.rows(), beliefs.count.cols());
   fill_confidence(static_cast<int>(confidence.size()),
-                  {beliefs.probability.data(), beliefs.other_probability.data(), noise_share.data(),
-                   beliefs.count.data()},
-                  confidence.data());
+                  {beliefs.probability.data(), beliefs.other_probability.data(),
+                   sigma_a_cycles.data(), beliefs.count.data()},
+                  static_cast<float>(steps_per_cycle), confidence.data());
   return confidence;
 }
 

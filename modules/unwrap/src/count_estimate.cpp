@@ -33,14 +33,9 @@ float phase_of(std::complex<float> sum) {
 }
 
 bool is_loud(const PhaseSigma& sigma) {
-  int returns = 0;
-  int loud = 0;
-  for (const float cycles : sigma.a_cycles.reshaped()) {
-    if (std::isnan(cycles)) continue;
-    ++returns;
-    loud += cycles > loud_cycles ? 1 : 0;
-  }
-  return static_cast<float>(loud) > loud_share * static_cast<float>(returns);
+  const auto returns = static_cast<float>((sigma.a_cycles == sigma.a_cycles).count());
+  const auto loud = static_cast<float>((sigma.a_cycles > loud_cycles).count());
+  return loud > loud_share * returns;
 }
 
 /// The count that brings the pixel nearest to the range of a block, both in cycles.

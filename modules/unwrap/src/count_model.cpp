@@ -48,13 +48,14 @@ struct Sharpness {
   std::array<float, evidence_rows> height;     ///< density of the beat at the true count
 };
 
-/// Returns the least precision of pixels with a return.
+/// Returns the least precision of the pixels whose beat tells anything.
 TOFMAP_VECTOR_CLONES float fill_sharpness(const Pixels& pixels_, const EvidenceScale& scale,
                                           Sharpness& out) {
   const Pixels pixels = pixels_;
   const float squared_b = scale.wavelength_b_m * scale.wavelength_b_m;
   float* precision = out.precision.data();
   float* height = out.height.data();
+  constexpr float least_telling = 1e-3F;  // a noise of thirty cycles
   std::array<float, DiagonalLayout::lanes> least;
   least.fill(largest_ratio);
   for (int i = 0; i < pixels.rows; i += DiagonalLayout::lanes) {
@@ -64,7 +65,7 @@ TOFMAP_VECTOR_CLONES float fill_sharpness(const Pixels& pixels_, const EvidenceS
       const float sharp = squared_b / variance;
       precision[i + k] = sharp;
       height[i + k] = std::sqrt(sharp * (0.5F / std::numbers::pi_v<float>));
-      const float counted = variance < largest_ratio ? sharp : largest_ratio;
+      const float counted = sharp > least_telling ? sharp : largest_ratio;
       float& lane = least[static_cast<std::size_t>(k)];
       lane = counted < lane ? counted : lane;
     }
@@ -145,13 +146,13 @@ struct Cross {
   const float* below;
 };
 
-/// True if an amplitude lies between those of two opposite neighbours, at least `step` from both.
-[[gnu::always_inline]] inline bool lies_between(float one, float here, float other, float step) {
+/// How far an amplitude lies between those of two opposite neighbours: from the nearer of both.
+[[gnu::always_inline]] inline float depth_between(float one, float here, float other) {
   const float from_one = here - one;
   const float to_other = other - here;
   const float lesser = from_one < to_other ? from_one : to_other;
   const float greater = from_one < to_other ? to_other : from_one;
-  return lesser > step || greater < -step;
+  return lesser > -greater ? lesser : -greater;
 }
 
 /// 1 for pixels that see two surfaces, else 0.
@@ -169,9 +170,9 @@ TOFMAP_VECTOR_CLONES void find_mixed(int count, const Cross& cross_, const float
     const float contrast = least_contrast * here;
     const float noise = per_sigma * sigma_cycles[i] * here;
     const float step = contrast > noise ? contrast : noise;
-    const bool across = lies_between(cross.left[i], here, cross.right[i], step);
-    const bool along = lies_between(cross.above[i], here, cross.below[i], step);
-    mixed[i] = across || along ? 1.0F : 0.0F;
+    const float across = depth_between(cross.left[i], here, cross.right[i]);
+    const float along = depth_between(cross.above[i], here, cross.below[i]);
+    mixed[i] = (across > along ? across : along) > step ? 1.0F : 0.0F;
   }
 }
 

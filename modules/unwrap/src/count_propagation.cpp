@@ -6,7 +6,10 @@
 #include "fast_math.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 #include <tofmap/core/range_image.hpp>
 #include <tofmap/core/vector_clones.hpp>
@@ -56,7 +59,7 @@ struct Block {
   Edge first;
   Edge second;
   float direction;  ///< −1 where the edges are stored the other way: their steps change sign
-  float* scratch;   ///< room for 2 (counts + 2) rows; the first and the last of each half are 0
+  float* scratch;   ///< room for 2 (counts + 1) vectors; the last of each half is 0
 };
 
 /// What a block's pixels have for one count: their evidence, and the messages of all neighbours.
@@ -73,6 +76,15 @@ struct Factors {
         in_second(block.in_second[count]),
         back_first(block.first.back[count]),
         back_second(block.second.back[count]) {}
+
+  /// Asks memory for what comes after `row`: there are more planes than the processor follows by
+  /// itself.
+  [[gnu::always_inline]] void prefetch(int row) const {
+    constexpr int ahead = 64;
+    for (const HalfFloat* plane : {evidence, in_first, in_second, back_first, back_second}) {
+      __builtin_prefetch(plane + row + ahead);
+    }
+  }
 };
 
 /// What persists between blocks. A message along an edge has its place at the right or lower pixel
@@ -123,60 +135,99 @@ Block block_at(const CountModel& model, const Buffers& buffers, Sweep sweep, int
           buffers.scratch};
 }
 
-/// Equation 16, for the messages along one edge. `weighted` holds what remains of the beliefs
-/// without the message the other way.
-[[gnu::always_inline]] inline void send(const Block& block, const Edge& edge, const float* weighted,
-                                        const Row& sum) {
-  const int lanes = block.lanes;
-  Row scale;
-  Row up;
-  Row down;
-#pragma GCC ivdep
-  for (int i = 0; i < lanes; ++i) {
-    const float step = block.direction * edge.next[i];
-    up[i] = step > 0 ? step : 0;
-    down[i] = step < 0 ? -step : 0;
-    scale[i] = 1 / (sum[i] * (1 + edge.same[i] + up[i] + down[i]));
+/// Makes products of two messages, 1e-24 … 1, so large that products of two such are normal
+/// numbers.
+constexpr float large = 0x1p40F;
+
+/// Numbers of as many pixels as fit into one vector of the layout: each stays in a register while
+/// loops go through the counts.
+using Lanes [[gnu::vector_size(DiagonalLayout::lanes * sizeof(float))]] = float;
+using LaneBits [[gnu::vector_size(sizeof(Lanes))]] = std::uint32_t;
+using LaneHalves [[gnu::vector_size(sizeof(Lanes) / 2)]] = HalfFloat;
+
+template <class Vector, class Number>
+[[gnu::always_inline]] inline Vector load(const Number* from) {
+  Vector vector;
+  std::memcpy(&vector, from, sizeof(vector));
+  return vector;
+}
+
+template <class Vector, class Number>
+[[gnu::always_inline]] inline void store(const Vector& vector, Number* to) {
+  std::memcpy(to, &vector, sizeof(vector));
+}
+
+[[gnu::always_inline]] inline Lanes widened_lanes(const HalfFloat* from) {
+  std::array<std::uint32_t, DiagonalLayout::lanes> bits;
+  for (std::size_t k = 0; k < bits.size(); ++k) {
+    bits[k] = static_cast<std::uint32_t>(from[k]) << 16U;
   }
-  const float* same = edge.same;
+  return std::bit_cast<Lanes>(bits);
+}
+
+[[gnu::always_inline]] inline void store_halved(const Lanes& lanes, HalfFloat* to) {
+  const LaneBits rounded = (std::bit_cast<LaneBits>(lanes) + 0x8000U) >> 16U;
+  store(__builtin_convertvector(rounded, LaneHalves), to);
+}
+
+/// 1 / √x of positive normal numbers, to 5e-6: Newton's method, begun with half the exponent.
+[[gnu::always_inline]] inline Lanes inverse_root_of(const Lanes& x) {
+  const Lanes half = 0.5F * x;
+  Lanes root = std::bit_cast<Lanes>(0x5f375a86U - (std::bit_cast<LaneBits>(x) >> 1U));
+  root *= 1.5F - half * root * root;
+  root *= 1.5F - half * root * root;
+  return root;
+}
+
+/// Equation 16, for the messages along one edge of the pixels from `row` of a block on. `weighted`
+/// holds what remains of their beliefs without the message the other way, count by count, and a
+/// vector of 0.
+[[gnu::always_inline]] inline void send(const Block& block, const Edge& edge, int row,
+                                        const float* weighted, const Lanes& sum) {
+  const Lanes none{};
+  const auto same = load<Lanes>(edge.same + row);
+  const Lanes step = block.direction * load<Lanes>(edge.next + row);
+  const Lanes up = step > none ? step : none;
+  const Lanes down = step < none ? -step : none;
+  const Lanes scale = 1.0F / (sum * (1.0F + same + up + down));
+  Lanes before = none;
+  auto here = load<Lanes>(weighted);
   for (int n = 0; n < block.counts; ++n) {
-    const float* at = weighted + n * block_rows;
-    HalfFloat* out = edge.out[n];
-#pragma GCC ivdep
-    for (int i = 0; i < lanes; ++i) {
-      const float total =
-          sum[i] + same[i] * at[i] + up[i] * at[i - block_rows] + down[i] * at[i + block_rows];
-      const float message = std::sqrt(total * scale[i]);
-      out[i] = halved(message);
-    }
+    const auto after = load<Lanes>(weighted + (n + 1) * DiagonalLayout::lanes);
+    const Lanes total = sum + same * here + up * before + down * after;
+    store_halved(total * scale, edge.out[n] + row);
+    before = here;
+    here = after;
   }
 }
 
 /// Builds and sends the messages of a block.
-TOFMAP_VECTOR_CLONES void send_block(const Block& block) {
-  const int lanes = block.lanes;
-  float* first = block.scratch + block_rows;
-  float* second = first + (block.counts + 2) * block_rows;
-  Row sum_first{};
-  Row sum_second{};
-  for (int n = 0; n < block.counts; ++n) {
-    const Factors of(block, n);
-    float* weighted_first = first + n * block_rows;
-    float* weighted_second = second + n * block_rows;
-#pragma GCC ivdep
-    for (int i = 0; i < lanes; ++i) {
-      const float to_first = widened(of.back_first[i]);
-      const float to_second = widened(of.back_second[i]);
-      const float shared = widened(of.evidence[i]) * widened(of.in_first[i]) *
-                           widened(of.in_second[i]) / (to_first * to_second);
-      weighted_first[i] = shared * to_second * to_second;
-      weighted_second[i] = shared * to_first * to_first;
-      sum_first[i] += weighted_first[i];
-      sum_second[i] += weighted_second[i];
+TOFMAP_VECTOR_CLONES void send_block(const Block& block_) {
+  const Block block = block_;
+  float* first = block.scratch;
+  float* second = first + (block.counts + 1) * DiagonalLayout::lanes;
+  for (int i = 0; i < block.lanes; i += DiagonalLayout::lanes) {
+    Lanes sum_first{};
+    Lanes sum_second{};
+    for (int n = 0; n < block.counts; ++n) {
+      const Factors of(block, n);
+      of.prefetch(i);
+      const Lanes to_first = widened_lanes(of.back_first + i);
+      const Lanes to_second = widened_lanes(of.back_second + i);
+      // √(in / out) = in / √(in · out).
+      const Lanes in = large * widened_lanes(of.in_first + i) * widened_lanes(of.in_second + i);
+      const Lanes out = large * to_first * to_second;
+      const Lanes shared = widened_lanes(of.evidence + i) * in * inverse_root_of(in * out);
+      const Lanes without_first = shared * to_second;
+      const Lanes without_second = shared * to_first;
+      store(without_first, first + n * DiagonalLayout::lanes);
+      store(without_second, second + n * DiagonalLayout::lanes);
+      sum_first += without_first;
+      sum_second += without_second;
     }
+    send(block, block.first, i, first, sum_first);
+    send(block, block.second, i, second, sum_second);
   }
-  send(block, block.first, first, sum_first);
-  send(block, block.second, second, sum_second);
 }
 
 /// The largest difference between messages along one edge of each pixel and what they were.
@@ -188,7 +239,7 @@ TOFMAP_VECTOR_CLONES float largest_change(const Block& block, const Planes<const
     const HalfFloat* other = before[n];
 #pragma GCC ivdep
     for (int i = 0; i < block.lanes; ++i) {
-      const float change = std::abs(widened(one[i]) - widened(other[i]));
+      const float change = std::abs(std::sqrt(widened(one[i])) - std::sqrt(widened(other[i])));
       largest[i] = change > largest[i] ? change : largest[i];
     }
   }
@@ -205,39 +256,43 @@ struct BlockBeliefs {
 };
 
 /// Equation 15, where all messages have come in.
-TOFMAP_VECTOR_CLONES void read_block(const Block& block, BlockBeliefs& out) {
-  const int lanes = block.lanes;
-  Row sum{};
-  out.best.fill(-1);
-  out.rival.fill(0);
-  out.rival_count.fill(0);
-  out.others.fill(0);
-  for (int n = 0; n < block.counts; ++n) {
-    const Factors of(block, n);
-    const auto count = static_cast<float>(n);
-#pragma GCC ivdep
-    for (int i = 0; i < lanes; ++i) {
-      const float belief = widened(of.evidence[i]) * widened(of.in_first[i]) *
-                           widened(of.in_second[i]) * widened(of.back_first[i]) *
-                           widened(of.back_second[i]);
-      sum[i] += belief;
-      const bool is_best = belief > out.best[i];
-      const float overtaken = out.best[i] > 0 ? out.best[i] : 0;
-      out.others[i] += is_best ? overtaken : belief;
-      const bool is_rival = belief > out.rival[i];
-      const float beaten = is_rival ? belief : out.rival[i];
-      const float beaten_count = is_rival ? count : out.rival_count[i];
-      out.rival[i] = is_best ? out.best[i] : beaten;
-      out.rival_count[i] = is_best ? out.best_count[i] : beaten_count;
-      out.best[i] = is_best ? belief : out.best[i];
-      out.best_count[i] = is_best ? count : out.best_count[i];
+TOFMAP_VECTOR_CLONES void read_block(const Block& block_, BlockBeliefs& out) {
+  const Block block = block_;
+  const Lanes none{};
+  for (int i = 0; i < block.lanes; i += DiagonalLayout::lanes) {
+    Lanes best = none - 1.0F;
+    Lanes rival = none - 1.0F;
+    Lanes best_count = none;
+    Lanes rival_count = none;
+    Lanes sum = none;
+    Lanes others = none;
+    for (int n = 0; n < block.counts; ++n) {
+      const Factors of(block, n);
+      of.prefetch(i);
+      const Lanes in = large * widened_lanes(of.in_first + i) * widened_lanes(of.in_second + i);
+      const Lanes back =
+          large * widened_lanes(of.back_first + i) * widened_lanes(of.back_second + i);
+      // √(in · back) = x / √x.
+      const Lanes belief = widened_lanes(of.evidence + i) * in * back * inverse_root_of(in * back);
+      const Lanes count = none + static_cast<float>(n);
+      sum += belief;
+      const auto is_best = belief > best;
+      const auto is_rival = belief > rival;
+      const Lanes overtaken = best > none ? best : none;
+      const Lanes beaten = is_rival ? belief : rival;
+      const Lanes beaten_count = is_rival ? count : rival_count;
+      others += is_best ? overtaken : belief;
+      rival_count = is_best ? best_count : beaten_count;
+      rival = is_best ? best : beaten;
+      best_count = is_best ? count : best_count;
+      best = is_best ? belief : best;
     }
-  }
-#pragma GCC ivdep
-  for (int i = 0; i < lanes; ++i) {
-    out.others[i] /= sum[i];
-    out.best[i] /= sum[i];
-    out.rival[i] = (out.rival[i] > 0 ? out.rival[i] : 0) / sum[i];
+    const auto write = [i](const Lanes& lanes, Row& row) { store(lanes, row.data() + i); };
+    write(best / sum, out.best);
+    write((rival > none ? rival : none) / sum, out.rival);
+    write(others / sum, out.others);
+    write(best_count, out.best_count);
+    write(rival_count, out.rival_count);
   }
 }
 
@@ -245,7 +300,7 @@ TOFMAP_VECTOR_CLONES void read_block(const Block& block, BlockBeliefs& out) {
 
 void CountPropagation::reset(const CountModel& model) {
   const std::size_t size = model.layout().size(static_cast<std::size_t>(model.counts()));
-  scratch_.assign(2 * static_cast<std::size_t>(model.counts() + 2) * block_rows, 0.0F);
+  scratch_.assign(2 * static_cast<std::size_t>((model.counts() + 1) * DiagonalLayout::lanes), 0.0F);
   ones_.assign(block_rows, half_one);
   if (rows_ == model.layout().rows() && cols_ == model.layout().cols() &&
       counts_ == model.counts()) {

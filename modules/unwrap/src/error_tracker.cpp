@@ -244,8 +244,8 @@ void ErrorTracker::learn(const TermsMatrix& information, const Terms& gradient,
   ++camera_errors_.frames;
 }
 
-/// Where the image has moved by pixels from A to B, the last frame's B may have been taken from a
-/// place that is nearer, and shows what this frame's does not.
+/// Where the image has moved by pixels from A to B, and B comes late, the last frame's B may have
+/// been taken from a place that is nearer, and shows what this frame's does not.
 void ErrorTracker::match_moved(const SurfaceSamples& samples, const ExposurePair& pair,
                                const PairGeometry& geometry, Tracked& tracked) {
   const CameraErrors& camera = tracked.errors.camera;
@@ -253,7 +253,8 @@ void ErrorTracker::match_moved(const SurfaceSamples& samples, const ExposurePair
     match_exposure(pair, geometry, camera, {tracked.errors.motion, tracked.errors.flow_px},
                    tracked.b);
   };
-  if (!same_size(last_.phase, pair.phase_b) || !pair.has_amplitude()) return match_own();
+  const bool has_last = same_size(last_.phase, pair.phase_b) && pair.has_amplitude();
+  if (!has_last || camera_errors_.late_frames == 0) return match_own();
   const ExposurePair with_last{pair.phase_a, pair.amplitude_a, pair.sigma_a_cycles,
                                last_.phase,  last_.amplitude,  last_.sigma_cycles};
   ResidualFit last(samples, with_last, geometry, camera, late_exposures);

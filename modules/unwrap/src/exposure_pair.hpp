@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
 #include <Eigen/Core>
 
@@ -56,27 +55,14 @@ struct ExposureWarp {
 void warp(const ExposureWarp& warp, int count, const float* ray_x, const float* ray_y,
           const float* ray_z, const float* range_m, float* col, float* row, float* shrinkage_m);
 
-/// μ of CameraErrors, by tables of the phases.
-class CameraErrorTable {
- public:
-  explicit CameraErrorTable(const CameraErrors& errors);
-
-  static constexpr int size = 256;
-  const float* of_a() const { return of_a_.data(); }  ///< with the offset
-  const float* of_b() const { return of_b_.data(); }
-  float per_decade_m() const { return per_decade_m_; }
-  float reference_amplitude() const { return reference_amplitude_; }
-
- private:
-  std::vector<float> of_a_;
-  std::vector<float> of_b_;
-  float per_decade_m_;
-  float reference_amplitude_;
-};
-
 /// μ of `count` pixels; `amplitude` may be null. Phases that are NaN give any finite number.
-void predict_camera_errors(const CameraErrorTable& table, int count, const float* phase_a,
+void predict_camera_errors(const CameraErrors& errors, int count, const float* phase_a,
                            const float* phase_b, const float* amplitude_a, float* mean_m);
+
+/// The two parts of it: without what depends on B's phase, and that, which is added.
+void predict_errors_of_a(const CameraErrors& errors, int count, const float* phase_a,
+                         const float* amplitude_a, float* mean_m);
+void add_errors_of_b(const CameraErrors& errors, int count, const float* phase_b, float* mean_m);
 
 /// The count whose residual is nearest to what is predicted of it, for `count` pixels: the residual
 /// minus `predicted_m`, metres, and the range that the count gives to A. Phases that are NaN give a

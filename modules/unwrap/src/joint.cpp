@@ -7,8 +7,6 @@
 #include "counted_ranges.hpp"
 #include "tofmap/unwrap/range_fusion.hpp"
 
-#include <numbers>
-
 namespace tofmap {
 namespace {
 
@@ -20,13 +18,6 @@ CountEstimation count_estimation(const UnwrapOptions& options) {
                     .mixed_pixels = options.mixed_pixels},
           .iterations = options.count_iterations,
           .scales = options.scales};
-}
-
-/// The noise of the residual over the residual step, as if both frequencies had A's: B may be of
-/// another exposure.
-ImageF noise_share(const MeasuredFrame& frame, const BeatLimits& limits) {
-  const double per_cycle = std::numbers::sqrt2 * limits.wavelength_a_m / residual_step_m(limits);
-  return static_cast<float>(per_cycle) * frame.sigma.a_cycles;
 }
 
 /// Makes pixels invalid that have a rival count which the pair of frequencies cannot tell from
@@ -49,7 +40,7 @@ UnwrapResult unwrap_jointly(CountEstimator& estimator, const MeasuredFrame& fram
                             const BeatLimits& limits, const UnwrapOptions& options) {
   const CountBeliefs beliefs = estimator.estimate(
       frame.returns, limits, frame.sigma, frame.residual_sigma_m, count_estimation(options));
-  const ImageF confidence = count_confidence(beliefs, noise_share(frame, limits));
+  const ImageF confidence = count_confidence(beliefs, frame.sigma.a_cycles, limits);
   UnwrapResult result;
   if (options.fuse_frequencies) {
     const FusedRanges fused =

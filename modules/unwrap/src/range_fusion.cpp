@@ -42,19 +42,21 @@ TOFMAP_VECTOR_CLONES void fill_fused(int count, const Pixels& pixels_, float wav
     const auto counted = static_cast<float>(pixels.count[i]);
     const float uncounted = counted == static_cast<float>(invalid_wrap_count) ? nan : 0.0F;
     const float cycles_a = pixels.phase_a[i] + counted;
-    const bool is_present = cycles_a == cycles_a && pixels.phase_b[i] == pixels.phase_b[i];
+    const float both = cycles_a + pixels.phase_b[i];
+    const bool is_present = both == both;
     const float residual_m =
         wavelength_b_m * frequency_residual_cycles(is_present ? cycles_a : 0.0F,
                                                    is_present ? pixels.phase_b[i] : 0.0F, ratio);
-    const float size_m = residual_m < 0 ? -residual_m : residual_m;
-    const float tolerated_m = agreement * std::sqrt(variance_m2 + residual_variance_m2);
-    const bool is_sure = variance_m2 <= largest_sigma_cycles * largest_sigma_cycles *
-                                            wavelength_b_m * wavelength_b_m;
+    const float tolerated_m2 = agreement * agreement * (variance_m2 + residual_variance_m2);
+    const float largest_m = largest_sigma_cycles * wavelength_b_m;
     const float range_a_m = cycles_a * wavelength_a_m;
     const float fused_m = range_a_m - residual_m * variance_a_m2 / variance_m2;
     const float fused_variance_m2 = variance_a_m2 * variance_b_m2 / variance_m2;
+    const float agrees = residual_m * residual_m <= tolerated_m2 ? 1.0F : 0.0F;
+    const float agrees_surely = variance_m2 <= largest_m * largest_m ? agrees : 0.0F;
     // Noise just before the camera may make a range negative.
-    const bool is_fused = is_present && is_sure && size_m <= tolerated_m && fused_m > 0;
+    const float fuses = fused_m > 0 ? agrees_surely : 0.0F;
+    const bool is_fused = (is_present ? fuses : 0.0F) > 0;
     range_m[i] = (is_fused ? fused_m : range_a_m) + uncounted;
     sigma_m[i] = std::sqrt(is_fused ? fused_variance_m2 : variance_a_m2) + uncounted;
   }

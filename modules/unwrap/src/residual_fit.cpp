@@ -44,7 +44,6 @@ ResidualFit::ResidualFit(const SurfaceSamples& samples, const ExposurePair& pair
       geometry_(&geometry),
       camera_(camera),
       prior_(prior),
-      table_(camera),
       systematic_m_(camera.frames > 0 ? camera.systematic_m : unknown_systematic_m),
       range_m_(samples.size()),
       predicted_m_(samples.size()),
@@ -81,7 +80,6 @@ void ResidualFit::find_motion(const Eigen::Vector3d& rotation_rad, bool any_cons
 
 void ResidualFit::refine(const CameraErrors& camera) {
   camera_ = camera;
-  table_ = CameraErrorTable(camera);
   constant_m_ = 0;
   predict();
   associate();
@@ -106,7 +104,7 @@ void ResidualFit::look_up() {
 void ResidualFit::predict() {
   const auto size = static_cast<int>(samples_->size());
   const float* amplitude = samples_->amplitude_a.empty() ? nullptr : samples_->amplitude_a.data();
-  predict_camera_errors(table_, size, samples_->phase_a.data(), seen_.phase_b.data(), amplitude,
+  predict_camera_errors(camera_, size, samples_->phase_a.data(), seen_.phase_b.data(), amplitude,
                         predicted_m_.data());
   const auto constant = static_cast<float>(constant_m_);
   for (std::size_t i = 0; i < predicted_m_.size(); ++i) {
@@ -336,7 +334,7 @@ double ResidualFit::light_cost() const {
 
 double ResidualFit::periodic_rms_m() const {
   std::vector<float> periodic_m(samples_->size());
-  predict_camera_errors(table_, static_cast<int>(periodic_m.size()), samples_->phase_a.data(),
+  predict_camera_errors(camera_, static_cast<int>(periodic_m.size()), samples_->phase_a.data(),
                         seen_.phase_b.data(), nullptr, periodic_m.data());
   double sum = 0;
   double squares = 0;

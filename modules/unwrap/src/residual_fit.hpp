@@ -104,7 +104,6 @@ class ResidualFit {
   CameraErrors camera_;
   MotionPrior prior_;
   std::optional<ApparentRotation> apparent_;
-  CameraErrorTable table_;
   ExposureMotion motion_;
   double constant_m_ = 0;
   double systematic_m_;

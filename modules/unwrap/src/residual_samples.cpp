@@ -96,11 +96,6 @@ Eigen::Vector2f slope_m(const ExposurePair& pair, Eigen::Index v, Eigen::Index u
   return wavelength_m * moment.cwiseQuotient(square);
 }
 
-/// True if the whole window has returns.
-bool is_whole(const ImageF& phase, Eigen::Index v, Eigen::Index u, Eigen::Index reach) {
-  return !phase.block(v - reach, u - reach, 2 * reach + 1, 2 * reach + 1).isNaN().any();
-}
-
 /// How large a window the noise asks for; nothing if none is enough.
 std::optional<int> window_reach(float sigma_m, double residual_step_m) {
   const auto step_m = static_cast<float>(residual_step_m);
@@ -144,9 +139,10 @@ void append_sample(const ExposurePair& pair, const PairGeometry& geometry, doubl
   if (!(sigma_a < loudest_cycles && sigma_b < loudest_cycles)) return;
   const auto reach =
       window_reach(std::hypot(sigma_a * wavelength_a_m, sigma_b * wavelength_b_m), residual_step_m);
-  if (!reach || !is_whole(pair.phase_a, v, u, *reach)) return;
-  if (!is_smooth(pair, v, u, wavelength_a_m)) return;
+  if (!reach || !is_smooth(pair, v, u, wavelength_a_m)) return;
   const WindowMean mean = window_mean(pair.phase_a, v, u, *reach);
+  const auto side = static_cast<float>(2 * *reach + 1);
+  if (mean.pixels < side * side) return;
   const float sigma_m = sigma_a * wavelength_a_m / std::sqrt(mean.pixels);
   samples.row.push_back(static_cast<int>(v));
   samples.col.push_back(static_cast<int>(u));

@@ -45,14 +45,14 @@ TOFMAP_VECTOR_CLONES void fill_slopes(int cols, const Around& around_, float wav
     const float below = step(around.below[i] - here);
     const float sigma_m = around.sigma_cycles[i] * wavelength_m;
     const float tolerated = tolerated_bend(sigma_m) / wavelength_m;
-    const bool is_smooth =
-        is_straight(left, right, tolerated) && is_straight(above, below, tolerated);
-    const bool has_slope = is_smooth && sigma_m < loud_m;
+    const float smooth = is_straight(left, right, tolerated) ? 1.0F : 0.0F;
+    const float smooth_both = is_straight(above, below, tolerated) ? smooth : 0.0F;
+    const float sloped = sigma_m < loud_m ? smooth_both : 0.0F;
     const float across = (left + right) * wavelength_m / pixels;
     const float along = (above + below) * wavelength_m / pixels;
-    across_m[i] = has_slope ? across : 0.0F;
-    along_m[i] = has_slope ? along : 0.0F;
-    rough_m[i] = is_smooth ? 0.0F : std::sqrt(across * across + along * along);
+    across_m[i] = sloped * across;
+    along_m[i] = sloped * along;
+    rough_m[i] = (1 - smooth_both) * std::sqrt(across * across + along * along);
   }
 }
 
@@ -126,7 +126,13 @@ void SurfaceSlopes::find(Eigen::Index row) {
        phases + below * cols, pair_.sigma_a_cycles.data() + row * cols},
       static_cast<float>(geometry_.limits.wavelength_a_m), across_m.data(), along_m.data(),
       rough_m.data());
+}
+
+void SurfaceSlopes::find_gradients(Eigen::Index row) {
   if (!geometry_.knows_camera()) return;
+  const Eigen::Index cols = pair_.phase_a.cols();
+  const Eigen::Index above = std::max<Eigen::Index>(row - reach_px, 0);
+  const Eigen::Index below = std::min(row + reach_px, pair_.phase_a.rows() - 1);
   RowOfRays rays{};
   const std::array<const ImageF*, 3> planes{&geometry_.rays.x, &geometry_.rays.y,
                                             &geometry_.rays.z};

@@ -12,14 +12,16 @@ namespace tofmap {
 
 /// A bend of a range with this noise that is none, metres over four pixels. What a plane seen
 /// aslant bends by is left to `is_straight`.
-inline float tolerated_bend(float sigma_m) { return 0.08F + 4 * sigma_m; }
+[[gnu::always_inline]] inline float tolerated_bend(float sigma_m) { return 0.08F + 4 * sigma_m; }
 
 /// True if a range rises alike on both sides of a pixel: by `before` up to it, and by `after` from
 /// it on. A bend is none up to `tolerated`, and up to this share of what the range rises by.
-inline bool is_straight(float before, float after, float tolerated, float share_of_rise = 0.25F) {
+[[gnu::always_inline]] inline bool is_straight(float before, float after, float tolerated,
+                                               float share_of_rise = 0.25F) {
   const float bend = before > after ? before - after : after - before;
   const float rise = before + after > 0 ? before + after : -(before + after);
-  return bend < tolerated || bend < share_of_rise * rise;
+  const float of_rise = share_of_rise * rise;
+  return bend < (tolerated > of_rise ? tolerated : of_rise);
 }
 
 /// The slope of A's range along one row of the image, from wrapped phases, so that no wrap count is
@@ -32,6 +34,9 @@ class SurfaceSlopes {
 
   void find(Eigen::Index row);
 
+  /// Also finds the gradients of the row that was found last.
+  void find_gradients(Eigen::Index row);
+
   std::vector<float> across_m, along_m;  ///< a pixel
   std::vector<float> rough_m;  ///< how steep it is where the surface bends or ends; 0 elsewhere
   std::vector<float> gradient_x, gradient_y, gradient_z;  ///< a radian; 0 without a camera
@@ -39,9 +44,9 @@ class SurfaceSlopes {
  private:
   const ExposurePair& pair_;
   const PairGeometry& geometry_;
-  // Rows with two repeated pixels on both sides.
-  std::vector<float> phase_, above_, below_;
-  std::vector<float> rays_;  ///< of this row, the one above and the one below: x, y, z of each
+  // A row with two repeated pixels on both sides.
+  std::vector<float> phase_;
+  std::vector<float> rays_;  ///< x, y, z of each
 };
 
 }  // namespace tofmap

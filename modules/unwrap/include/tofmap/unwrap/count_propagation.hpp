@@ -47,7 +47,7 @@ class CountPropagation {
   int rows_ = 0;
   int cols_ = 0;
   int counts_ = 0;
-  std::array<std::vector<std::uint16_t>, 2> messages_;  ///< μ to or from the left, and above
+  std::array<std::vector<std::uint16_t>, 2> messages_;  ///< μ² to or from the left, and above
   std::array<std::vector<std::uint16_t>, 2> before_;  ///< what was there before the last iteration
   std::vector<std::uint16_t> ones_;
   std::vector<float> scratch_;
