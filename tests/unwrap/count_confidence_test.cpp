@@ -6,6 +6,7 @@
 #include "fast_math.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -30,7 +31,9 @@ CountBeliefs beliefs_against(const std::vector<float>& others) {
 
 /// The confidence where all pixels have this noise, a share of the residual step.
 ImageF confidence_at(const CountBeliefs& beliefs, float noise_share) {
-  const BeatLimits limits = beat_limits({.modulation = {29e6, 31e6}}, 0);
+  SensorModel sensor;
+  sensor.modulation = {29e6, 31e6};
+  const BeatLimits limits = beat_limits(sensor, 0);
   const double cycles =
       noise_share * residual_step_m(limits) / (std::numbers::sqrt2 * limits.wavelength_a_m);
   return count_confidence(
