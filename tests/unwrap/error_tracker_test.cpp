@@ -3,6 +3,8 @@
 
 // What the error tracker finds on frames of a simulated camera whose errors are known.
 
+#include "simulated_turn.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -337,12 +339,10 @@ TEST(ErrorTracker, FindsTheWholeMotionWhereSlopesAreNoisy) {
   double true_rad = 0;
   for (int i = 20; i < 28; ++i) {
     const SimulatedFrame frame = simulator.simulate(i);
-    const Pose turn =
-        frame.world_from_camera.inverse() * simulator.simulate(i + 1).world_from_camera;
-    const Eigen::AngleAxisd true_turn(turn.linear());
-    const Eigen::Vector3d axis = true_turn.axis();
-    true_rad += 0.5 * true_turn.angle();
-    found_rad += track(tracker, returns_of(frame)).errors.motion.rotation_rad.dot(axis);
+    const Eigen::Vector3d turn_rad = test::turn_between(frame, simulator.simulate(i + 1));
+    true_rad += 0.5 * turn_rad.norm();
+    found_rad +=
+        track(tracker, returns_of(frame)).errors.motion.rotation_rad.dot(turn_rad.normalized());
   }
   ASSERT_GT(true_rad / 8, 0.005);
   EXPECT_NEAR(found_rad / true_rad, 1, 0.15);
@@ -441,6 +441,18 @@ TEST(ErrorTracker, ExpectsACameraThatWasLateToBeLate) {
   ErrorTracker other = tracker_of(at_once);
   for (const SimulatedFrame& frame : run_of(at_once, 20, 3)) track(other, returns_of(frame));
   EXPECT_EQ(other.camera_errors().late_frames, 0);
+}
+
+TEST(ErrorTracker, ExpectsACameraToGoOnAsItWent) {
+  // It moves sideways and turns towards what it passes: a wall that stays where it is in the image
+  // looks as if nothing moved at all.
+  const Simulator simulator(make_scene("room"), switching_camera());
+  ErrorTracker tracker = tracker_of(simulator);
+  const std::vector<SimulatedFrame> run = run_of(simulator, 96, 24);
+  for (std::size_t i = 0; i + 1 < run.size(); ++i) {
+    const Eigen::Vector3d found_rad = track(tracker, returns_of(run[i])).errors.motion.rotation_rad;
+    EXPECT_LT((found_rad - test::turn_between(run[i], run[i + 1])).norm(), 0.01) << i;
+  }
 }
 
 /// The same number of NaNs, and the same bits.

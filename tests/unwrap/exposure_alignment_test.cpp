@@ -5,6 +5,8 @@
 
 #include "exposure_alignment.hpp"
 
+#include "simulated_turn.hpp"
+
 #include <cmath>
 #include <random>
 
@@ -15,13 +17,6 @@
 
 namespace tofmap {
 namespace {
-
-/// The camera's rotation from one frame to another, a rotation vector.
-Eigen::Vector3d rotation_between(const SimulatedFrame& one, const SimulatedFrame& other) {
-  const Eigen::AngleAxisd turned(
-      (one.world_from_camera.inverse() * other.world_from_camera).linear());
-  return turned.angle() * turned.axis();
-}
 
 TEST(ExposureAlignment, FindsTheRotationToItsCovariance) {
   SimulatorOptions options;
@@ -39,7 +34,7 @@ TEST(ExposureAlignment, FindsTheRotationToItsCovariance) {
         (one.world_from_camera.inverse() * other.world_from_camera).translation();
     // Parallax of surfaces a metre away and more, besides.
     const double parallax_rad = translation_m.norm();
-    const Eigen::Vector3d off_rad = found->rotation_rad - rotation_between(one, other);
+    const Eigen::Vector3d off_rad = found->rotation_rad - test::turn_between(one, other);
     for (Eigen::Index k = 0; k < 3; ++k) {
       const double sigma_rad = std::sqrt(found->covariance_rad2(k, k));
       EXPECT_LT(std::abs(off_rad[k]), 3 * sigma_rad + parallax_rad) << index << ", axis " << k;

@@ -67,6 +67,13 @@ std::optional<ApparentRotation> apparent_rotation(const ExposurePair& pair,
   return align_exposures(pair.amplitude_a, pair.amplitude_b, camera);
 }
 
+/// Where to look for the motion first.
+ExposureMotion turned(const std::optional<ApparentRotation>& apparent) {
+  ExposureMotion start;
+  if (apparent) start.rotation_rad = apparent->rotation_rad;
+  return start;
+}
+
 /// True if a fit without much motion may miss some: residuals fit badly, or all are off alike, or
 /// the motion is more than expected.
 bool may_have_moved(const ResidualFit& fit) {
@@ -168,7 +175,7 @@ ErrorTracker::Tracked ErrorTracker::track(const DualFrequencyFrame& frame,
   } else {
     match_moved(samples, pair, geometry, tracked);
   }
-  last_ = {frame.phase_b, frame.amplitude_b, sigma.b_cycles};
+  last_ = {frame.phase_b, frame.amplitude_b, sigma.b_cycles, tracked.errors.motion};
   return tracked;
 }
 
@@ -178,7 +185,7 @@ FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposureP
   const bool is_first = camera_errors_.frames == 0;
   bool is_late = camera_errors_.late_frames > 0;  // then this frame may well be, too
   ResidualFit fit(samples, pair, geometry, camera_errors_, prompt_exposures);
-  fit.find_motion(Eigen::Vector3d::Zero(), is_first);
+  fit.find_motion({}, is_first);
   if (geometry.knows_camera() && (is_late || may_have_moved(fit))) {
     ResidualFit moved(samples, pair, geometry, camera_errors_, late_exposures);
     const auto apparent = apparent_rotation(pair, camera_);
@@ -186,7 +193,13 @@ FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposureP
       fit.expect(*apparent);
       moved.expect(*apparent);
     }
-    moved.find_motion(apparent ? apparent->rotation_rad : Eigen::Vector3d::Zero(), true);
+    ResidualFit going_on = moved;
+    moved.find_motion(turned(apparent), true);
+    if (is_late) {
+      // Cameras go on as they went; and where they turn towards what they pass, nothing shows.
+      going_on.find_motion(last_.motion, true);
+      if (explains_better(going_on, moved)) moved = going_on;
+    }
     is_late = is_late ? !explains_better(fit, moved) : explains_better(moved, fit);
     if (is_late) fit = moved;
   }
@@ -260,7 +273,7 @@ void ErrorTracker::match_moved(const SurfaceSamples& samples, const ExposurePair
   ResidualFit last(samples, with_last, geometry, camera, late_exposures);
   const auto apparent = apparent_rotation(with_last, camera_);
   if (apparent) last.expect(*apparent);
-  last.find_motion(apparent ? apparent->rotation_rad : Eigen::Vector3d::Zero(), false);
+  last.find_motion(turned(apparent), false);
   if (last.support() < least_support) return match_own();
   const auto match_last = [&] {
     match_exposure(with_last, geometry, camera, {last.motion(), last.flow_px()}, tracked.b);
@@ -282,6 +295,8 @@ void ErrorTracker::save(std::ostream& out) const {
   for (const ImageF* image : {&last_.phase, &last_.amplitude, &last_.sigma_cycles}) {
     write_image(out, *image);
   }
+  for (const double number : last_.motion.translation_m) write_number(out, number);
+  for (const double number : last_.motion.rotation_rad) write_number(out, number);
 }
 
 void ErrorTracker::load(std::istream& in) {
@@ -291,6 +306,8 @@ void ErrorTracker::load(std::istream& in) {
   for (ImageF* image : {&last_.phase, &last_.amplitude, &last_.sigma_cycles}) {
     read_image(in, *image);
   }
+  for (double& number : last_.motion.translation_m) read_number(in, number);
+  for (double& number : last_.motion.rotation_rad) read_number(in, number);
 }
 
 }  // namespace tofmap

@@ -55,8 +55,8 @@ ResidualFit::ResidualFit(const SurfaceSamples& samples, const ExposurePair& pair
   }
 }
 
-void ResidualFit::find_motion(const Eigen::Vector3d& rotation_rad, bool any_constant) {
-  motion_.rotation_rad = rotation_rad;
+void ResidualFit::find_motion(const ExposureMotion& start, bool any_constant) {
+  motion_ = start;
   look_up();
   if (any_constant) find_constant();
   constexpr int rounds = 3;

@@ -37,9 +37,9 @@ class ResidualFit {
   /// Also fits the apparent rotation between the exposures, from now on.
   void expect(const ApparentRotation& apparent) { apparent_ = apparent; }
 
-  /// Finds the motion, from `rotation_rad` on. With `any_constant` the camera's offset is in doubt,
+  /// Finds the motion, from `start` on. With `any_constant` the camera's offset is in doubt,
   /// too, as on a first frame: the likeliest constant is looked for.
-  void find_motion(const Eigen::Vector3d& rotation_rad, bool any_constant);
+  void find_motion(const ExposureMotion& start, bool any_constant);
 
   /// The same from the motion found so far on, with other knowledge of the camera.
   void refine(const CameraErrors& camera);

@@ -58,7 +58,7 @@ class ErrorTracker {
 
   const CameraErrors& camera_errors() const { return camera_errors_; }
 
-  /// Forgets the last frame's B, as after a gap in time; what is known of the camera stays.
+  /// Forgets the last frame's B and motion, as after a gap in time; what is known of the camera stays.
   void forget_last_frame() { last_ = {}; }
 
   /// All that later frames depend on, to the bit. Reading throws std::exception if it is damaged.
@@ -70,11 +70,12 @@ class ErrorTracker {
   using TermsMatrix = Eigen::Matrix<double, terms, terms>;
 
  private:
-  /// B's images of the last frame.
+  /// B's images of the last frame, and how the camera moved to B.
   struct Exposure {
     ImageF phase;
     ImageF amplitude;
     ImageF sigma_cycles;
+    ExposureMotion motion;
   };
 
   FrameErrors explain(const SurfaceSamples& samples, const ExposurePair& pair,
