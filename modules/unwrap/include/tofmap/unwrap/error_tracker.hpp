@@ -58,8 +58,9 @@ class ErrorTracker {
 
   const CameraErrors& camera_errors() const { return camera_errors_; }
 
-  /// Forgets the last frame's B and motion, as after a gap in time; what is known of the camera stays.
-  void forget_last_frame() { last_ = {}; }
+  /// Forgets the last frame's B, as after a gap in time; what is known of the camera stays, and how
+  /// it moved may be how it will.
+  void forget_last_frame() { last_ = {{}, {}, {}, last_.motion}; }
 
   /// All that later frames depend on, to the bit. Reading throws std::exception if it is damaged.
   void save(std::ostream& out) const;
