@@ -84,13 +84,26 @@ bool may_have_moved(const ResidualFit& fit) {
          std::abs(fit.constant_m()) > much_constant_m || fit.motion_cost() > much_nats;
 }
 
+/// One explanation is better than another if it costs so much less.
+constexpr double clearly_nats = 2;
+
+/// What residuals have besides noise, where two explanations are compared.
+double compared_systematic_m(const ResidualFit& one, const ResidualFit& other) {
+  constexpr double least_systematic_m = 0.01;
+  return std::max(least_systematic_m, std::min(one.systematic_m(), other.systematic_m()));
+}
+
 /// True if the first fit explains the residuals clearly better than the second.
 bool explains_better(const ResidualFit& one, const ResidualFit& other) {
-  constexpr double clearly_nats = 2;
-  constexpr double least_systematic_m = 0.01;
-  const double systematic_m =
-      std::max(least_systematic_m, std::min(one.systematic_m(), other.systematic_m()));
+  const double systematic_m = compared_systematic_m(one, other);
   return one.cost(systematic_m) + clearly_nats < other.cost(systematic_m);
+}
+
+/// The same, if the apparent rotation may be wrong.
+bool explains_better_without_apparent(const ResidualFit& one, const ResidualFit& other) {
+  const double systematic_m = compared_systematic_m(one, other);
+  return one.cost_without_apparent(systematic_m) + clearly_nats <
+         other.cost_without_apparent(systematic_m);
 }
 
 /// The most likely coefficients, given what frames say of them.
@@ -188,17 +201,18 @@ FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposureP
   fit.find_motion({}, is_first);
   if (geometry.knows_camera() && (is_late || may_have_moved(fit))) {
     ResidualFit moved(samples, pair, geometry, camera_errors_, late_exposures);
+    ResidualFit going_on = moved;
     const auto apparent = apparent_rotation(pair, camera_);
     if (apparent) {
       fit.expect(*apparent);
       moved.expect(*apparent);
     }
-    ResidualFit going_on = moved;
     moved.find_motion(turned(apparent), true);
     if (is_late) {
-      // Cameras go on as they went; and where they turn towards what they pass, nothing shows.
+      // Cameras go on as they went. Where they turn towards what they pass, amplitudes show nothing
+      // of it, and alignment may take one texture for another.
       going_on.find_motion(last_.motion, true);
-      if (explains_better(going_on, moved)) moved = going_on;
+      if (explains_better_without_apparent(going_on, moved)) moved = going_on;
     }
     is_late = is_late ? !explains_better(fit, moved) : explains_better(moved, fit);
     if (is_late) fit = moved;

@@ -297,10 +297,13 @@ void ResidualFit::add_camera_equations(ErrorTracker::TermsMatrix& information,
   gradient += with_right.head<of_camera>() - cross * solver.solve(motion_gradient);
 }
 
+double ResidualFit::motion_cost_without_apparent() const {
+  return motion_.translation_m.squaredNorm() / (2 * prior_.translation_m * prior_.translation_m) +
+         motion_.rotation_rad.squaredNorm() / (2 * prior_.rotation_rad * prior_.rotation_rad);
+}
+
 double ResidualFit::motion_cost() const {
-  const double by_prior =
-      motion_.translation_m.squaredNorm() / (2 * prior_.translation_m * prior_.translation_m) +
-      motion_.rotation_rad.squaredNorm() / (2 * prior_.rotation_rad * prior_.rotation_rad);
+  const double by_prior = motion_cost_without_apparent();
   if (!apparent_) return by_prior;
   const ApparentEquations apparent = apparent_equations();
   return by_prior + 0.5 * apparent.off_rad.dot(apparent.information * apparent.off_rad);
@@ -311,9 +314,13 @@ double ResidualFit::constant_sigma_m() const {
 }
 
 double ResidualFit::cost(double systematic_m) const {
+  return cost_without_apparent(systematic_m) + motion_cost() - motion_cost_without_apparent();
+}
+
+double ResidualFit::cost_without_apparent(double systematic_m) const {
   return (robust_cost(error_m_, seen_.variance_m2, systematic_m) + light_cost()) /
              correlated_samples +
-         motion_cost();
+         motion_cost_without_apparent();
 }
 
 /// How badly B's amplitudes fit A's: both see the same surface only if the motion is right.

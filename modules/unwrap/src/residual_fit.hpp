@@ -57,10 +57,13 @@ class ResidualFit {
   double systematic_m() const { return systematic_m_; }
   /// How badly the motion fits its prior and the apparent rotation, nats.
   double motion_cost() const;
+  double motion_cost_without_apparent() const;
   /// How badly residuals, amplitudes and motion fit, nats: what tells one explanation from another.
   /// Infinite if B saw none of the samples.
   /// `systematic_m` is what residuals have besides noise, the same for all that are compared.
   double cost(double systematic_m) const;
+  /// The same, whatever the apparent rotation is.
+  double cost_without_apparent(double systematic_m) const;
   /// Standard deviation over the samples of what is predicted of them as periodic.
   double periodic_rms_m() const;
   /// The share of the samples that B saw as predicted.
