@@ -297,30 +297,25 @@ void ResidualFit::add_camera_equations(ErrorTracker::TermsMatrix& information,
   gradient += with_right.head<of_camera>() - cross * solver.solve(motion_gradient);
 }
 
-double ResidualFit::motion_cost_without_apparent() const {
+double ResidualFit::prior_cost() const {
   return motion_.translation_m.squaredNorm() / (2 * prior_.translation_m * prior_.translation_m) +
          motion_.rotation_rad.squaredNorm() / (2 * prior_.rotation_rad * prior_.rotation_rad);
 }
 
-double ResidualFit::motion_cost() const {
-  const double by_prior = motion_cost_without_apparent();
-  if (!apparent_) return by_prior;
+double ResidualFit::apparent_cost() const {
+  if (!apparent_) return 0;
   const ApparentEquations apparent = apparent_equations();
-  return by_prior + 0.5 * apparent.off_rad.dot(apparent.information * apparent.off_rad);
+  return 0.5 * apparent.off_rad.dot(apparent.information * apparent.off_rad);
 }
 
 double ResidualFit::constant_sigma_m() const {
   return camera_.frames > 0 ? prior_constant_m : prior_offset_m;
 }
 
-double ResidualFit::cost(double systematic_m) const {
-  return cost_without_apparent(systematic_m) + motion_cost() - motion_cost_without_apparent();
-}
-
 double ResidualFit::cost_without_apparent(double systematic_m) const {
   return (robust_cost(error_m_, seen_.variance_m2, systematic_m) + light_cost()) /
              correlated_samples +
-         motion_cost_without_apparent();
+         prior_cost();
 }
 
 /// How badly B's amplitudes fit A's: both see the same surface only if the motion is right.

@@ -56,12 +56,13 @@ class ResidualFit {
   /// Standard deviation of the residuals, noise apart; robust.
   double systematic_m() const { return systematic_m_; }
   /// How badly the motion fits its prior and the apparent rotation, nats.
-  double motion_cost() const;
-  double motion_cost_without_apparent() const;
+  double motion_cost() const { return prior_cost() + apparent_cost(); }
   /// How badly residuals, amplitudes and motion fit, nats: what tells one explanation from another.
   /// Infinite if B saw none of the samples.
   /// `systematic_m` is what residuals have besides noise, the same for all that are compared.
-  double cost(double systematic_m) const;
+  double cost(double systematic_m) const {
+    return cost_without_apparent(systematic_m) + apparent_cost();
+  }
   /// The same, whatever the apparent rotation is.
   double cost_without_apparent(double systematic_m) const;
   /// Standard deviation over the samples of what is predicted of them as periodic.
@@ -93,6 +94,8 @@ class ResidualFit {
   void weigh(double systematic_m);
   void step(bool with_constant);
   double constant_sigma_m() const;
+  double prior_cost() const;
+  double apparent_cost() const;
   double light_cost() const;
   double spread() const;
   double median_amplitude_ratio() const;
