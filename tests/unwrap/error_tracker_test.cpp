@@ -119,6 +119,38 @@ TEST(ErrorTracker, FindsAnOffsetOnTheFirstFrame) {
   }
 }
 
+/// The offset after a frame with one offset of B, and many with another.
+double offset_after_m(double first_offset_b_m, double offset_b_m, double& step_m) {
+  SimulatorOptions simulation = small_camera();
+  simulation.b_delay_share = 0;
+  simulation.offset_b_m = first_offset_b_m;
+  const Simulator first(make_scene("room"), simulation);
+  simulation.offset_b_m = offset_b_m;
+  const Simulator others(make_scene("room"), simulation);
+  ErrorTracker tracker = tracker_of(first);
+  step_m = residual_step_m(beat_limits(first.sensor(), 0));
+  track(tracker, returns_of(first.simulate(0)));
+  for (int i = 1; i < 20; ++i) track(tracker, returns_of(others.simulate(i)));
+  return tracker.camera_errors().offset_m();
+}
+
+TEST(ErrorTracker, TakesTheSmallerOfTwoOffsetsAStepApart) {
+  // Frames lead to an offset beyond half of a step. One count more in all pixels explains residuals
+  // with a smaller one.
+  double step_m = 0;
+  const double offset_m = offset_after_m(0.14, 0.2, step_m);
+  ASSERT_GT(step_m / 2, 0.14);
+  ASSERT_LT(step_m / 2, 0.2);
+  EXPECT_NEAR(offset_m, step_m - 0.2, 0.012);
+}
+
+TEST(ErrorTracker, KeepsALargeOffsetWhereSurfacesAreTooNearForTheSmaller) {
+  // The smaller offset would take one count less in all pixels, but many have none to lose.
+  double step_m = 0;
+  const double offset_m = offset_after_m(-0.14, -0.2, step_m);
+  EXPECT_NEAR(offset_m, 0.2, 0.012);
+}
+
 TEST(ErrorTracker, CorrectsNothingWhereThereIsNoError) {
   for (const char* scene : {"hall", "room", "flat"}) {
     SimulatorOptions simulation = small_camera();

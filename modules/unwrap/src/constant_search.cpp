@@ -74,12 +74,16 @@ class ConstantScore {
 
 }  // namespace
 
+double largest_constant_m(const BeatLimits& limits) {
+  constexpr double least_m = 0.12;
+  return std::max(least_m, residual_step_m(limits) / 2);
+}
+
 double likeliest_constant_m(const BeatLimits& limits, const ConstantPrior& prior,
                             const PredictedSamples& samples) {
   constexpr double spacing_m = 0.01;
-  constexpr double least_reach_m = 0.12;
   if (samples.phase_a.empty()) return 0;
-  const double reach_m = std::max(least_reach_m, residual_step_m(limits) / 2);
+  const double reach_m = largest_constant_m(limits);
   ConstantScore score(limits, prior, samples);
   double best_m = 0;
   double least_cost = score.cost(0);

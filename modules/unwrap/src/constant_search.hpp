@@ -25,9 +25,13 @@ struct ConstantPrior {
   double correlated_samples;  ///< so many samples count as one that is independent
 };
 
+/// Constants up to this, either way, are thought possible, metres: half of the residual step, and
+/// 12 cm at least.
+double largest_constant_m(const BeatLimits& limits);
+
 /// The most likely constant by which the residuals of all samples are off alike, metres: the least
-/// of docs/unwrapping.md, equation 24, among constants a centimetre apart, up to half of the
-/// residual step and 12 cm at least. 0 if there are no samples.
+/// of docs/unwrapping.md, equation 24, among constants a centimetre apart, up to the largest. 0 if
+/// there are no samples.
 double likeliest_constant_m(const BeatLimits& limits, const ConstantPrior& prior,
                             const PredictedSamples& samples);
 

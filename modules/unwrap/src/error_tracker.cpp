@@ -3,6 +3,7 @@
 
 #include "tofmap/unwrap/error_tracker.hpp"
 
+#include "constant_search.hpp"
 #include "exposure_alignment.hpp"
 #include "exposure_matching.hpp"
 #include "median.hpp"
@@ -258,6 +259,7 @@ void ErrorTracker::learn(const TermsMatrix& information, const Terms& gradient,
   information_ = memory * information_ + information;
   gradient_ = memory * gradient_ + gradient;
   set_coefficients(solve(information_, gradient_), camera_errors_);
+  take_smaller_offset(fit);
   constexpr int longest_mean = 20;
   const double share = 1.0 / std::min(camera_errors_.frames + 1, longest_mean);
   const double before_m2 = camera_errors_.systematic_m * camera_errors_.systematic_m;
@@ -269,6 +271,23 @@ void ErrorTracker::learn(const TermsMatrix& information, const Terms& gradient,
                 share * periodic_m * periodic_m);
   camera_errors_.amplitude_gain += share * (fit.amplitude_gain() - camera_errors_.amplitude_gain);
   ++camera_errors_.frames;
+}
+
+/// Offsets a residual step apart explain residuals alike, with other counts in all pixels, unless a
+/// surface is so near that it has no count less. The smaller offset is likelier: the first frame
+/// may have taken the other while its motion was not known well.
+void ErrorTracker::take_smaller_offset(const ResidualFit& fit) {
+  const double offset_m = camera_errors_.offset_m();
+  if (std::abs(offset_m) <= largest_constant_m(limits_)) return;
+  const Terms gradient =
+      gradient_ - information_.col(0) * std::copysign(residual_step_m(limits_), offset_m);
+  CameraErrors smaller = camera_errors_;
+  set_coefficients(solve(information_, gradient), smaller);
+  ResidualFit with_smaller = fit;
+  with_smaller.refine(smaller);
+  if (explains_better(fit, with_smaller)) return;
+  gradient_ = gradient;
+  camera_errors_ = smaller;
 }
 
 /// Where the image has moved by pixels from A to B, and B comes late, the last frame's B may have

@@ -82,6 +82,7 @@ class ErrorTracker {
   FrameErrors explain(const SurfaceSamples& samples, const ExposurePair& pair,
                       const PairGeometry& geometry);
   void learn(const TermsMatrix& information, const Terms& gradient, const ResidualFit& fit);
+  void take_smaller_offset(const ResidualFit& fit);
   void match_moved(const SurfaceSamples& samples, const ExposurePair& pair,
                    const PairGeometry& geometry, Tracked& tracked);
 
