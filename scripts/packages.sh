@@ -13,7 +13,11 @@ packages=(
   libjs-three libegl-dev libegl1 libgl1-mesa-dri libx11-dev
   nlohmann-json3-dev libcli11-dev
 )
-if [[ ${1:-} == --tests ]]; then
+if (($# > 1)) || [[ ${1:---tests} != --tests ]]; then
+  echo "usage: scripts/packages.sh [--tests]" >&2
+  exit 2
+fi
+if (($# == 1)); then
   packages+=(
     libgtest-dev libgmock-dev libbenchmark-dev gcovr xvfb
     chromium chromium-driver python3-selenium python3-pil python3-yaml
