@@ -177,8 +177,8 @@ int run_unwrap(const UnwrapArguments& arguments) {
   out.commit();
   say_what_is_missing(result);
   if (!arguments.common.quiet) {
-    std::printf("%d of %d frames unwrapped, %d damaged: %s\n", done, total, result.damaged,
-                out.final_path().c_str());
+    std::printf("%d of %d frames unwrapped, %d damaged: %s\n", done - result.damaged, total,
+                result.damaged, out.final_path().c_str());
   }
   if (interrupted) return exit_status::interrupted;
   if (options.pictures.frames == 0) return exit_status::done;

@@ -45,6 +45,11 @@ class BadRecording : public WithRecording {
     for (const std::string command : {"unwrap", "map"}) {
       const Finished finished = run(command);
       ASSERT_EQ(finished.status, 0) << command << finished.err;
+      if (command == "unwrap") {
+        EXPECT_THAT(finished.out,
+                    HasSubstr(std::to_string(frames - 1) + " of " + std::to_string(frames) +
+                              " frames unwrapped, 1 damaged"));
+      }
       const auto report = read_json(out_ / "report.json");
       EXPECT_EQ(report["summary"]["damaged"], 1) << command;
       ASSERT_EQ(report["frames"].size(), frames) << command;

@@ -233,7 +233,7 @@ std::vector<std::string> doubts_about(const BeatSurvey& beat) {
   if (std::optional<std::string> doubt = pairing_doubt(beat)) return {*std::move(doubt)};
   constexpr double most_offset_m = 0.02;  // motion between both images makes some millimetres
   if (std::abs(beat.offset_m) < most_offset_m) return {};
-  return {"A measures " + offset_text(beat) +
+  return {"in the median pixel A measures " + offset_text(beat) +
           ": the phase offset of one of them seems wrong; 'tofmap calibrate' against known ranges "
           "finds both"};
 }

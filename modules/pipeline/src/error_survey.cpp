@@ -63,8 +63,9 @@ std::vector<std::string> remarks_about(const ErrorSurvey& survey) {
     const double per_decade_m = survey.camera.per_decade_m();
     if (std::abs(offset_m) >= least_offset_m) {
       remarks.push_back(formatted(
-          "A measures %.0f mm %s than B; allowed for in unwrapping, but one of them is off by it: "
-          "'tofmap calibrate' against known ranges tells which",
+          "offset between the frequencies: A measures %.0f mm %s than B; allowed for in "
+          "unwrapping, "
+          "but one of them is off by it: 'tofmap calibrate' against known ranges tells which",
           millimetres(std::abs(offset_m)), offset_m < 0 ? "less" : "more"));
     }
     if (periodic_m >= least_periodic_m) {
