@@ -4,7 +4,6 @@
 #include "command.hpp"
 #include "console/interruption.hpp"
 #include "console/progress.hpp"
-#include "input/recorded_truth.hpp"
 #include "input/recording.hpp"
 #include "options/options.hpp"
 #include "output/frame_report.hpp"
@@ -17,12 +16,12 @@
 
 #include <CLI/CLI.hpp>
 
-#include <tofmap/acquisition/phase_error_fit.hpp>
-#include <tofmap/acquisition/wall_reference.hpp>
+#include <tofmap/calibration/phase_error_fit.hpp>
+#include <tofmap/calibration/wall_reference.hpp>
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/image.hpp>
 #include <tofmap/core/text.hpp>
-#include <tofmap/pipeline/beat_survey.hpp>
+#include <tofmap/diagnostics/beat_survey.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap::app {

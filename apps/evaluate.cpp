@@ -4,6 +4,7 @@
 #include "command.hpp"
 #include "console/failure.hpp"
 #include "console/interruption.hpp"
+#include "console/progress.hpp"
 #include "input/recording.hpp"
 #include "input/watched_source.hpp"
 #include "options/options.hpp"
@@ -13,8 +14,8 @@
 #include "output/result_addition.hpp"
 #include "reports/evaluation_page.hpp"
 #include "reports/evaluation_report.hpp"
-#include "runs/method_run.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <functional>
 #include <memory>
@@ -25,6 +26,7 @@
 
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/core/text.hpp>
+#include <tofmap/evaluation/method_run.hpp>
 #include <tofmap/visualization/map_pictures.hpp>
 
 namespace tofmap::app {
@@ -112,9 +114,8 @@ void write_report(const OutputFolder& out, Evaluated& evaluated, const RecordedT
   out.write_text("report.json", json_text(report));
 }
 
-/// Pictures and page of the methods that were asked for, as far as they have results.
+/// Pictures and page of the methods that have results.
 std::vector<OptionalPart> report_parts(const std::filesystem::path& result,
-                                       const std::vector<std::string>& methods,
                                        const EvaluationPageSubject& subject, bool interrupted,
                                        bool quiet) {
   const ProgramOptions& options = subject.options;
@@ -123,9 +124,9 @@ std::vector<OptionalPart> report_parts(const std::filesystem::path& result,
   if (!interrupted && (down_to_map || options.pictures.frames > 0)) {
     parts.push_back({"pictures", [=, &subject, &options] {
                        add_pictures(result, [&](const std::filesystem::path& folder) {
-                         write_method_pictures(folder, subject.recording, subject.recorded_truth,
-                                               methods, options.pipeline.unwrap,
-                                               options.pipeline.filters, options.pictures, quiet);
+                         write_method_pictures(folder, subject.results, subject.recorded_truth,
+                                               subject.recording.sensor(), options.pipeline,
+                                               options.pictures, quiet);
                          if (down_to_map) {
                            write_comparison(folder, subject.results, options.pictures);
                          }
@@ -133,12 +134,21 @@ std::vector<OptionalPart> report_parts(const std::filesystem::path& result,
                      }});
   }
   parts.push_back({"report.html", [=, &subject] {
-                     write_evaluation_page(result, subject, quiet);
+                     write_evaluation_page(result, subject);
                      if (quiet) return;
                      std::printf("report: %s, figures: report.json beside it\n",
                                  (result / "report.html").c_str());
                    }});
   return parts;
+}
+
+/// Tells its progress. Throws Interrupted.
+Truth truth_of(const SequenceReader& source, const RecordedTruth& recorded, bool quiet) {
+  Progress progress("reading truth, frame", source.frame_count(), quiet);
+  return read_truth(source, recorded, [&](int index) {
+    stop_if_interrupted();
+    progress.show(index);
+  });
 }
 
 /// What the page warns of.
@@ -163,11 +173,19 @@ int run_evaluate(const EvaluateArguments& arguments) {
   const SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
   OutputFolder out(arguments.out);
   const RecordedTruth recorded(source);
-  const Truth truth = down_to_map ? read_truth(source, recorded, quiet) : Truth{};
+  const Truth truth = down_to_map ? truth_of(source, recorded, quiet) : Truth{};
   if (!quiet) say_what_is_missing(source, recorded, down_to_map);
   Evaluated evaluated = evaluate_methods(methods, out, [&](const std::string& method) {
-    return down_to_map ? run_down_to_map(method, source, options.pipeline, recorded, truth, quiet)
-                       : run_unwrapping(method, source, options.pipeline.unwrap, recorded, quiet);
+    Progress progress("method " + method + ", frame", source.frame_count(), quiet);
+    const MethodRun run{.method = method,
+                        .options = options.pipeline,
+                        .sample_frames = std::max(options.report.frames, options.pictures.frames),
+                        .keep_going = [&](int done) {
+                          progress.show(done);
+                          return !is_interrupted();
+                        }};
+    return down_to_map ? run_down_to_map(run, source, recorded, truth)
+                       : run_unwrapping(run, source, recorded);
   });
   write_report(out, evaluated, recorded);
   out.write_text("options.yaml", table.to_yaml(false));
@@ -193,7 +211,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
                                       table.to_yaml(false)};
   const int end =
       add_to_result(out.final_path(), status,
-                    report_parts(out.final_path(), methods, subject, evaluated.interrupted, quiet));
+                    report_parts(out.final_path(), subject, evaluated.interrupted, quiet));
   print_remarks(recorded);
   return end;
 }

@@ -4,7 +4,6 @@
 #include "command.hpp"
 #include "console/interruption.hpp"
 #include "console/progress.hpp"
-#include "input/recorded_truth.hpp"
 #include "input/recording.hpp"
 #include "options/options.hpp"
 
@@ -15,7 +14,7 @@
 #include <CLI/CLI.hpp>
 
 #include <tofmap/acquisition/sequence.hpp>
-#include <tofmap/pipeline/recording_survey.hpp>
+#include <tofmap/diagnostics/recording_survey.hpp>
 
 namespace tofmap::app {
 namespace {

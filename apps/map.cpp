@@ -5,10 +5,8 @@
 #include "console/failure.hpp"
 #include "console/interruption.hpp"
 #include "console/progress.hpp"
-#include "input/live_input.hpp"
+#include "input/map_input.hpp"
 #include "input/recording.hpp"
-#include "input/sampled_frames.hpp"
-#include "input/watched_source.hpp"
 #include "options/options.hpp"
 #include "output/frame_report.hpp"
 #include "output/json_text.hpp"
@@ -17,7 +15,6 @@
 #include "output/result_addition.hpp"
 #include "reports/consistency_report.hpp"
 #include "reports/map_page.hpp"
-#include "runs/map_state.hpp"
 #include "views/live_view.hpp"
 
 #include <algorithm>
@@ -33,9 +30,11 @@
 
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/core/error.hpp>
+#include <tofmap/diagnostics/recording_survey.hpp>
 #include <tofmap/mapping/mesh_extraction.hpp>
+#include <tofmap/pipeline/frame_sample.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
-#include <tofmap/pipeline/recording_survey.hpp>
+#include <tofmap/pipeline/run_state.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -58,9 +57,11 @@ void check_result(const RoomMap& map) {
         "the phase images mislabelled? 'tofmap info' tells more");
   }
   if (map.surface.empty() && !map.interrupted) {
+    const auto doubt = repetition_doubt(map.repeated());
     throw InputError(
         "no point was seen often and surely enough to enter the map; lower "
-        "map.min_observations or raise map.max_sigma_m");
+        "map.min_observations or raise map.max_sigma_m" +
+        (doubt ? ". " + *doubt : ""));
   }
 }
 
@@ -69,11 +70,11 @@ struct MapOutput {
   const MapArguments& arguments;
   const ProgramOptions& options;
   std::string options_yaml;
-  std::vector<std::string> doubts;     ///< about what was recorded, and then about the map
-  nlohmann::ordered_json acquisition;  ///< of a device; else null
-  const SensorModel& sensor;
-  std::vector<DualFrequencyFrame> frames;  ///< some, spread over all
-  Failures failures = {};                  ///< of what the map can do without
+  SensorModel sensor;
+  FrameSample sample;
+  std::vector<std::string> doubts = {};     ///< about what was recorded, and then about the map
+  nlohmann::ordered_json acquisition = {};  ///< of a device; else null
+  Failures failures = {};                   ///< of what the map can do without
 };
 
 /// A map, and what tells whether it is right.
@@ -127,8 +128,8 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
 /// What tells whether a map is right, and its mesh: a map without them is one, too.
 void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput& output) {
   output.failures.attempt("consistency", [&] {
-    finished.consistency =
-        consistency_of(finished.map, output.frames, output.sensor, output.options.pipeline);
+    finished.consistency = consistency_of(finished.map, output.sample, output.sensor,
+                                          unwrap_method(output.options.pipeline.unwrap));
     std::ranges::move(doubts_about(finished.consistency), std::back_inserter(output.doubts));
   });
   const auto add_file = [&](const char* name, const auto& write) {
@@ -166,15 +167,17 @@ FinishedMap finish_map(MapRun& run, OutputFolder& out, MapOutput& output) {
   return finished;
 }
 
-/// Adds report.html to a map that is in place; its truth is that of the recording, if there is one.
+/// Adds report.html to a map that is in place. Of a whole recording it shows the truth, if known.
 void add_page(const OutputFolder& out, const FinishedMap& finished, const MapOutput& output,
-              const SequenceReader* recording, const std::vector<std::string>& warnings) {
+              const MapInput& input, const SequenceReader* recording) {
+  std::vector<std::string> warnings = output.doubts;
+  if (!input.losses().empty()) warnings.push_back("not mapped: " + input.losses());
   std::optional<RecordedTruth> truth;
   if (recording) truth.emplace(*recording);
   write_map_page(out.final_path(),
-                 {output.arguments.recording.sequence.string(), finished.map, output.sensor,
-                  output.frames, recording, truth ? &*truth : nullptr, warnings,
-                  finished.consistency, output.options, output.options_yaml},
+                 {input.name(), finished.map, output.sensor, output.sample.frames(), recording,
+                  truth ? &*truth : nullptr, warnings, finished.consistency, output.options,
+                  output.options_yaml},
                  output.arguments.common.quiet);
   if (truth) print_remarks(*truth);
   if (!output.arguments.common.quiet) {
@@ -182,12 +185,24 @@ void add_page(const OutputFolder& out, const FinishedMap& finished, const MapOut
   }
 }
 
-/// The command's status, after parts were added to the map that is in place.
-int status_with(const OutputFolder& out, const RoomMap& map, const MapOutput& output,
-                const std::vector<OptionalPart>& parts) {
+/// Adds pictures and page to the map that is in place, and returns the status of the command.
+int add_reports(const OutputFolder& out, const FinishedMap& finished, const MapOutput& output,
+                MapInput& input) {
+  const RoomMap& map = finished.map;
+  const ProgramOptions& options = output.options;
+  const auto draw = [&](const std::filesystem::path& folder) {
+    write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
+    if (map.interrupted) return;
+    write_frame_pictures(folder, pictured_frames(output.sample.frames(), options.pictures),
+                         output.sensor, options.pipeline.unwrap, output.arguments.common.quiet);
+  };
+  const SequenceReader* recording = map.interrupted ? nullptr : input.recording();
   const int status =
       map.interrupted ? exit_status::interrupted : output.failures.status_or(exit_status::done);
-  return add_to_result(out.final_path(), status, parts);
+  return add_to_result(
+      out.final_path(), status,
+      {{"pictures", [&] { add_pictures(out.final_path(), draw); }},
+       {"report.html", [&] { add_page(out, finished, output, input, recording); }}});
 }
 
 /// A window for the map, if it is wanted.
@@ -196,111 +211,71 @@ std::unique_ptr<LiveView> open_view(const MapArguments& arguments) {
   return std::make_unique<LiveView>("tofmap " + arguments.recording.sequence.string());
 }
 
-/// How mapping goes, in a few words.
-std::string status_line(const MapRun& run) {
-  if (run.frames().empty()) return "";
-  return std::string(status_name(run.frames().back().tracking.status)) + ", " +
-         std::to_string(run.mapper().voxel_count()) + " voxels";
+void refuse_to_resume_device(const std::string& source) {
+  if (!is_device_uri(source)) return;
+  throw UsageError("--resume goes on with a recording; " + source +
+                   " does not come again. 'tofmap record' makes a recording of it");
 }
 
-/// Takes frames until the recording ends, or the user ends it. `remark` tells what is not told by
-/// the number of frames.
-void follow_camera(MapRun& run, FrameSource& source, bool quiet, LiveView* view,
-                   const std::function<std::string()>& remark) {
-  Progress progress("mapping frame", source.frame_count(), quiet);
+/// An empty sample, large enough for the page, the pictures and the consistency measures.
+FrameSample sample_for(MapInput& input, const ProgramOptions& options) {
+  const CameraModel& camera = input.frames().sensor().camera;
+  const int wanted =
+      std::max({consistency_frames(camera), options.report.frames, options.pictures.frames});
+  return FrameSample(camera, wanted, input.frames().frame_count());
+}
+
+/// How mapping goes, in a few words.
+std::string status_line(const MapRun& run, const MapInput& input) {
+  if (run.frames().empty()) return "";
+  const std::string losses = input.losses();
+  return std::string(status_name(run.frames().back().tracking.status)) + ", " +
+         std::to_string(run.mapper().voxel_count()) + " voxels" +
+         (losses.empty() ? "" : ", " + losses);
+}
+
+/// Maps frames until the input ends, or the user ends it. Some of them are kept in the sample.
+void map_frames(MapRun& run, MapInput& input, FrameSample& sample, bool quiet, LiveView* view) {
+  Progress progress("mapping frame", input.frames().frame_count(), quiet);
   MapHooks hooks;
   hooks.keep_going = [&](int done) {
-    progress.show(done, remark());
-    if (view) view->update(run, std::to_string(done) + " frames, " + status_line(run));
+    const std::string status = status_line(run, input);
+    progress.show(done, status);
+    if (view) view->update(run, std::to_string(done) + " frames, " + status);
     return !is_interrupted();
   };
-  run.advance(source, hooks);
+  hooks.on_frame = [&](const DualFrequencyFrame& frame, const PreparedFrame& prepared) {
+    sample.add(frame, prepared);
+  };
+  run.advance(input.frames(), hooks);
 }
 
-int map_recording(const MapArguments& arguments, const ProgramOptions& options,
-                  const OptionTable& table) {
-  SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
-  MapRun run(source.sensor(), options.pipeline);
-  if (arguments.resume) take_up_map(arguments.out, run, source, options.pipeline);
-  OutputFolder out(arguments.out);
-  const std::unique_ptr<LiveView> view = open_view(arguments);
-  MapOutput output{
-      arguments, options, table.to_yaml(false), doubts_about(source), {}, source.sensor(), {}, {}};
-  FinishedMap finished;
-  accompany(view.get(), [&] {
-    follow_camera(run, source, arguments.common.quiet, view.get(),
-                  [&] { return status_line(run); });
-    if (run.is_interrupted()) write_map_state(out.path(), run, source, options.pipeline);
-    output.frames = sampled_frames(source, static_cast<int>(run.frames().size()),
-                                   frames_for_page(source.sensor().camera, options.report));
-    finished = finish_map(run, out, output);
-  });
-  const RoomMap& map = finished.map;
-  if (map.interrupted && !arguments.common.quiet) {
+/// Resumes the run of an earlier result. Frames of it that belong to the sample are prepared again,
+/// since they are not kept with it.
+void resume(MapRun& run, SequenceReader& recording, const std::filesystem::path& folder,
+            FrameSample& sample, const PipelineOptions& options) {
+  resume_run(folder, run, recording, options);
+  const SensorModel& sensor = recording.sensor();
+  const PixelRays rays = pixel_rays(sensor.camera);
+  FrameMeasurer measurer(sensor, options.unwrap);
+  Unwrapper unwrapper(sensor, options.unwrap);
+  for (const int index : sample.missing(static_cast<int>(run.frames().size()))) {
+    stop_if_interrupted();
+    const SourcedFrame sourced = recording.read(index);
+    if (!sourced.frame) continue;
+    sample.add(*sourced.frame, prepare_ranges(measure_frame(*sourced.frame, measurer), unwrapper,
+                                              sensor, rays, options));
+  }
+}
+
+void print_end(const RoomMap& map, const MapInput& input, const OutputFolder& out) {
+  const bool can_be_resumed = map.interrupted && input.is_recording();
+  if (can_be_resumed) {
     std::printf("interrupted; --resume goes on from %s\n", out.final_path().c_str());
   }
-  const auto draw = [&](const std::filesystem::path& folder) {
-    write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
-    if (map.interrupted) return;
-    write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures,
-                         arguments.common.quiet);
-  };
-  const SequenceReader* recording = map.interrupted ? nullptr : &source;
-  const int status = status_with(
-      out, map, output,
-      {{"pictures", [&] { add_pictures(out.final_path(), draw); }},
-       {"report.html", [&] { add_page(out, finished, output, recording, output.doubts); }}});
-  if (view && status == exit_status::done) view->show_result(map);
-  return status;
-}
-
-int map_device(const MapArguments& arguments, const ProgramOptions& options,
-               const OptionTable& table) {
-  const std::string uri = arguments.recording.sequence.string();
-  if (arguments.resume) {
-    throw UsageError("--resume goes on with a recording; " + uri +
-                     " does not come again. 'tofmap record' makes a recording of it");
+  if (!input.losses().empty()) {
+    std::printf("not mapped: %s; see report.json\n", input.losses().c_str());
   }
-  OutputFolder out(arguments.out);
-  const std::unique_ptr<LiveView> view = open_view(arguments);
-  std::optional<LiveInput> input;
-  input.emplace(uri, options, LiveInput::Wanted{});
-  if (is_interrupted()) return exit_status::interrupted;
-  const SensorModel sensor = input->sensor();
-  SamplingSource frames(input->frames(), frames_for_page(sensor.camera, options.report));
-  MapRun run(sensor, options.pipeline);
-  const auto remark = [&] {
-    const std::string losses = input->losses();
-    return status_line(run) + (losses.empty() ? "" : ", " + losses);
-  };
-  MapOutput output{arguments, options, table.to_yaml(false), {}, {}, sensor, {}, {}};
-  FinishedMap finished;
-  accompany(view.get(), [&] {
-    follow_camera(run, frames, arguments.common.quiet, view.get(), remark);
-    output.doubts = input->doubts();
-    output.acquisition = input->report();
-    output.frames = frames.kept();
-    finished = finish_map(run, out, output);
-  });
-  const RoomMap& map = finished.map;
-  const std::string losses = input->losses();
-  const std::string silence = input->silence();
-  input.reset();  // its thread ends while the Ctrl-C that ends it still stands
-  if (!losses.empty() && !arguments.common.quiet) {
-    std::printf("not mapped: %s; see report.json\n", losses.c_str());
-  }
-  const auto draw = [&](const std::filesystem::path& folder) {
-    write_map_pictures(folder, map.surface, map.trajectory, options.pictures);
-  };
-  std::vector<std::string> warnings = output.doubts;
-  if (!losses.empty()) warnings.push_back("not mapped: " + losses);
-  const int status =
-      status_with(out, map, output,
-                  {{"pictures", [&] { add_pictures(out.final_path(), draw); }},
-                   {"report.html", [&] { add_page(out, finished, output, nullptr, warnings); }}});
-  if (view && status == exit_status::done) view->show_result(map);
-  if (!silence.empty()) throw InputError(silence);
-  return status;
 }
 
 int run_map(const MapArguments& arguments) {
@@ -308,9 +283,38 @@ int run_map(const MapArguments& arguments) {
   OptionTable table = arguments.common.resolve("map", options);
   arguments.recording.apply(table);
   if (!arguments.method.empty()) table.set("unwrap.method", arguments.method);
-  const bool is_device = is_device_uri(arguments.recording.sequence.string());
-  return is_device ? map_device(arguments, options, table)
-                   : map_recording(arguments, options, table);
+  const bool quiet = arguments.common.quiet;
+  if (arguments.resume) refuse_to_resume_device(arguments.recording.sequence.string());
+
+  MapInput input(arguments.recording.sequence, options);
+  if (is_interrupted()) return exit_status::interrupted;
+  MapOutput output{.arguments = arguments,
+                   .options = options,
+                   .options_yaml = table.to_yaml(false),
+                   .sensor = input.frames().sensor(),
+                   .sample = sample_for(input, options)};
+  MapRun run(output.sensor, options.pipeline);
+  if (arguments.resume) {
+    resume(run, *input.recording(), arguments.out, output.sample, options.pipeline);
+  }
+  OutputFolder out(arguments.out);
+  const std::unique_ptr<LiveView> view = open_view(arguments);
+  FinishedMap finished;
+  accompany(view.get(), [&] {
+    map_frames(run, input, output.sample, quiet, view.get());
+    output.doubts = input.doubts();
+    input.close();
+    output.acquisition = input.acquisition();
+    if (run.is_interrupted() && input.is_recording()) {
+      write_run_state(out.path(), run, *input.recording(), options.pipeline);
+    }
+    finished = finish_map(run, out, output);
+  });
+  if (!quiet) print_end(finished.map, input, out);
+  const int status = add_reports(out, finished, output, input);
+  if (view && status == exit_status::done) view->show_result(finished.map);
+  if (!input.silence().empty()) throw InputError(input.silence());
+  return status;
 }
 
 }  // namespace

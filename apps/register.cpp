@@ -18,7 +18,7 @@
 #include <tofmap/cloud/downsample.hpp>
 #include <tofmap/cloud/point_file.hpp>
 #include <tofmap/core/error.hpp>
-#include <tofmap/pipeline/cloud_registration.hpp>
+#include <tofmap/multiway/cloud_registration.hpp>
 
 namespace tofmap::app {
 namespace {

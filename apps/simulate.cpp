@@ -15,10 +15,10 @@
 #include <CLI/CLI.hpp>
 
 #include <tofmap/acquisition/sequence.hpp>
-#include <tofmap/acquisition/simulator.hpp>
-#include <tofmap/acquisition/tum_recording.hpp>
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/text.hpp>
+#include <tofmap/simulation/simulator.hpp>
+#include <tofmap/simulation/tum_recording.hpp>
 
 namespace tofmap::app {
 namespace {

@@ -11,21 +11,24 @@
 #include "output/output_folder.hpp"
 #include "output/pictures.hpp"
 #include "output/result_addition.hpp"
-#include "runs/frame_fusion.hpp"
-#include "runs/unwrapped_frame.hpp"
+#include "output/unwrapped_frame.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <deque>
 #include <memory>
 
 #include <CLI/CLI.hpp>
 #include <omp.h>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/side_by_side.hpp>
 #include <tofmap/core/text.hpp>
-#include <tofmap/pipeline/side_by_side.hpp>
-#include <tofmap/unwrap/beat.hpp>
+#include <tofmap/filters/sliding_fusion.hpp>
+#include <tofmap/pipeline/frame_sample.hpp>
+#include <tofmap/pipeline/measured_recording.hpp>
+#include <tofmap/unwrap/common/beat.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -70,14 +73,12 @@ struct UnwrappedRecording {
   int out_of_range = 0;         ///< pixels
   int frames_out_of_range = 0;  ///< that have such pixels
 
-  void add(const std::vector<UnwrappedFrame>& more) {
-    for (const UnwrappedFrame& frame : more) {
-      damaged += frame.damage.empty() ? 0 : 1;
-      if (first_damage.empty()) first_damage = frame.damage;
-      out_of_range += frame.out_of_range;
-      frames_out_of_range += frame.out_of_range > 0 ? 1 : 0;
-      frames.push_back(frame.report);
-    }
+  void add(const UnwrappedFrame& frame) {
+    damaged += frame.damage.empty() ? 0 : 1;
+    if (first_damage.empty()) first_damage = frame.damage;
+    out_of_range += frame.out_of_range;
+    frames_out_of_range += frame.out_of_range > 0 ? 1 : 0;
+    frames.push_back(frame.report);
   }
 
   bool is_empty() const {
@@ -86,55 +87,118 @@ struct UnwrappedRecording {
   }
 };
 
-void write_frames(const OutputFolder& out, std::vector<UnwrappedFrame>& ready) {
-  side_by_side(static_cast<int>(ready.size()), [&](int i) {
-    UnwrappedFrame& frame = ready[static_cast<std::size_t>(i)];
-    finish_frame(frame);
-    if (frame.damage.empty()) write_images(out.path(), frame);
-    return 0;
-  });
-}
+/// A frame that is kept for the pictures.
+struct KeptFrame {
+  std::filesystem::path stem;
+  DualFrequencyFrame recorded;
+  RangeImage unwrapped;
+};
 
-/// Until the recording ends, or the user ends it. Frames whose `poses` are known are fused.
-UnwrappedRecording unwrap_recording(const SequenceReader& source, const Trajectory& poses,
-                                    const UnwrapArguments& arguments, const ProgramOptions& options,
-                                    const OutputFolder& out) {
-  const PixelRays rays = pixel_rays(source.sensor().camera);
-  const UnwrappedFrameOptions frame_options{arguments.min_confidence, arguments.with_filters,
-                                            options.pipeline.filters};
-  FrameFusion fusion(source.sensor().camera, rays, poses, options.fusion);
-  auto unwrappers = one_a_thread(Unwrapper(source.sensor(), options.pipeline.unwrap));
-  MeasuredRecording measured(source, options.pipeline.unwrap);
-  const int total = *source.frame_count();
-  const std::vector<std::filesystem::path> names = image_names(source);
-  UnwrappedRecording result;
-  const auto finish = [&](std::vector<UnwrappedFrame> ready) {
-    write_frames(out, ready);
-    result.add(ready);
-  };
-  Progress progress("unwrapping frame", total, arguments.common.quiet);
+/// Unwraps the frames of a recording batch by batch, fuses them if their poses are known, and
+/// writes their images.
+class FrameWriter {
+ public:
+  FrameWriter(const SequenceReader& source, const Trajectory& poses,
+              const UnwrapArguments& arguments, const ProgramOptions& options,
+              const OutputFolder& out)
+      : source_(source),
+        poses_(poses),
+        rays_(pixel_rays(source.sensor().camera)),
+        options_{arguments.min_confidence, arguments.with_filters, options.pipeline.filters},
+        fusion_(source.sensor().camera, rays_, fusion_options(options, poses)),
+        unwrappers_(one_a_thread(Unwrapper(source.sensor(), options.pipeline.unwrap))),
+        measured_(source, options.pipeline.unwrap),
+        names_(image_names(source)),
+        pictured_(spread_indices(*source.frame_count(), options.pictures.frames)),
+        out_(out) {}
+
+  /// The frames begin … end − 1, which follow those of the call before.
+  void add(int begin, int end) {
+    const std::vector<MeasuredSource> sources = measured_.read(begin, end);
+    auto frames = side_by_side(end - begin, unwrappers_, [&](Unwrapper& unwrapper, int i) {
+      return unwrapped(sources[static_cast<std::size_t>(i)], begin + i, unwrapper);
+    });
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      UnwrappedFrame& frame = frames[i];
+      if (frame.unfiltered) {
+        kept_.push_back(
+            {frame.name.stem(), *sources[i].sourced.frame, *std::move(frame.unfiltered)});
+      }
+      std::optional<Pose> pose;
+      if (frame.damage.empty()) pose = pose_at(poses_, frame.timestamp_s);
+      fusion_.add(std::move(frame.image), pose);
+      waiting_.push_back(std::move(frame));
+    }
+    finish(false);
+  }
+
+  /// Fuses and writes the frames that have no later neighbours.
+  void finish() { finish(true); }
+
+  const UnwrappedRecording& result() const { return result_; }
+  const std::vector<KeptFrame>& kept() const { return kept_; }
+
+ private:
+  static FusionOptions fusion_options(const ProgramOptions& options, const Trajectory& poses) {
+    FusionOptions fusion = options.fusion;
+    if (poses.empty()) fusion.views = 0;
+    return fusion;
+  }
+
+  UnwrappedFrame unwrapped(const MeasuredSource& source, int index, Unwrapper& unwrapper) const {
+    UnwrappedFrameOptions options = options_;
+    options.keep_unfiltered = std::ranges::binary_search(pictured_, index);
+    UnwrappedFrame frame =
+        unwrap_frame(source, source_.sensor().modulation, unwrapper, rays_, options);
+    frame.name = names_[static_cast<std::size_t>(index)];
+    if (frame.name != source_.files()[static_cast<std::size_t>(index)].phase_a.filename()) {
+      frame.report["image"] = frame.name.string();
+    }
+    return frame;
+  }
+
+  void finish(bool at_the_end) {
+    const int ready = fusion_.ready(at_the_end);
+    side_by_side(ready, [&](int i) {
+      UnwrappedFrame& frame = waiting_[static_cast<std::size_t>(i)];
+      FusedFrame fused = fusion_.fused(i);
+      frame.image = std::move(fused.image);
+      if (fused.views > 0) add_fusion_counts(frame, fused.views);
+      finish_frame(frame);
+      if (frame.damage.empty()) write_images(out_.path(), frame);
+      return 0;
+    });
+    fusion_.drop(ready);
+    for (int i = 0; i < ready; ++i) {
+      result_.add(waiting_.front());
+      waiting_.pop_front();
+    }
+  }
+
+  const SequenceReader& source_;
+  const Trajectory& poses_;
+  PixelRays rays_;
+  UnwrappedFrameOptions options_;
+  SlidingFusion fusion_;
+  std::vector<Unwrapper> unwrappers_;
+  MeasuredRecording measured_;
+  std::vector<std::filesystem::path> names_;
+  std::vector<int> pictured_;
+  const OutputFolder& out_;
+  std::deque<UnwrappedFrame> waiting_;  ///< for their later neighbours
+  UnwrappedRecording result_;
+  std::vector<KeptFrame> kept_;
+};
+
+/// Unwraps frames until the recording ends, or the user ends it.
+void unwrap_all(FrameWriter& writer, int total, bool quiet) {
+  Progress progress("unwrapping frame", total, quiet);
   for (int begin = 0; begin < total && !is_interrupted();) {
     const int end = std::min(total, begin + omp_get_max_threads());
-    const std::vector<MeasuredSource> sources = measured.read(begin, end);
-    const auto unwrap_one = [&](Unwrapper& unwrapper, int i) {
-      UnwrappedFrame frame =
-          unwrap_frame(sources[static_cast<std::size_t>(i)], source.sensor().modulation, unwrapper,
-                       rays, frame_options);
-      const auto index = static_cast<std::size_t>(begin + i);
-      frame.name = names[index];
-      if (frame.name != source.files()[index].phase_a.filename()) {
-        frame.report["image"] = frame.name.string();
-      }
-      return frame;
-    };
-    for (UnwrappedFrame& frame : side_by_side(end - begin, unwrappers, unwrap_one)) {
-      fusion.add(std::move(frame));
-    }
-    finish(fusion.take(false));
+    writer.add(begin, end);
     progress.show(begin = end);
   }
-  finish(fusion.take(true));
-  return result;
+  writer.finish();
 }
 
 /// On stderr, what a user may not see in the images.
@@ -165,9 +229,11 @@ int run_unwrap(const UnwrapArguments& arguments) {
   OutputFolder out(arguments.out);
   for (const char* name : {"range", "wraps", "confidence", "reason"}) out.make(name);
 
-  const UnwrappedRecording result = unwrap_recording(source, poses, arguments, options, out);
-  const int done = static_cast<int>(result.frames.size());
   const int total = *source.frame_count();
+  FrameWriter writer(source, poses, arguments, options, out);
+  unwrap_all(writer, total, arguments.common.quiet);
+  const UnwrappedRecording& result = writer.result();
+  const int done = static_cast<int>(result.frames.size());
   refuse_mostly_damaged(result.damaged, done, result.first_damage);
   const bool interrupted = done < total;
   const Json report = {{"frames", result.frames},
@@ -183,7 +249,11 @@ int run_unwrap(const UnwrapArguments& arguments) {
   if (interrupted) return exit_status::interrupted;
   if (options.pictures.frames == 0) return exit_status::done;
   const auto draw = [&](const std::filesystem::path& folder) {
-    write_frame_pictures(folder, source, options.pipeline.unwrap, options.pictures,
+    std::vector<PicturedFrame> frames;
+    for (const KeptFrame& kept : writer.kept()) {
+      frames.push_back({kept.stem.string(), &kept.recorded, &kept.unwrapped});
+    }
+    write_frame_pictures(folder, frames, source.sensor(), options.pipeline.unwrap,
                          arguments.common.quiet);
   };
   return add_to_result(out.final_path(), exit_status::done,

@@ -6,8 +6,8 @@
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
-#include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
+#include <tofmap/simulation/simulator.hpp>
 
 namespace tofmap {
 namespace {

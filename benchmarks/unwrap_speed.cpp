@@ -12,9 +12,9 @@
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
-#include <tofmap/acquisition/simulator.hpp>
-#include <tofmap/unwrap/count_propagation.hpp>
-#include <tofmap/unwrap/jump_estimate.hpp>
+#include <tofmap/simulation/simulator.hpp>
+#include <tofmap/unwrap/joint/count_propagation.hpp>
+#include <tofmap/unwrap/jump/jump_estimate.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap {

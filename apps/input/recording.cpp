@@ -42,6 +42,12 @@ void print_doubts(const std::vector<std::string>& doubts) {
   for (const std::string& doubt : doubts) std::printf("doubtful: %s\n", doubt.c_str());
 }
 
+void print_remarks(const RecordedTruth& truth) {
+  for (const std::string& remark : truth.remarks()) {
+    std::fprintf(stderr, "tofmap: %s\n", remark.c_str());
+  }
+}
+
 SequenceReader open_recording(const std::filesystem::path& sequence, const CameraOptions& options) {
   return SequenceReader(sequence, calibration_of(options));
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/evaluation/recorded_truth.hpp>
 
 namespace CLI {
 class App;
@@ -38,6 +39,9 @@ std::vector<std::filesystem::path> image_names(const SequenceReader& recording);
 
 /// On stdout, a line each.
 void print_doubts(const std::vector<std::string>& doubts);
+
+/// Prints what of the truth is damaged on stderr.
+void print_remarks(const RecordedTruth& truth);
 
 /// Opens a recording of a calibrated camera.
 SequenceReader open_recording(const std::filesystem::path& sequence, const CameraOptions& options);

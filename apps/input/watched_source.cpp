@@ -7,8 +7,8 @@
 
 #include <tofmap/core/median.hpp>
 #include <tofmap/core/text.hpp>
-#include <tofmap/pipeline/axial_depth.hpp>
-#include <tofmap/pipeline/beat_survey.hpp>
+#include <tofmap/diagnostics/axial_depth.hpp>
+#include <tofmap/diagnostics/beat_survey.hpp>
 
 namespace tofmap::app {
 namespace {

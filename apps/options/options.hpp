@@ -10,12 +10,12 @@
 #include <vector>
 
 #include <tofmap/acquisition/openni2_source.hpp>
-#include <tofmap/acquisition/simulator.hpp>
-#include <tofmap/acquisition/tum_recording.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/filters/view_fusion.hpp>
-#include <tofmap/pipeline/cloud_registration.hpp>
+#include <tofmap/multiway/cloud_registration.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
+#include <tofmap/simulation/simulator.hpp>
+#include <tofmap/simulation/tum_recording.hpp>
 
 namespace tofmap::app {
 

@@ -9,8 +9,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <tofmap/core/error.hpp>
-
 namespace tofmap::app {
 namespace {
 
@@ -46,12 +44,12 @@ Json loops_json(const RoomMap& map) {
   return loops;
 }
 
-/// Mean over the frames that were read.
+/// Mean over the frames that were unwrapped and tracked.
 double mean_of(const RoomMap& map, const std::function<double(const FrameRecord&)>& value) {
   double sum = 0;
   int count = 0;
   for (const FrameRecord& record : map.frames) {
-    if (!record.damage.empty()) continue;
+    if (!record.is_prepared()) continue;
     sum += value(record);
     ++count;
   }
@@ -83,7 +81,10 @@ Json frame_json(const FrameRecord& record) {
     json["damage"] = record.damage;
     return json;
   }
-  if (record.repeats) json["repeats"] = true;
+  if (record.repeats) {
+    json["repeats"] = true;
+    return json;
+  }
   json["iterations"] = record.iterations;
   json["curl_violations"] = record.curl_violations;
   json["phase_noise_cycles"] = record.phase_noise_cycles;
@@ -120,30 +121,13 @@ Json errors_json(const ErrorSurvey& survey) {
 
 Json summary_json(const RoomMap& map) {
   const StageTimes mean = mean_times(map);
-  int degenerate = 0;
-  for (const FrameRecord& record : map.frames) {
-    degenerate += record.tracking.registration.degenerate_directions > 0 ? 1 : 0;
-  }
-  return {{"frames", map.frames.size()},       {"damaged", map.damaged()},
-          {"repeated", map.repeated()},        {"registered", map.trajectory.size()},
-          {"keyframes", map.keyframes.size()}, {"frames_with_degenerate_directions", degenerate},
-          {"loops", loops_json(map)},          {"map_points", map.surface.size()},
-          {"interrupted", map.interrupted},    {"milliseconds_per_frame", mean.total_ms()},
-          {"milliseconds", times_json(mean)}};
-}
-
-void refuse_mostly_damaged(int damaged, int total, const std::string& first_damage) {
-  if (2 * damaged <= total) return;
-  throw InputError(
-      std::to_string(damaged) + " of " + std::to_string(total) +
-      " frames are damaged, more than half; nothing was written. The first: " + first_damage);
-}
-
-void refuse_mostly_damaged(const RoomMap& map) {
-  const auto first = std::ranges::find_if(
-      map.frames, [](const FrameRecord& record) { return !record.damage.empty(); });
-  if (first == map.frames.end()) return;
-  refuse_mostly_damaged(map.damaged(), static_cast<int>(map.frames.size()), first->damage);
+  return {
+      {"frames", map.frames.size()},       {"damaged", map.damaged()},
+      {"repeated", map.repeated()},        {"registered", map.trajectory.size()},
+      {"keyframes", map.keyframes.size()}, {"frames_with_degenerate_directions", map.degenerate()},
+      {"loops", loops_json(map)},          {"map_points", map.surface.size()},
+      {"interrupted", map.interrupted},    {"milliseconds_per_frame", mean.total_ms()},
+      {"milliseconds", times_json(mean)}};
 }
 
 }  // namespace tofmap::app

@@ -30,10 +30,4 @@ nlohmann::ordered_json summary_json(const RoomMap& map);
 /// What is known of the camera's errors, and what to tell of it.
 nlohmann::ordered_json errors_json(const ErrorSurvey& survey);
 
-/// Throws InputError that names the first damaged frame if more than half are damaged.
-void refuse_mostly_damaged(int damaged, int total, const std::string& first_damage);
-
-/// The same for all frames of a map.
-void refuse_mostly_damaged(const RoomMap& map);
-
 }  // namespace tofmap::app

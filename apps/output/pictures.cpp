@@ -5,16 +5,15 @@
 
 #include "console/interruption.hpp"
 #include "console/progress.hpp"
-#include "input/recording.hpp"
-#include "input/sampled_frames.hpp"
 #include "output/result_addition.hpp"
 
 #include <algorithm>
 #include <cstdio>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
 #include <tofmap/evaluation/range_score.hpp>
-#include <tofmap/unwrap/jump_estimate.hpp>
+#include <tofmap/unwrap/jump/jump_estimate.hpp>
 #include <tofmap/visualization/cloud_pictures.hpp>
 #include <tofmap/visualization/drawing.hpp>
 #include <tofmap/visualization/frame_pictures.hpp>
@@ -54,20 +53,21 @@ Picture jump_stages_picture(const DualFrequencyFrame& frame, const SensorModel& 
   return jump_picture(stages);
 }
 
-void write_pictures_of(const DualFrequencyFrame& frame, const SensorModel& sensor,
-                       const PixelRays& rays, const UnwrapOptions& options,
-                       const std::filesystem::path& stem) {
-  const RangeImage unwrapped = unwrap(frame, sensor, options).image;
+void write_pictures_of(const PicturedFrame& frame, const SensorModel& sensor, const PixelRays& rays,
+                       const UnwrapOptions& options, const std::filesystem::path& folder) {
+  const RangeImage& unwrapped = *frame.unwrapped;
   const auto wavelength_m = static_cast<float>(sensor.modulation.wavelength_a_m());
-  const ImageF wrapped_m = (unwrapped.reason == 0).select(frame.phase_a * wavelength_m, NAN);
+  const ImageF wrapped_m =
+      (unwrapped.reason == 0).select(frame.recorded->phase_a * wavelength_m, NAN);
   const auto write = [&](const char* what, const Picture& picture) {
-    write_picture(stem.string() + "_" + what + ".png", picture);
+    write_picture(folder / (frame.stem + "_" + what + ".png"), picture);
   };
   write("range", range_picture(wrapped_m, unwrapped.range_m));
   write("wraps", wrap_count_picture(unwrapped.wrap_count));
   write("confidence", confidence_picture(unwrapped));
-  if (finds_jumps(unwrap_method(options)))
-    write("jumps", jump_stages_picture(frame, sensor, options));
+  if (finds_jumps(unwrap_method(options))) {
+    write("jumps", jump_stages_picture(*frame.recorded, sensor, options));
+  }
   write("cloud", cloud_picture(unwrapped, wrapped_m, rays));
 }
 
@@ -92,62 +92,83 @@ FilteredRanges filtered_ranges(const std::string& method, const RangeImage& befo
   return {title, before.range_m, after.reason};
 }
 
+std::string stem_of(const SampledFrame& frame) { return formatted("%06d", frame.recorded.index); }
+
+/// What every method made of one frame; null where a method has it not in its sample.
+std::vector<const SampledFrame*> frame_of_all(const std::vector<MethodResult>& results, int index) {
+  std::vector<const SampledFrame*> frames;
+  for (const MethodResult& result : results) {
+    const auto found = std::ranges::find_if(
+        result.sample, [&](const SampledFrame& frame) { return frame.recorded.index == index; });
+    frames.push_back(found == result.sample.end() ? nullptr : &*found);
+  }
+  return frames;
+}
+
+/// The frame as a run without unwrapping has it.
+PreparedFrame wrapped_frame(const DualFrequencyFrame& frame, const SensorModel& sensor,
+                            const PixelRays& rays, PipelineOptions pipeline) {
+  pipeline.unwrap.method = "none";
+  FrameMeasurer measurer(sensor, pipeline.unwrap);
+  Unwrapper unwrapper(sensor, pipeline.unwrap);
+  return prepare_ranges(measure_frame(frame, measurer), unwrapper, sensor, rays, pipeline);
+}
+
 }  // namespace
 
-void write_frame_pictures(const std::filesystem::path& folder, const SequenceReader& source,
-                          const UnwrapOptions& unwrap, const PictureOptions& options, bool quiet) {
-  const PixelRays rays = pixel_rays(source.sensor().camera);
-  const std::vector<int> indices = spread_indices(*source.frame_count(), options.frames);
-  const std::vector<std::filesystem::path> names = image_names(source);
-  Progress progress("drawing frame", static_cast<int>(indices.size()), quiet);
+std::vector<PicturedFrame> pictured_frames(const std::vector<SampledFrame>& sample,
+                                           const PictureOptions& options) {
+  std::vector<PicturedFrame> frames;
+  for (const int i : spread_indices(static_cast<int>(sample.size()), options.frames)) {
+    const SampledFrame& frame = sample[static_cast<std::size_t>(i)];
+    frames.push_back({stem_of(frame), &frame.recorded, &frame.unwrapped.image});
+  }
+  return frames;
+}
+
+void write_frame_pictures(const std::filesystem::path& folder,
+                          const std::vector<PicturedFrame>& frames, const SensorModel& sensor,
+                          const UnwrapOptions& unwrap, bool quiet) {
+  const PixelRays rays = pixel_rays(sensor.camera);
+  Progress progress("drawing frame", static_cast<int>(frames.size()), quiet);
   int done = 0;
-  for (const int index : indices) {
+  for (const PicturedFrame& frame : frames) {
     stop_if_interrupted();
     progress.show(done++);
-    const SourcedFrame frame = source.read(index);
-    if (!frame.frame) continue;
-    const std::filesystem::path& name = names[static_cast<std::size_t>(index)];
-    write_pictures_of(*frame.frame, source.sensor(), rays, unwrap, folder / name.stem());
+    write_pictures_of(frame, sensor, rays, unwrap, folder);
   }
 }
 
-void write_method_pictures(const std::filesystem::path& folder, const SequenceReader& source,
-                           const RecordedTruth& recorded, const std::vector<std::string>& methods,
-                           UnwrapOptions unwrap, const FilterOptions& filters,
+void write_method_pictures(const std::filesystem::path& folder,
+                           const std::vector<MethodResult>& results, const RecordedTruth& recorded,
+                           const SensorModel& sensor, const PipelineOptions& pipeline,
                            const PictureOptions& options, bool quiet) {
-  const PixelRays rays = pixel_rays(source.sensor().camera);
-  const double wavelength_m = source.sensor().modulation.wavelength_a_m();
-  const std::vector<int> indices = spread_indices(*source.frame_count(), options.frames);
-  const std::vector<std::filesystem::path> names = image_names(source);
-  Progress progress("drawing methods, frame", static_cast<int>(indices.size()), quiet);
+  const PixelRays rays = pixel_rays(sensor.camera);
+  const double wavelength_m = sensor.modulation.wavelength_a_m();
+  const std::vector<SampledFrame>& sample = results.back().sample;
+  const std::vector<int> chosen = spread_indices(static_cast<int>(sample.size()), options.frames);
+  Progress progress("drawing methods, frame", static_cast<int>(chosen.size()), quiet);
   int done = 0;
-  for (const int index : indices) {
+  for (const int i : chosen) {
     stop_if_interrupted();
     progress.show(done++);
-    const SourcedFrame frame = source.read(index);
-    if (!frame.frame) continue;
-    const std::optional<ImageF> truth_m = recorded.range_m(index);
-    const auto unwrapped_by = [&](const std::string& method) {
-      unwrap.method = method;
-      return tofmap::unwrap(*frame.frame, source.sensor(), unwrap).image;
-    };
-    const auto filtered_by = [&](const std::string& method, const RangeImage& image) {
-      return filtered_ranges(
-          method, image,
-          apply_filters(image, *frame.frame, source.sensor().modulation, rays, filters).image);
-    };
+    const SampledFrame& last = sample[static_cast<std::size_t>(i)];
+    const std::optional<ImageF> truth_m = recorded.range_m(last.recorded.index);
+    const std::vector<const SampledFrame*> frames = frame_of_all(results, last.recorded.index);
     std::vector<MethodRanges> ranges;
-    RangeImage last;
-    for (const std::string& method : methods) {
-      last = unwrapped_by(method);
-      ranges.push_back({method_title(method, last, truth_m, wavelength_m), last.range_m});
+    for (std::size_t m = 0; m < frames.size(); ++m) {
+      if (!frames[m]) continue;
+      const RangeImage& image = frames[m]->unwrapped.image;
+      ranges.push_back(
+          {method_title(results[m].name, image, truth_m, wavelength_m), image.range_m});
     }
-    const std::string stem = names[static_cast<std::size_t>(index)].stem().string();
-    write_picture(folder / (stem + "_methods.png"),
+    write_picture(folder / (stem_of(last) + "_methods.png"),
                   method_picture(ranges, truth_m.value_or(ImageF()), wavelength_m));
-    const std::vector<FilteredRanges> filtered{filtered_by("none", unwrapped_by("none")),
-                                               filtered_by(methods.back(), last)};
-    write_picture(folder / (stem + "_filters.png"), filter_picture(filtered));
+    const PreparedFrame wrapped = wrapped_frame(last.recorded, sensor, rays, pipeline);
+    const std::vector<FilteredRanges> filtered{
+        filtered_ranges("none", wrapped.unwrapped.image, wrapped.filtered.image),
+        filtered_ranges(results.back().name, last.unwrapped.image, last.filtered)};
+    write_picture(folder / (stem_of(last) + "_filters.png"), filter_picture(filtered));
   }
 }
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "input/recorded_truth.hpp"
 #include "options/report_options.hpp"
 
 #include <filesystem>
@@ -10,25 +9,36 @@
 #include <string>
 #include <vector>
 
-#include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/cloud/cloud_file.hpp>
 #include <tofmap/core/trajectory.hpp>
-#include <tofmap/filters/filter_chain.hpp>
-#include <tofmap/unwrap/unwrap.hpp>
+#include <tofmap/evaluation/method_run.hpp>
+#include <tofmap/pipeline/frame_sample.hpp>
 
 namespace tofmap::app {
 
-/// Writes ranges, wrap counts, jump probabilities and clouds of a few frames, spread evenly over
-/// the recording, as `<frame>_<what>.png`. Damaged frames have none. Throws Interrupted.
-void write_frame_pictures(const std::filesystem::path& folder, const SequenceReader& source,
-                          const UnwrapOptions& unwrap, const PictureOptions& options, bool quiet);
+/// A frame to be drawn, with what unwrapping made of it. Both must outlive this.
+struct PicturedFrame {
+  std::string stem;  ///< of the names of its pictures
+  const DualFrequencyFrame* recorded = nullptr;
+  const RangeImage* unwrapped = nullptr;
+};
 
-/// Writes what every method makes of a few frames, as `<frame>_methods.png`, and what filters
-/// remove of it without unwrapping and after it, by the last method, as `<frame>_filters.png`.
-/// Throws Interrupted.
-void write_method_pictures(const std::filesystem::path& folder, const SequenceReader& source,
-                           const RecordedTruth& recorded, const std::vector<std::string>& methods,
-                           UnwrapOptions unwrap, const FilterOptions& filters,
+/// At most options.frames of the sampled frames, spread evenly, named by their index.
+std::vector<PicturedFrame> pictured_frames(const std::vector<SampledFrame>& sample,
+                                           const PictureOptions& options);
+
+/// Writes ranges, wrap counts, confidence, jump probabilities and clouds of frames, as
+/// `<stem>_<what>.png`. Throws Interrupted.
+void write_frame_pictures(const std::filesystem::path& folder,
+                          const std::vector<PicturedFrame>& frames, const SensorModel& sensor,
+                          const UnwrapOptions& unwrap, bool quiet);
+
+/// Writes what every method makes of the frames that all results have in their samples, at most
+/// options.frames, as `<frame>_methods.png`; and what filters remove without unwrapping and after
+/// the last method, as `<frame>_filters.png`. `results` is not empty. Throws Interrupted.
+void write_method_pictures(const std::filesystem::path& folder,
+                           const std::vector<MethodResult>& results, const RecordedTruth& recorded,
+                           const SensorModel& sensor, const PipelineOptions& pipeline,
                            const PictureOptions& options, bool quiet);
 
 /// Writes the map from above and from inside, as map_above.png and map_inside.png.

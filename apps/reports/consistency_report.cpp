@@ -7,28 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <tofmap/core/text.hpp>
-
 namespace tofmap::app {
-std::vector<std::string> doubts_about(const Consistency& consistency) {
-  // Measured: docs/evaluation.md. NaN is no more than any limit.
-  constexpr double most_contradicted_percent = 3;
-  constexpr double most_misfit_percent = 10;
-  std::vector<std::string> doubts;
-  if (consistency.contradicted_percent > most_contradicted_percent) {
-    doubts.push_back(formatted(
-        "frames contradict each other in %.1f %% of what they both see: ranges or path are wrong",
-        consistency.contradicted_percent));
-  }
-  if (consistency.beat_misfit_percent > most_misfit_percent) {
-    doubts.push_back(
-        formatted("%.0f %% of the pixels would fit both frequencies better with another "
-                  "wrap count: wraps are wrong, or the frequencies' offsets differ "
-                  "('tofmap info' tells)",
-                  consistency.beat_misfit_percent));
-  }
-  return doubts;
-}
 
 nlohmann::ordered_json consistency_json(const Consistency& consistency) {
   return {{"beat_misfit_percent", json_number(consistency.beat_misfit_percent)},

@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "runs/method_run.hpp"
-
 #include <span>
 #include <string>
 #include <vector>
 
+#include <tofmap/evaluation/method_run.hpp>
 #include <tofmap/evaluation/trajectory_score.hpp>
 #include <tofmap/visualization/report_page.hpp>
 

@@ -3,13 +3,11 @@
 
 #include "reports/evaluation_page.hpp"
 
-#include "input/sampled_frames.hpp"
 #include "reports/consistency_report.hpp"
 #include "reports/error_curves.hpp"
 #include "reports/evaluation_report.hpp"
 #include "reports/map_section.hpp"
 #include "reports/report_sections.hpp"
-#include "reports/verdict.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include <tofmap/core/text.hpp>
-#include <tofmap/pipeline/recording_survey.hpp>
+#include <tofmap/diagnostics/recording_survey.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -103,12 +101,13 @@ std::vector<std::string> warnings_of(const EvaluationPageSubject& subject) {
 Judgement judgement_of(const EvaluationPageSubject& subject) {
   const MethodResult& with = with_unwrapping(subject);
   if (with.map) {
-    return judge({.map = *with.map,
-                  .method = with.name,
-                  .score = with.scores.surface,
-                  .voxel_m = subject.options.pipeline.map.voxel_m,
-                  .is_seen_twice = !std::isnan(with.consistency->contradicted_percent),
-                  .is_warned = !warnings_of(subject).empty()});
+    PipelineOptions pipeline = subject.options.pipeline;
+    pipeline.unwrap.method = with.name;
+    MapEvidence evidence = evidence_of(*with.map, pipeline);
+    if (with.scores.surface) evidence.accuracy_m = with.scores.surface->accuracy_m;
+    evidence.is_seen_twice = !std::isnan(with.consistency->contradicted_percent);
+    evidence.is_warned = !warnings_of(subject).empty();
+    return judge(evidence);
   }
   const Verdict of_ranges = verdict_on_wraps(mean_score(scores_of(with)).wrong_wrap_percent);
   return {std::max(of_ranges, subject.warnings.empty() ? Verdict::good : Verdict::doubtful), {}};
@@ -160,7 +159,7 @@ void add_runs(ReportPage& page, const EvaluationPageSubject& subject) {
 }  // namespace
 
 void write_evaluation_page(const std::filesystem::path& result,
-                           const EvaluationPageSubject& subject, bool quiet) {
+                           const EvaluationPageSubject& subject) {
   const MethodResult& with = with_unwrapping(subject);
   ReportPage page("With and without unwrapping: " + subject.recording.folder().string(),
                   "tofmap " TOFMAP_VERSION);
@@ -173,16 +172,9 @@ void write_evaluation_page(const std::filesystem::path& result,
   page.add_table(methods_table(subject.report));
   if (with.map) add_maps(page, shown_maps(subject), subject.truth.poses, subject.options.report);
   add_curves(page, subject);
-  PageProgress progress(static_cast<std::size_t>(subject.options.report.frames), quiet);
-  PipelineOptions pipeline = subject.options.pipeline;
-  pipeline.unwrap.method = with.name;
   add_frames(
-      page,
-      sampled_frames(subject.recording, *subject.recording.frame_count(),
-                     subject.options.report.frames),
-      subject.recording.sensor(), pipeline,
-      [&](int index) { return subject.recorded_truth.range_m(index); }, subject.options.report,
-      progress);
+      page, with.sample, subject.recording.sensor().modulation,
+      [&](int index) { return subject.recorded_truth.range_m(index); }, subject.options.report);
   add_runs(page, subject);
   add_options(page, subject.options_yaml);
   write_page(result, page);

@@ -3,13 +3,14 @@
 #pragma once
 
 #include "options/options.hpp"
-#include "runs/method_run.hpp"
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
+
+#include <tofmap/evaluation/method_run.hpp>
 
 namespace tofmap::app {
 
@@ -26,8 +27,8 @@ struct EvaluationPageSubject {
 };
 
 /// Writes report.html into a result that is in place already: what unwrapping does to ranges, path
-/// and map. Throws InputError if it cannot be written, and Interrupted.
+/// and map. Throws InputError if it cannot be written.
 void write_evaluation_page(const std::filesystem::path& result,
-                           const EvaluationPageSubject& subject, bool quiet);
+                           const EvaluationPageSubject& subject);
 
 }  // namespace tofmap::app

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "runs/method_run.hpp"
-
 #include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
+
+#include <tofmap/evaluation/method_run.hpp>
 
 namespace tofmap::app {
 

@@ -3,18 +3,20 @@
 
 #include "reports/map_page.hpp"
 
+#include "console/interruption.hpp"
+#include "console/progress.hpp"
 #include "output/frame_report.hpp"
 #include "reports/error_curves.hpp"
 #include "reports/map_section.hpp"
+#include "reports/page_progress.hpp"
 #include "reports/report_sections.hpp"
-#include "reports/verdict.hpp"
-#include "runs/method_run.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
 #include <tofmap/core/text.hpp>
+#include <tofmap/evaluation/method_run.hpp>
 #include <tofmap/visualization/plot.hpp>
 
 namespace tofmap::app {
@@ -26,55 +28,55 @@ std::optional<ImageF> range_truth(const MapPageSubject& subject, int frame) {
 
 double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
 
-std::size_t shown_frames(const MapPageSubject& subject) {
-  return std::min(subject.frames.size(), static_cast<std::size_t>(subject.options.report.frames));
-}
-
-/// The map that the same path would give if nobody unwrapped.
-MapCloud wrapped_map(const MapPageSubject& subject, PageProgress& progress) {
-  PipelineOptions options = subject.options.pipeline;
-  options.unwrap.method = "none";
-  options.map.min_observations = 1;  // there are but some of the frames
-  FrameMeasurer measurer(subject.sensor, options.unwrap);
-  Unwrapper unwrapper(subject.sensor, options.unwrap);
-  const PixelRays rays = pixel_rays(subject.sensor.camera);
-  SurfaceMap map(options.map);
-  for (const DualFrequencyFrame& frame : subject.frames) {
-    progress.next_frame();
-    const auto pose = pose_at(subject.map.trajectory, frame.timestamp_s);
-    if (!pose) continue;
-    const PreparedFrame prepared =
-        prepare_frame(measure_frame(frame, measurer), unwrapper, subject.sensor, rays, options);
-    map.integrate(*prepared.cloud, *pose);
-  }
-  return map.extract();
-}
-
-/// What a method makes of the page's frames.
+/// What unwrapping made of the page's frames.
 struct UnwrappedSample {
   std::vector<UnwrappingRecord> frames;
   double moved_percent = 0;  ///< of the ranges
 };
 
-UnwrappedSample unwrap_sample(const MapPageSubject& subject, const std::string& method,
-                              PageProgress& progress) {
-  UnwrapOptions options = subject.options.pipeline.unwrap;
-  options.method = method;
-  Unwrapper unwrapper(subject.sensor, options);
+UnwrappedSample unwrapped_sample(const MapPageSubject& subject) {
   UnwrappedSample sample;
   double moved = 0;
   double valid = 0;
-  for (const DualFrequencyFrame& frame : subject.frames) {
-    progress.next_frame();
-    const UnwrapResult unwrapped = unwrapper.unwrap(frame);
-    const RangeImage& image = unwrapped.image;
+  for (const SampledFrame& frame : subject.sample) {
+    const RangeImage& image = frame.unwrapped.image;
     valid += image.count_valid();
     moved += static_cast<double>((image.reason == 0 && image.wrap_count > 0).count());
-    sample.frames.push_back(record_of(unwrapped, frame.timestamp_s, 0,
-                                      range_truth(subject, frame.index),
+    sample.frames.push_back(record_of(frame.unwrapped, frame.recorded.timestamp_s, 0,
+                                      range_truth(subject, frame.recorded.index),
                                       subject.sensor.modulation.wavelength_a_m()));
   }
   sample.moved_percent = percent(moved, valid);
+  return sample;
+}
+
+/// What the page's frames would give along the same path without unwrapping.
+struct WrappedSample {
+  MapCloud map;
+  std::vector<UnwrappingRecord> frames;
+};
+
+WrappedSample wrapped_sample(const MapPageSubject& subject, bool quiet) {
+  PipelineOptions options = subject.options.pipeline;
+  options.unwrap.method = "none";
+  options.map.min_observations = 1;  // the sample is small
+  FrameMeasurer measurer(subject.sensor, options.unwrap);
+  Unwrapper unwrapper(subject.sensor, options.unwrap);
+  const PixelRays rays = pixel_rays(subject.sensor.camera);
+  SurfaceMap map(options.map);
+  WrappedSample sample;
+  PageProgress progress(subject.sample.size(), quiet);
+  for (const SampledFrame& frame : subject.sample) {
+    progress.next_frame();
+    const PreparedFrame prepared = prepare_frame(measure_frame(frame.recorded, measurer), unwrapper,
+                                                 subject.sensor, rays, options);
+    sample.frames.push_back(record_of(prepared.unwrapped, prepared.timestamp_s, 0,
+                                      range_truth(subject, prepared.index),
+                                      subject.sensor.modulation.wavelength_a_m()));
+    const auto pose = pose_at(subject.map.trajectory, prepared.timestamp_s);
+    if (pose) map.integrate(*prepared.cloud, *pose);
+  }
+  sample.map = map.extract();
   return sample;
 }
 
@@ -122,7 +124,7 @@ PageTable summary_table(const RoomMap& map, const MapScores& scores) {
   add("damaged", std::to_string(map.damaged()));
   add("placed", std::to_string(map.trajectory.size()));
   add("degenerate (a direction that no surface held), %",
-      formatted("%.1f", degenerate_percent(map)));
+      formatted("%.1f", percent(map.degenerate(), static_cast<double>(map.frames.size()))));
   add("keyframes", std::to_string(map.keyframes.size()));
   add("loops found, and believed", std::to_string(map.loops.size()) + ", " + std::to_string(used));
   add("points of the map", std::to_string(map.surface.size()));
@@ -147,7 +149,7 @@ Plot tracking_plot(const RoomMap& map) {
   PlotLine inliers{"points that fit", {}, {}};
   PlotLine kept{"pixels kept by filters", {}, {}};
   for (const FrameRecord& frame : map.frames) {
-    if (!frame.damage.empty()) continue;
+    if (!frame.is_prepared()) continue;
     const double time_s = frame.timestamp_s - map.frames.front().timestamp_s;
     for (PlotLine* line : {&overlap, &inliers, &kept}) line->x.push_back(time_s);
     overlap.y.push_back(frame.tracking.registration.overlap);
@@ -157,20 +159,16 @@ Plot tracking_plot(const RoomMap& map) {
   return {"", "time, s", "share", {overlap, inliers, kept}, 0, 1};
 }
 
-/// Of the path and of the frames' ranges, and of these as measured.
+/// Errors of the path and of the frames' ranges, with and without unwrapping.
 void add_errors(ReportPage& page, const MapPageSubject& subject, const Truth& truth,
-                const MapScores& scores, const UnwrappedSample& sample, PageProgress& progress) {
-  const std::string& method = subject.options.pipeline.unwrap.method;
-  std::vector<MethodErrors> methods{{method, {}, sample.frames}};
+                const MapScores& scores, const UnwrappedSample& sample,
+                const WrappedSample& wrapped) {
+  std::vector<MethodErrors> methods{{subject.options.pipeline.unwrap.method, {}, sample.frames}};
   if (scores.trajectory) {
     methods.back().path =
         pose_errors(subject.map.trajectory, truth.poses, scores.trajectory->truth_from_estimate);
   }
-  UnwrappedSample as_measured;
-  if (method != "none") {
-    as_measured = unwrap_sample(subject, "none", progress);
-    methods.push_back({"none", {}, as_measured.frames});
-  }
+  if (!wrapped.frames.empty()) methods.push_back({"none", {}, wrapped.frames});
   add_error_curves(page, methods);
 }
 
@@ -182,7 +180,7 @@ std::vector<ShownMap> shown_maps(const MapPageSubject& subject, const Truth& tru
   if (wrapped.empty()) return maps;
   ShownMap as_measured = maps.front();
   as_measured.name =
-      "the same path, ranges as measured (of " + counted(subject.frames.size(), "frame") + ")";
+      "the same path, ranges as measured (of " + counted(subject.sample.size(), "frame") + ")";
   as_measured.surface = &wrapped;
   if (scores.surface) {
     as_measured.errors_m =
@@ -194,41 +192,38 @@ std::vector<ShownMap> shown_maps(const MapPageSubject& subject, const Truth& tru
 
 }  // namespace
 
-int frames_for_page(const CameraModel& camera, const ReportOptions& options) {
-  return std::max(consistency_frames(camera), options.frames);
-}
-
 void write_map_page(const std::filesystem::path& result, const MapPageSubject& subject,
                     bool quiet) {
   const RoomMap& map = subject.map;
-  const Truth truth =
-      subject.truth ? read_truth(*subject.recording, *subject.truth, quiet) : Truth{};
+  Truth truth;
+  if (subject.truth) {
+    Progress progress("reading truth, frame", subject.recording->frame_count(), quiet);
+    truth = read_truth(*subject.recording, *subject.truth, [&](int index) {
+      stop_if_interrupted();
+      progress.show(index);
+    });
+  }
   const MapScores scores = score_of(map, truth);
+  const UnwrappedSample sample = unwrapped_sample(subject);
   const bool is_unwrapped = subject.options.pipeline.unwrap.method != "none";
-  // Unwrapped; if that is not all that was done, as measured, and for the map of these; shown.
-  PageProgress progress((is_unwrapped ? 3 : 1) * subject.frames.size() + shown_frames(subject),
-                        quiet);
-  const MapCloud wrapped = is_unwrapped ? wrapped_map(subject, progress) : MapCloud();
-  const UnwrappedSample sample =
-      unwrap_sample(subject, subject.options.pipeline.unwrap.method, progress);
+  const WrappedSample wrapped = is_unwrapped ? wrapped_sample(subject, quiet) : WrappedSample{};
 
   ReportPage page("Map of " + subject.source,
                   "tofmap " TOFMAP_VERSION ", method " + subject.options.pipeline.unwrap.method);
-  const Judgement judgement =
-      judge({.map = map,
-             .method = subject.options.pipeline.unwrap.method,
-             .score = scores.surface,
-             .voxel_m = subject.options.pipeline.map.voxel_m,
-             .is_seen_twice = !std::isnan(subject.consistency.contradicted_percent),
-             .is_warned = !subject.warnings.empty()});
+  MapEvidence evidence = evidence_of(map, subject.options.pipeline);
+  if (scores.surface) evidence.accuracy_m = scores.surface->accuracy_m;
+  evidence.is_seen_twice = !std::isnan(subject.consistency.contradicted_percent);
+  evidence.is_warned = !subject.warnings.empty();
+  const Judgement judgement = judge(evidence);
   page.add_verdict(judgement.verdict,
                    sentence_of(subject, scores, sample.moved_percent) + told_reasons(judgement));
   page.add_warnings(warnings_of(subject));
-  add_maps(page, shown_maps(subject, truth, scores, wrapped), truth.poses, subject.options.report);
-  add_errors(page, subject, truth, scores, sample, progress);
+  add_maps(page, shown_maps(subject, truth, scores, wrapped.map), truth.poses,
+           subject.options.report);
+  add_errors(page, subject, truth, scores, sample, wrapped);
   add_frames(
-      page, subject.frames, subject.sensor, subject.options.pipeline,
-      [&](int frame) { return range_truth(subject, frame); }, subject.options.report, progress);
+      page, subject.sample, subject.sensor.modulation,
+      [&](int frame) { return range_truth(subject, frame); }, subject.options.report);
   page.add_heading("Figures");
   page.add_table(summary_table(map, scores));
   page.add_heading("Tracking over time");

@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "input/recorded_truth.hpp"
 #include "options/options.hpp"
-#include "runs/consistency.hpp"
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/evaluation/recorded_truth.hpp>
+#include <tofmap/pipeline/frame_sample.hpp>
 
 namespace tofmap::app {
 
@@ -19,17 +19,14 @@ struct MapPageSubject {
   std::string source;  ///< folder of the recording, or device
   const RoomMap& map;
   const SensorModel& sensor;
-  const std::vector<DualFrequencyFrame>& frames;  ///< some, spread over all
-  const SequenceReader* recording;                ///< for its truth; none of a device
-  const RecordedTruth* truth;                     ///< of the recording, if there is one
+  const std::vector<SampledFrame>& sample;  ///< of the frames that the map is made of
+  const SequenceReader* recording;          ///< for its truth; none of a device
+  const RecordedTruth* truth;               ///< of the recording, if there is one
   std::vector<std::string> warnings;
   Consistency consistency;
   const ProgramOptions& options;
   std::string options_yaml;
 };
-
-/// How many frames the page wants to be given.
-int frames_for_page(const CameraModel& camera, const ReportOptions& options);
 
 /// Writes report.html into a result that is in place already: what became of the map, and what it
 /// would be on the same path with ranges as measured. Throws InputError if it cannot be written,

@@ -3,12 +3,12 @@
 #pragma once
 
 #include "reports/report_sections.hpp"
-#include "runs/method_run.hpp"
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <tofmap/evaluation/method_run.hpp>
 #include <tofmap/visualization/report_page.hpp>
 
 namespace tofmap::app {

@@ -3,7 +3,6 @@
 
 #include "reports/report_sections.hpp"
 
-#include "input/sampled_frames.hpp"
 #include "output/frame_report.hpp"
 #include "output/result_addition.hpp"
 
@@ -19,17 +18,13 @@
 namespace tofmap::app {
 namespace {
 
-StagedFrame staged_frame(const DualFrequencyFrame& frame, const SensorModel& sensor,
-                         const PixelRays& rays, const PipelineOptions& pipeline,
-                         FrameMeasurer& measurer, Unwrapper& unwrapper) {
-  const PreparedFrame prepared =
-      prepare_ranges(measure_frame(frame, measurer), unwrapper, sensor, rays, pipeline);
+StagedFrame staged_frame(const SampledFrame& frame, const Modulation& modulation) {
   StagedFrame staged;
-  staged.title = formatted("Frame %d, %.2f s", frame.index, frame.timestamp_s);
-  staged.amplitude = frame.amplitude_a;
-  staged.wrapped_m = frame.phase_a * static_cast<float>(sensor.modulation.wavelength_a_m());
-  staged.unwrapped = prepared.unwrapped.image;
-  staged.filtered = prepared.filtered.image;
+  staged.title = formatted("Frame %d, %.2f s", frame.recorded.index, frame.recorded.timestamp_s);
+  staged.amplitude = frame.recorded.amplitude_a;
+  staged.wrapped_m = frame.recorded.phase_a * static_cast<float>(modulation.wavelength_a_m());
+  staged.unwrapped = frame.unwrapped.image;
+  staged.filtered = frame.filtered;
   return staged;
 }
 
@@ -43,22 +38,18 @@ void add_drawn(ReportPage& page, const std::function<std::vector<PageFigure>()>&
   }
 }
 
-void add_frames(ReportPage& page, const std::vector<DualFrequencyFrame>& frames,
-                const SensorModel& sensor, const PipelineOptions& pipeline,
+void add_frames(ReportPage& page, const std::vector<SampledFrame>& sample,
+                const Modulation& modulation,
                 const std::function<std::optional<ImageF>(int index)>& truth_m,
-                const ReportOptions& options, PageProgress& progress) {
-  if (frames.empty() || options.frames == 0) return;
-  const PixelRays rays = pixel_rays(sensor.camera);
-  FrameMeasurer measurer(sensor, pipeline.unwrap);
-  Unwrapper unwrapper(sensor, pipeline.unwrap);
+                const ReportOptions& options) {
+  if (sample.empty() || options.frames == 0) return;
   std::vector<StagedFrame> staged;
-  for (const int i : spread_indices(static_cast<int>(frames.size()), options.frames)) {
-    progress.next_frame();
-    const DualFrequencyFrame& frame = frames[static_cast<std::size_t>(i)];
-    staged.push_back(staged_frame(frame, sensor, rays, pipeline, measurer, unwrapper));
-    if (auto truth = truth_m(frame.index)) staged.back().truth_m = *std::move(truth);
+  for (const int i : spread_indices(static_cast<int>(sample.size()), options.frames)) {
+    const SampledFrame& frame = sample[static_cast<std::size_t>(i)];
+    staged.push_back(staged_frame(frame, modulation));
+    if (auto truth = truth_m(frame.recorded.index)) staged.back().truth_m = *std::move(truth);
   }
-  const FrameStrip strip = frame_strip(staged, sensor.modulation.wavelength_a_m());
+  const FrameStrip strip = frame_strip(staged, modulation.wavelength_a_m());
   page.add_heading("Frames, from what was measured to what goes into the map");
   page.add_text("Step by the buttons, the slider, or the arrow keys.");
   page.add_strip(strip.frames, strip.legends);

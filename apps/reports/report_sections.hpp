@@ -3,8 +3,6 @@
 #pragma once
 
 #include "options/report_options.hpp"
-#include "reports/page_progress.hpp"
-#include "runs/consistency.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -12,18 +10,19 @@
 #include <string>
 #include <vector>
 
-#include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/pipeline/frame_sample.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
 #include <tofmap/visualization/report_page.hpp>
 
 namespace tofmap::app {
 
-/// What becomes of some frames, to be stepped through; of these `options.frames` are shown. Where
-/// `truth_m` finds the true ranges of a frame, wrong wraps are, too. Throws Interrupted.
-void add_frames(ReportPage& page, const std::vector<DualFrequencyFrame>& frames,
-                const SensorModel& sensor, const PipelineOptions& pipeline,
+/// At most options.frames of the sampled frames, spread evenly, to be stepped through: from what
+/// was recorded to what filters left. Wrong wraps are shown where `truth_m` has the true ranges of
+/// a frame.
+void add_frames(ReportPage& page, const std::vector<SampledFrame>& sample,
+                const Modulation& modulation,
                 const std::function<std::optional<ImageF>(int index)>& truth_m,
-                const ReportOptions& options, PageProgress& progress);
+                const ReportOptions& options);
 
 /// What tells without truth whether unwrapping was right, a column a run.
 void add_consistency(ReportPage& page, const std::vector<std::string>& names,

@@ -8,9 +8,9 @@
 #include <fstream>
 #include <ranges>
 
-#include <tofmap/acquisition/triangle_mesh.hpp>
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/text.hpp>
+#include <tofmap/simulation/triangle_mesh.hpp>
 #include <tofmap/visualization/map_pictures.hpp>
 
 namespace tofmap::app {

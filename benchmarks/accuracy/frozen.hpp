@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <tofmap/acquisition/scenes.hpp>
+#include <tofmap/simulation/scenes.hpp>
 
 // Frozen data
 //

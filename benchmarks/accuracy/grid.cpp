@@ -10,7 +10,7 @@
 #include <iterator>
 #include <map>
 
-#include <tofmap/acquisition/ideal_frame.hpp>
+#include <tofmap/simulation/ideal_frame.hpp>
 
 namespace tofmap::accuracy {
 namespace {

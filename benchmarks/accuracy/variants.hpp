@@ -11,7 +11,7 @@
 #include <tofmap/unwrap/unwrap.hpp>
 
 // An inner part of the module: the paper's method, whose departures are left out one at a time.
-#include "jump.hpp"
+#include "jump/jump.hpp"
 
 namespace tofmap::accuracy {
 

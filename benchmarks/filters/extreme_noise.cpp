@@ -22,9 +22,9 @@
 #include <string>
 #include <vector>
 
-#include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/core/median.hpp>
 #include <tofmap/filters/filter_chain.hpp>
+#include <tofmap/simulation/simulator.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 #include <tofmap/visualization/color.hpp>
 #include <tofmap/visualization/picture.hpp>

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include <tofmap/acquisition/scenes.hpp>
+#include <tofmap/simulation/scenes.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap::bench {

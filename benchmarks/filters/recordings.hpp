@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <tofmap/acquisition/simulator.hpp>
+#include <tofmap/simulation/simulator.hpp>
 
 namespace tofmap::bench {
 

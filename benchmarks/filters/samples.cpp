@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <tofmap/acquisition/pixel_label.hpp>
+#include <tofmap/simulation/pixel_label.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap::bench {

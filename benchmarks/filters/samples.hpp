@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/core/range_image.hpp>
+#include <tofmap/simulation/simulator.hpp>
 
 namespace tofmap::bench {
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <tofmap/acquisition/pixel_label.hpp>
 #include <tofmap/core/median.hpp>
+#include <tofmap/simulation/pixel_label.hpp>
 
 namespace tofmap::bench {
 namespace {

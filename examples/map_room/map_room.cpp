@@ -5,9 +5,9 @@
 
 #include <cstdio>
 
-#include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/evaluation/trajectory_score.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
+#include <tofmap/simulation/simulator.hpp>
 #include <tofmap/visualization/map_pictures.hpp>
 
 int main() {

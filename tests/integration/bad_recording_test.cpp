@@ -148,7 +148,7 @@ TEST_F(BadRecording, OfOneFrameIsMapped) {
   EXPECT_EQ(run("evaluate").status, 0);
 }
 
-TEST_F(BadRecording, OfIdenticalFramesIsMappedAtOnePlace) {
+TEST_F(BadRecording, OfIdenticalFramesCountsAsOneFrame) {
   for (int i = 1; i < frames; ++i) {
     for (const std::string kind : {"phase_a", "phase_b", "amplitude_a", "amplitude_b"}) {
       fs::copy_file(sequence_ / kind / "000000.png",
@@ -157,15 +157,9 @@ TEST_F(BadRecording, OfIdenticalFramesIsMappedAtOnePlace) {
     }
   }
   const Finished finished = run("map");
-  ASSERT_EQ(finished.status, 0);
+  ASSERT_EQ(finished.status, 0) << finished.err;
   EXPECT_THAT(finished.out, HasSubstr("doubtful: 3 frames repeat the one before"));
-  const Trajectory trajectory = read_trajectory(out_ / "trajectory.txt");
-  ASSERT_EQ(trajectory.size(), frames);
-  // What is known of the camera's errors grows from frame to frame, and moves ranges a little.
-  constexpr double at_one_place_m = 1e-3;
-  for (const StampedPose& pose : trajectory) {
-    EXPECT_LT(pose.world_from_camera.translation().norm(), at_one_place_m);
-  }
+  EXPECT_EQ(read_trajectory(out_ / "trajectory.txt").size(), 1U);
 }
 
 TEST_F(BadRecording, ThatStandsStillForAWhileIsDoubted) {

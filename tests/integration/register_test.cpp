@@ -8,8 +8,8 @@
 #include <gmock/gmock.h>
 #include <support/scans.hpp>
 
-#include <tofmap/acquisition/scenes.hpp>
 #include <tofmap/cloud/point_file.hpp>
+#include <tofmap/simulation/scenes.hpp>
 
 namespace tofmap::test {
 namespace {

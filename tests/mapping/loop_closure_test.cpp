@@ -165,9 +165,7 @@ class Turning : public testing::Test {
     for (int i = 0; i < end; ++i) {
       const auto cloud = std::make_shared<const SurfaceCloud>(
           test::box_cloud(wide_camera(), box_min_, box_max_, camera_at(i)));
-      ASSERT_TRUE(mapper.track(i, i / 15.0, cloud).placed()) << i;
-      mapper.integrate(*cloud);
-      mapper.close_loops();
+      ASSERT_TRUE(mapper.add_frame({i, i / 15.0, cloud}).tracking.placed()) << i;
     }
     mapper.finish();
   }

@@ -23,16 +23,16 @@ class LostCamera : public testing::Test {
   /// cannot find places long ago by itself.
   LostCamera() : mapper_(room_.camera(), {.keyframes_around = 2}, {}, {}, {}) {
     for (int i = 0; i < frames; ++i) {
-      EXPECT_TRUE(mapper_.track(i, i / 15.0, room_.view(first + i)).placed()) << i;
+      EXPECT_TRUE(mapper_.add_frame({i, i / 15.0, room_.view(first + i)}).tracking.placed()) << i;
     }
     const auto nothing = std::make_shared<const SurfaceCloud>();
     for (int i = frames; i < frames + 5; ++i) {
-      EXPECT_FALSE(mapper_.track(i, i / 15.0, nothing).placed());
+      EXPECT_FALSE(mapper_.add_frame({i, i / 15.0, nothing}).tracking.placed());
     }
   }
 
   TrackingResult track(int number, const std::shared_ptr<const SurfaceCloud>& cloud) {
-    return mapper_.track(number, number / 15.0, cloud);
+    return mapper_.add_frame({number, number / 15.0, cloud}).tracking;
   }
 
   Scenery room_{"room"};
@@ -65,7 +65,7 @@ TEST(CameraAfterAGap, IsFollowedOn) {
     RoomMapper mapper(room.camera(), {}, {}, {}, {});
     for (int i = 0; i < 60; ++i) {
       if (i >= 30 && i < 30 + gap) continue;
-      EXPECT_TRUE(mapper.track(i, i / 15.0, room.view(first + i)).placed()) << i;
+      EXPECT_TRUE(mapper.add_frame({i, i / 15.0, room.view(first + i)}).tracking.placed()) << i;
     }
     const Pose truth = room.pose(first).inverse() * room.pose(first + 59);
     const Pose found = mapper.trajectory().back().world_from_camera;

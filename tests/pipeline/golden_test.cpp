@@ -8,8 +8,8 @@
 
 #include <tofmap/acquisition/png_image.hpp>
 #include <tofmap/acquisition/sequence.hpp>
-#include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
+#include <tofmap/simulation/simulator.hpp>
 
 namespace tofmap::test {
 namespace {

@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/evaluation/trajectory_score.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
+#include <tofmap/simulation/simulator.hpp>
 
 namespace tofmap::test {
 namespace {
@@ -154,6 +154,46 @@ TEST(MapRoom, CountsFramesThatRepeat) {
   EXPECT_EQ(map.repeated(), total_frames - 3);
   EXPECT_FALSE(map.frames[0].repeats || map.frames[2].repeats);
   EXPECT_TRUE(map.frames[3].repeats);
+  EXPECT_EQ(map.frames[3].tracking.status, TrackingStatus::repeated);
+  EXPECT_EQ(map.trajectory.size(), 3U) << "the pose of the camera is unknown while frames repeat";
+}
+
+/// Delivers one frame `copies` times.
+class FrozenSource final : public FrameSource {
+ public:
+  FrozenSource(const Simulator& simulator, int copies)
+      : sensor_(simulator.sensor()), frame_(simulator.simulate(0).frame), copies_(copies) {}
+
+  const SensorModel& sensor() const override { return sensor_; }
+  std::optional<int> frame_count() const override { return copies_; }
+  std::optional<SourcedFrame> next() override {
+    if (index_ == copies_) return {};
+    SourcedFrame out;
+    out.index = frame_.index = index_;
+    out.timestamp_s = frame_.timestamp_s = index_ / 15.0;
+    out.frame = frame_;
+    ++index_;
+    return out;
+  }
+
+ private:
+  SensorModel sensor_;
+  DualFrequencyFrame frame_;
+  int copies_;
+  int index_ = 0;
+};
+
+TEST(MapRoom, CountsCopiesOfAFrameOnce) {
+  const Simulator simulator = small_room();
+  FrozenSource one(simulator, 1);
+  FrozenSource many(simulator, 6);
+  const MapCloud of_one = map_room(one, {}).surface;
+  const MapCloud of_many = map_room(many, {}).surface;
+  ASSERT_FALSE(of_one.empty());
+  ASSERT_EQ(of_many.size(), of_one.size());
+  for (std::size_t i = 0; i < of_one.size(); ++i) {
+    EXPECT_EQ(of_many[i].observations, of_one[i].observations);
+  }
 }
 
 TEST(PrepareRanges, AreThoseOfTheWholeFrame) {
@@ -228,7 +268,10 @@ TEST(MapRoom, ShowsEveryReadableFrameInOrder) {
   DamagedSource source(room, 2);
   std::vector<int> seen;
   MapHooks hooks;
-  hooks.on_frame = [&](const PreparedFrame& frame) { seen.push_back(frame.index); };
+  hooks.on_frame = [&](const DualFrequencyFrame& recorded, const PreparedFrame& frame) {
+    EXPECT_EQ(recorded.index, frame.index);
+    seen.push_back(frame.index);
+  };
   map_room(source, {}, hooks);
   EXPECT_EQ(seen, (std::vector{0, 1, 3, 4, 5}));
 }

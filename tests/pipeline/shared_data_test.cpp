@@ -10,7 +10,7 @@
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/evaluation/range_score.hpp>
 #include <tofmap/evaluation/trajectory_score.hpp>
-#include <tofmap/pipeline/cloud_registration.hpp>
+#include <tofmap/multiway/cloud_registration.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
 
 namespace tofmap::test {

@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 #include <support/scans.hpp>
 
-#include <tofmap/acquisition/scenes.hpp>
 #include <tofmap/cloud/downsample.hpp>
 #include <tofmap/core/error.hpp>
 #include <tofmap/registration/cloud_icp.hpp>
+#include <tofmap/simulation/scenes.hpp>
 
 namespace tofmap {
 namespace {

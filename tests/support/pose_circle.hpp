@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include <tofmap/mapping/pose_graph.hpp>
+#include <tofmap/registration/pose_graph.hpp>
 
 namespace tofmap::test {
 

@@ -6,8 +6,8 @@
 
 #include <random>
 
-#include <tofmap/acquisition/ray_scene.hpp>
 #include <tofmap/cloud/point_file.hpp>
+#include <tofmap/simulation/ray_scene.hpp>
 
 namespace tofmap::test {
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/cloud/surface_cloud.hpp>
+#include <tofmap/simulation/simulator.hpp>
 
 namespace tofmap::test {
 

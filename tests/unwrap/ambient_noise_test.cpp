@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "ambient_noise.hpp"
+#include "errors/ambient_noise.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/core/median.hpp>
-#include <tofmap/unwrap/phase_noise.hpp>
+#include <tofmap/simulation/simulator.hpp>
+#include <tofmap/unwrap/errors/phase_noise.hpp>
 
 namespace tofmap {
 namespace {

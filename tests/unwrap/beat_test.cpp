@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "median.hpp"
+#include "errors/median.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <tofmap/core/range_image.hpp>
-#include <tofmap/unwrap/beat.hpp>
+#include <tofmap/unwrap/common/beat.hpp>
 
 namespace tofmap {
 namespace {

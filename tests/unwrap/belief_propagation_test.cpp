@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tofmap/unwrap/jump_propagation.hpp>
+#include <tofmap/unwrap/jump/jump_propagation.hpp>
 
 namespace tofmap {
 namespace {

@@ -16,10 +16,10 @@
 
 #include <gtest/gtest.h>
 
-#include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/core/frequency_residual.hpp>
 #include <tofmap/core/median.hpp>
-#include <tofmap/unwrap/beat.hpp>
+#include <tofmap/simulation/simulator.hpp>
+#include <tofmap/unwrap/common/beat.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap {

@@ -3,7 +3,7 @@
 
 // The search for an offset between the frequencies, on samples whose ranges and offset are known.
 
-#include "constant_search.hpp"
+#include "errors/constant_search.hpp"
 
 #include <cmath>
 #include <random>

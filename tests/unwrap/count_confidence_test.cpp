@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "count_confidence.hpp"
+#include "joint/count_confidence.hpp"
 
-#include "fast_math.hpp"
+#include "common/fast_math.hpp"
 
 #include <cmath>
 #include <numbers>

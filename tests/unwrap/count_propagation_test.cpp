@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "fast_math.hpp"
+#include "common/fast_math.hpp"
 #include "plain_count_propagation.hpp"
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 #include <gtest/gtest.h>
 
-#include <tofmap/unwrap/count_model.hpp>
-#include <tofmap/unwrap/count_propagation.hpp>
+#include <tofmap/unwrap/joint/count_model.hpp>
+#include <tofmap/unwrap/joint/count_propagation.hpp>
 
 namespace tofmap {
 namespace {

@@ -20,11 +20,11 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/core/median.hpp>
-#include <tofmap/unwrap/error_tracker.hpp>
-#include <tofmap/unwrap/measured_frame.hpp>
-#include <tofmap/unwrap/phase_noise.hpp>
+#include <tofmap/simulation/simulator.hpp>
+#include <tofmap/unwrap/errors/error_tracker.hpp>
+#include <tofmap/unwrap/errors/measured_frame.hpp>
+#include <tofmap/unwrap/errors/phase_noise.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap {

@@ -3,7 +3,7 @@
 
 // The rotation between two exposures, by their amplitudes alone, beside the simulated camera's.
 
-#include "exposure_alignment.hpp"
+#include "errors/exposure_alignment.hpp"
 
 #include "simulated_turn.hpp"
 
@@ -13,7 +13,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include <tofmap/acquisition/simulator.hpp>
+#include <tofmap/simulation/simulator.hpp>
 
 namespace tofmap {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include <tofmap/unwrap/jump_integration.hpp>
-#include <tofmap/unwrap/jump_propagation.hpp>
+#include <tofmap/unwrap/jump/jump_integration.hpp>
+#include <tofmap/unwrap/jump/jump_propagation.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap {

@@ -14,9 +14,9 @@
 
 #include <gtest/gtest.h>
 
-#include <tofmap/acquisition/simulator.hpp>
 #include <tofmap/core/trajectory.hpp>
-#include <tofmap/unwrap/range_fusion.hpp>
+#include <tofmap/simulation/simulator.hpp>
+#include <tofmap/unwrap/common/range_fusion.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap {

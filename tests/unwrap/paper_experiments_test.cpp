@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include <tofmap/acquisition/simulator.hpp>
-#include <tofmap/unwrap/jump_estimate.hpp>
+#include <tofmap/simulation/simulator.hpp>
+#include <tofmap/unwrap/jump/jump_estimate.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap {

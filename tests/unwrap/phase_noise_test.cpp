@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tofmap/unwrap/phase_noise.hpp>
+#include <tofmap/unwrap/errors/phase_noise.hpp>
 
 namespace tofmap {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include <tofmap/unwrap/count_model.hpp>
+#include <tofmap/unwrap/joint/count_model.hpp>
 
 namespace tofmap::test {
 

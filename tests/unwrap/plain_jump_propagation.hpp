@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include <tofmap/unwrap/jump_evidence.hpp>
+#include <tofmap/unwrap/jump/jump_evidence.hpp>
 
 namespace tofmap::test {
 

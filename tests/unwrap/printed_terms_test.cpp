@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "tofmap/unwrap/printed_terms.hpp"
+#include "tofmap/unwrap/jump/printed_terms.hpp"
 
 #include <cmath>
 #include <string>
@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <tofmap/core/range_image.hpp>
-#include <tofmap/unwrap/jump_estimate.hpp>
+#include <tofmap/unwrap/jump/jump_estimate.hpp>
 
 namespace tofmap {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "region_fits.hpp"
+#include "jump/region_fits.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include <tofmap/acquisition/simulator.hpp>
+#include <tofmap/simulation/simulator.hpp>
 
 namespace tofmap::test {
 

@@ -64,6 +64,8 @@ const char* status_name(TrackingStatus status) {
       return "implausible";
     case TrackingStatus::relocalised:
       return "relocalised";
+    case TrackingStatus::repeated:
+      return "repeated";
   }
   return "unknown";
 }

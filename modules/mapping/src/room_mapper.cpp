@@ -8,6 +8,8 @@
 
 #include <algorithm>
 
+#include <tofmap/core/timed.hpp>
+
 namespace tofmap {
 namespace {
 
@@ -40,21 +42,35 @@ RoomMapper::RoomMapper(const CameraModel& camera, const OdometryOptions& odometr
       surface_options_(surface),
       odometry_(camera, odometry, registration) {}
 
-TrackingResult RoomMapper::track(int frame_index, double timestamp_s,
-                                 const std::shared_ptr<const SurfaceCloud>& cloud) {
+AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
+  AddedFrame added;
+  if (frame.repeats) {
+    odometry_.note_frame(frame.timestamp_s);
+    added.tracking.status = TrackingStatus::repeated;
+    return added;
+  }
+  added.tracking = timed(added.register_ms, [&] { return track(frame); });
+  if (!added.tracking.placed()) return added;
+  timed(added.integrate_ms, [&] { integrate(*frame.cloud); });
+  timed(added.loop_ms, [&] { close_loops(); });
+  return added;
+}
+
+/// Finds out where a frame was taken, and whether it becomes a keyframe.
+TrackingResult RoomMapper::track(const NewFrame& frame) {
   const std::vector<const Keyframe*> around = keyframes_around();
-  TrackingResult result = find_camera(timestamp_s, *cloud, around);
-  odometry_.note_frame(timestamp_s);
+  TrackingResult result = find_camera(frame.timestamp_s, *frame.cloud, around);
+  odometry_.note_frame(frame.timestamp_s);
   if (!frames_.empty()) lost_frames_ = result.placed() ? 0 : lost_frames_ + 1;
   if (!result.placed()) return result;
   result.is_keyframe = result.status != TrackingStatus::relocalised &&
                        wants_keyframe(result.world_from_camera, around);
   if (result.is_keyframe) {
-    add_keyframe(frame_index, timestamp_s, cloud, around, result);
+    add_keyframe(frame, around, result);
   } else if (!result.targets.empty()) {
     current_ = result.targets.front();
   }
-  frames_.push_back({timestamp_s, current_,
+  frames_.push_back({frame.timestamp_s, current_,
                      keyframes_[current_].world_from_camera.inverse() * result.world_from_camera});
   return result;
 }
@@ -107,14 +123,16 @@ TrackingResult RoomMapper::relocalised(double timestamp_s, const SurfaceCloud& c
   return result;
 }
 
+/// Adds the surface of the frame that was placed last to the part of its keyframe.
 void RoomMapper::integrate(const SurfaceCloud& cloud) {
-  if (frames_.empty()) return;
   Part& part = parts_[static_cast<std::size_t>(part_of_[static_cast<std::size_t>(current_)])];
   const Pose anchor_from_keyframe =
       keyframes_[part.anchor].world_from_camera.inverse() * keyframes_[current_].world_from_camera;
   part.surface.integrate(cloud, anchor_from_keyframe * frames_.back().keyframe_from_camera);
 }
 
+/// Looks for the newest keyframe's place among earlier ones, once for each keyframe, and now and
+/// then fits the poses to all edges.
 void RoomMapper::close_loops() {
   if (!loop_options_.close || searched_ == keyframes_.size()) return;
   searched_ = keyframes_.size();
@@ -178,9 +196,7 @@ bool RoomMapper::wants_keyframe(const Pose& pose, std::span<const Keyframe* cons
   });
 }
 
-void RoomMapper::add_keyframe(int frame_index, double timestamp_s,
-                              const std::shared_ptr<const SurfaceCloud>& cloud,
-                              std::span<const Keyframe* const> around,
+void RoomMapper::add_keyframe(const NewFrame& frame, std::span<const Keyframe* const> around,
                               const TrackingResult& result) {
   const int id = keyframes_.size();
   double path_m = 0;
@@ -190,8 +206,8 @@ void RoomMapper::add_keyframe(int frame_index, double timestamp_s,
              (result.world_from_camera.translation() - last.translation()).norm();
   }
   part_of_.push_back(part_for(id, result.world_from_camera, around));
-  keyframes_.add({id, frame_index, timestamp_s, result.world_from_camera, cloud, path_m,
-                  PlaceDescriptor(*cloud)});
+  keyframes_.add({id, frame.index, frame.timestamp_s, result.world_from_camera, frame.cloud, path_m,
+                  PlaceDescriptor(*frame.cloud)});
   // Targets are registered against together: each edge says its share of what all of them say.
   const auto shares = static_cast<double>(result.targets.size());
   for (const int target : result.targets) {

@@ -3,34 +3,20 @@
 
 #include "tofmap/pipeline/pipeline.hpp"
 
-#include "tofmap/pipeline/recording_survey.hpp"
-#include "tofmap/pipeline/side_by_side.hpp"
+#include "tofmap/core/side_by_side.hpp"
+#include "tofmap/diagnostics/recording_survey.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <iterator>
 #include <optional>
 
 #include <omp.h>
 
+#include <tofmap/core/error.hpp>
+#include <tofmap/core/timed.hpp>
+
 namespace tofmap {
 namespace {
-
-/// Runs a step and adds its duration, in milliseconds, to `spent_ms`.
-template <class Step>
-auto timed(double& spent_ms, const Step& step) {
-  /// Adds up when it goes, so that steps may return nothing.
-  struct Timer {
-    double& spent_ms;
-    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-    ~Timer() {
-      const auto end = std::chrono::steady_clock::now();
-      spent_ms += std::chrono::duration<double, std::milli>(end - start).count();
-    }
-  };
-  const Timer timer{spent_ms};
-  return step();
-}
 
 /// Up to `count` frames from the source, fewer at its end.
 std::vector<SourcedFrame> take(FrameSource& source, int count) {
@@ -43,23 +29,24 @@ std::vector<SourcedFrame> take(FrameSource& source, int count) {
   return frames;
 }
 
-/// Measures frames in their order and prepares them side by side; damaged ones stay empty.
-std::vector<std::optional<PreparedFrame>> prepare_all(const std::vector<SourcedFrame>& frames,
-                                                      FrameMeasurer& measurer, ErrorTally& errors,
-                                                      std::vector<Unwrapper>& unwrappers,
-                                                      const SensorModel& sensor,
-                                                      const PixelRays& rays,
-                                                      const PipelineOptions& options) {
+/// Measures frames in order and prepares them in parallel. The result is empty for frames that are
+/// damaged or repeat the one before them.
+std::vector<std::optional<PreparedFrame>> prepare_all(
+    const std::vector<SourcedFrame>& frames, const std::vector<bool>& repeats,
+    FrameMeasurer& measurer, ErrorTally& errors, std::vector<Unwrapper>& unwrappers,
+    const SensorModel& sensor, const PixelRays& rays, const PipelineOptions& options) {
   std::vector<std::optional<TimedMeasurement>> measured;
-  for (const SourcedFrame& sourced : frames) {
-    measured.push_back(sourced.frame ? std::optional(measure_frame(*sourced.frame, measurer))
-                                     : std::nullopt);
-    if (measured.back()) errors.add(measured.back()->frame);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    measured.emplace_back();
+    if (!frames[i].frame || repeats[i]) continue;
+    measured.back() = measure_frame(*frames[i].frame, measurer);
+    errors.add(measured.back()->frame);
   }
   return side_by_side(
       static_cast<int>(frames.size()), unwrappers, [&](Unwrapper& unwrapper, int i) {
-        const auto& frame = measured[static_cast<std::size_t>(i)];
-        return frame ? std::optional(prepare_frame(*frame, unwrapper, sensor, rays, options))
+        auto& frame = measured[static_cast<std::size_t>(i)];
+        return frame ? std::optional(
+                           prepare_frame(*std::move(frame), unwrapper, sensor, rays, options))
                      : std::nullopt;
       });
 }
@@ -75,7 +62,8 @@ void look_ahead(const std::vector<SourcedFrame>& first, FrameMeasurer& measurer)
   measurer.look_ahead(frames);
 }
 
-FrameRecord damaged_record(const SourcedFrame& frame) {
+/// The record of a frame that is not prepared.
+FrameRecord plain_record(const SourcedFrame& frame) {
   FrameRecord record;
   record.index = frame.index;
   record.timestamp_s = frame.timestamp_s;
@@ -97,15 +85,28 @@ FrameRecord prepared_record(const PreparedFrame& frame) {
   return record;
 }
 
-/// Places one frame and, if that succeeds, adds it to the map.
-FrameRecord place(const PreparedFrame& frame, RoomMapper& mapper) {
+/// Adds a frame to the map.
+FrameRecord mapped(const PreparedFrame& frame, RoomMapper& mapper) {
   FrameRecord record = prepared_record(frame);
-  record.tracking = timed(record.times.register_ms, [&] {
-    return mapper.track(frame.index, frame.timestamp_s, frame.cloud);
-  });
-  if (!record.tracking.placed()) return record;
-  timed(record.times.map_ms, [&] { mapper.integrate(*frame.cloud); });
-  timed(record.times.loop_ms, [&] { mapper.close_loops(); });
+  AddedFrame added = mapper.add_frame(
+      {.index = frame.index, .timestamp_s = frame.timestamp_s, .cloud = frame.cloud});
+  record.tracking = std::move(added.tracking);
+  record.times.register_ms = added.register_ms;
+  record.times.map_ms = added.integrate_ms;
+  record.times.loop_ms = added.loop_ms;
+  return record;
+}
+
+/// Notes a frame that repeats the one before it.
+FrameRecord repeated(const SourcedFrame& frame, RoomMapper& mapper) {
+  FrameRecord record = plain_record(frame);
+  record.repeats = true;
+  record.tracking = mapper
+                        .add_frame({.index = frame.index,
+                                    .timestamp_s = frame.timestamp_s,
+                                    .cloud = nullptr,
+                                    .repeats = true})
+                        .tracking;
   return record;
 }
 
@@ -130,34 +131,65 @@ int RoomMap::damaged() const {
       frames, [](const FrameRecord& record) { return !record.damage.empty(); }));
 }
 
+int RoomMap::degenerate() const {
+  return static_cast<int>(std::ranges::count_if(frames, [](const FrameRecord& record) {
+    return record.tracking.registration.degenerate_directions > 0;
+  }));
+}
+
+MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options) {
+  return {.frames = static_cast<int>(map.frames.size()),
+          .registered = static_cast<int>(map.trajectory.size()),
+          .degenerate = map.degenerate(),
+          .is_empty = map.surface.empty(),
+          .is_interrupted = map.interrupted,
+          .is_unwrapped = options.unwrap.method != "none",
+          .accuracy_m = std::nullopt,
+          .voxel_m = options.map.voxel_m};
+}
+
+void refuse_mostly_damaged(int damaged, int total, const std::string& first_damage) {
+  if (2 * damaged <= total) return;
+  throw InputError(
+      std::to_string(damaged) + " of " + std::to_string(total) +
+      " frames are damaged, more than half; nothing was written. The first: " + first_damage);
+}
+
+void refuse_mostly_damaged(const RoomMap& map) {
+  const auto first = std::ranges::find_if(
+      map.frames, [](const FrameRecord& record) { return !record.damage.empty(); });
+  if (first == map.frames.end()) return;
+  refuse_mostly_damaged(map.damaged(), static_cast<int>(map.frames.size()), first->damage);
+}
+
 TimedMeasurement measure_frame(const DualFrequencyFrame& frame, FrameMeasurer& measurer) {
   TimedMeasurement out;
   out.frame = timed(out.milliseconds, [&] { return measurer.measure(frame); });
   return out;
 }
 
-PreparedFrame prepare_ranges(const TimedMeasurement& measured, Unwrapper& unwrapper,
+PreparedFrame prepare_ranges(TimedMeasurement measured, Unwrapper& unwrapper,
                              const SensorModel& sensor, const PixelRays& rays,
                              const PipelineOptions& options) {
-  const DualFrequencyFrame& returns = measured.frame.returns;
   PreparedFrame out;
-  out.index = returns.index;
-  out.timestamp_s = returns.timestamp_s;
   out.times.unwrap_ms = measured.milliseconds;
   out.unwrapped = timed(out.times.unwrap_ms, [&] { return unwrapper.unwrap(measured.frame); });
+  out.returns = std::move(measured.frame.returns);
+  out.index = out.returns.index;
+  out.timestamp_s = out.returns.timestamp_s;
   out.filtered = timed(out.times.filter_ms, [&] {
-    return apply_filters(out.unwrapped.image, returns, sensor.modulation, rays, options.filters);
+    return apply_filters(out.unwrapped.image, out.returns, sensor.modulation, rays,
+                         options.filters);
   });
-  // Wrapped ranges are those of a camera that knows of no wraps: how likely they are right would
-  // tell registration what only unwrapping knows.
+  // Without unwrapping, registration must not learn from the confidence which ranges are wrapped.
   if (options.unwrap.method == "none") out.filtered.image.confidence.setOnes();
   return out;
 }
 
-PreparedFrame prepare_frame(const TimedMeasurement& measured, Unwrapper& unwrapper,
+PreparedFrame prepare_frame(TimedMeasurement measured, Unwrapper& unwrapper,
                             const SensorModel& sensor, const PixelRays& rays,
                             const PipelineOptions& options) {
-  PreparedFrame out = prepare_ranges(measured, unwrapper, sensor, rays, options);
+  PreparedFrame out = prepare_ranges(std::move(measured), unwrapper, sensor, rays, options);
   out.cloud = timed(out.times.cloud_ms, [&] {
     return std::make_shared<const SurfaceCloud>(
         surface_cloud(out.filtered.image, rays, options.cloud));
@@ -185,16 +217,28 @@ void MapRun::advance(FrameSource& source, const MapHooks& hooks) {
     }
     std::vector<SourcedFrame> frames = take_next(source);
     if (frames.empty()) break;
+    const std::vector<bool> repeats = find_repeats(frames);
     const auto prepared =
-        prepare_all(frames, measurer_, errors_, unwrappers_, sensor_, rays_, options_);
+        prepare_all(frames, repeats, measurer_, errors_, unwrappers_, sensor_, rays_, options_);
     for (std::size_t i = 0; i < frames.size(); ++i) {
-      if (prepared[i] && hooks.on_frame) hooks.on_frame(*prepared[i]);
-      frames_.push_back(prepared[i] ? place(*prepared[i], mapper_) : damaged_record(frames[i]));
-      if (!prepared[i]) continue;
-      frames_.back().repeats = repeats(*frames[i].frame, last_);
-      last_ = *std::move(frames[i].frame);
+      if (prepared[i]) {
+        if (hooks.on_frame) hooks.on_frame(*frames[i].frame, *prepared[i]);
+        frames_.push_back(mapped(*prepared[i], mapper_));
+      } else {
+        frames_.push_back(repeats[i] ? repeated(frames[i], mapper_) : plain_record(frames[i]));
+      }
     }
   }
+}
+
+/// Which of the frames, in order, have the phases of the frame before them.
+std::vector<bool> MapRun::find_repeats(const std::vector<SourcedFrame>& frames) {
+  std::vector<bool> repeats;
+  for (const SourcedFrame& sourced : frames) {
+    repeats.push_back(sourced.frame && tofmap::repeats(*sourced.frame, last_));
+    if (sourced.frame && !repeats.back()) last_ = *sourced.frame;
+  }
+  return repeats;
 }
 
 /// The next frames, one a thread: those that were looked at ahead come first.

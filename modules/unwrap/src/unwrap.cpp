@@ -3,10 +3,10 @@
 
 #include "tofmap/unwrap/unwrap.hpp"
 
-#include "counted_ranges.hpp"
-#include "joint.hpp"
-#include "jump.hpp"
-#include "tofmap/unwrap/beat.hpp"
+#include "common/counted_ranges.hpp"
+#include "joint/joint.hpp"
+#include "jump/jump.hpp"
+#include "tofmap/unwrap/common/beat.hpp"
 
 namespace tofmap {
 namespace {

@@ -17,8 +17,8 @@ namespace tofmap {
 //   μ_f     offset, periodic error, and error with amplitude, as far as they are known
 //   ε_f     what of the systematic errors is not known. Averaging over pixels does not lower it.
 //
-// `PhaseNoise`, `PhaseSigma`: the noise. `CameraErrors` in tofmap/unwrap/frame_errors.hpp: what is
-// known of μ_A − μ_B, and the standard deviation of ε_A − ε_B.
+// `PhaseNoise`, `PhaseSigma`: the noise. `CameraErrors` in tofmap/unwrap/common/frame_errors.hpp:
+// what is known of μ_A − μ_B, and the standard deviation of ε_A − ε_B.
 
 /// The noise of the phases of one frame.
 struct PhaseNoise {

@@ -12,7 +12,7 @@
 #include <boost/serialization/vector.hpp>
 
 #include <tofmap/mapping/odometry.hpp>
-#include <tofmap/mapping/pose_graph.hpp>
+#include <tofmap/registration/pose_graph.hpp>
 
 namespace boost::serialization {
 

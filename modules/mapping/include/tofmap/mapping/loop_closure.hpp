@@ -9,7 +9,7 @@
 #include <tofmap/core/camera.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/mapping/keyframe.hpp>
-#include <tofmap/mapping/pose_graph.hpp>
+#include <tofmap/registration/pose_graph.hpp>
 #include <tofmap/registration/projective_icp.hpp>
 
 namespace tofmap {

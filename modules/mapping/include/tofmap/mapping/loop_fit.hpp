@@ -6,7 +6,7 @@
 
 #include <tofmap/mapping/keyframe.hpp>
 #include <tofmap/mapping/loop_closure.hpp>
-#include <tofmap/mapping/pose_graph.hpp>
+#include <tofmap/registration/pose_graph.hpp>
 
 namespace tofmap {
 

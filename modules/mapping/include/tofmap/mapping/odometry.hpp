@@ -41,6 +41,7 @@ enum class TrackingStatus {
   lost,         ///< registration failed, or is not believed
   implausible,  ///< registration ended farther from the expected pose than motion allows
   relocalised,  ///< lost before, and found again by a keyframe
+  repeated,     ///< the frame repeats the one before it, and was not registered
 };
 
 const char* status_name(TrackingStatus status);

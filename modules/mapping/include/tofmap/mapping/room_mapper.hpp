@@ -27,6 +27,22 @@ struct Loop {
   bool is_used = false;   ///< false: it disagrees with all others, and has lost its say
 };
 
+/// What a mapper needs to know of a frame.
+struct NewFrame {
+  int index = 0;
+  double timestamp_s = 0;
+  std::shared_ptr<const SurfaceCloud> cloud;  ///< camera frame; not null unless `repeats`
+  bool repeats = false;                       ///< it has the phases of the frame before it
+};
+
+/// What became of a frame, and the wall-clock time that it took.
+struct AddedFrame {
+  TrackingResult tracking;
+  double register_ms = 0;
+  double integrate_ms = 0;
+  double loop_ms = 0;
+};
+
 /// Follows the camera, recognises places, and keeps path and map consistent.
 ///
 /// Every frame is placed by odometry against the keyframes around it, which where a place is seen
@@ -45,17 +61,13 @@ class RoomMapper {
              const RegistrationOptions& registration, const LoopOptions& loops,
              const SurfaceMapOptions& surface);
 
-  /// Finds out where a frame was taken. Frames come in the order of time. If the frame was placed,
-  /// integrate() and close_loops() are to follow.
-  TrackingResult track(int frame_index, double timestamp_s,
-                       const std::shared_ptr<const SurfaceCloud>& cloud);
-
-  /// Adds the surface of the frame that was placed last.
-  void integrate(const SurfaceCloud& cloud);
-
-  /// If that frame is a keyframe, looks whether its place was seen before, and now and then fits
-  /// the poses to all edges.
-  void close_loops();
+  /// Registers a frame and, if that succeeds, adds its surface to the map, and looks for a loop if
+  /// it becomes a keyframe. Frames come in the order of time.
+  ///
+  /// A frame that repeats the one before it says nothing new of the camera or the room: it is
+  /// neither registered nor added (status `repeated`). Otherwise copies of one image would pass
+  /// for independent observations of a point.
+  AddedFrame add_frame(const NewFrame& frame);
 
   /// Fits the poses to edges that were not fitted yet; to be called after the last frame.
   void finish();
@@ -92,15 +104,17 @@ class RoomMapper {
     SurfaceMap surface;
   };
 
+  TrackingResult track(const NewFrame& frame);
+  void integrate(const SurfaceCloud& cloud);
+  void close_loops();
   TrackingResult find_camera(double timestamp_s, const SurfaceCloud& cloud,
                              std::span<const Keyframe* const> around);
   TrackingResult relocalised(double timestamp_s, const SurfaceCloud& cloud);
   KeyframeSteps keyframe_steps() const;
   std::vector<const Keyframe*> keyframes_around() const;
   bool wants_keyframe(const Pose& pose, std::span<const Keyframe* const> around) const;
-  void add_keyframe(int frame_index, double timestamp_s,
-                    const std::shared_ptr<const SurfaceCloud>& cloud,
-                    std::span<const Keyframe* const> around, const TrackingResult& result);
+  void add_keyframe(const NewFrame& frame, std::span<const Keyframe* const> around,
+                    const TrackingResult& result);
   int part_for(int id, const Pose& pose, std::span<const Keyframe* const> around);
   void fit();
 

@@ -12,9 +12,10 @@
 #include <tofmap/cloud/cloud_file.hpp>
 #include <tofmap/cloud/surface_cloud.hpp>
 #include <tofmap/core/trajectory.hpp>
+#include <tofmap/diagnostics/error_survey.hpp>
+#include <tofmap/diagnostics/map_verdict.hpp>
 #include <tofmap/filters/filter_chain.hpp>
 #include <tofmap/mapping/room_mapper.hpp>
-#include <tofmap/pipeline/error_survey.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap {
@@ -47,10 +48,11 @@ struct StageTimes {
   }
 };
 
-/// A frame on its way, up to the point where it needs the frames before it.
+/// A frame as far as it can be processed without the frames before it.
 struct PreparedFrame {
   int index = 0;
   double timestamp_s = 0;
+  DualFrequencyFrame returns;  ///< what was unwrapped: MeasuredFrame::returns
   UnwrapResult unwrapped;
   FilterResult filtered;
   std::shared_ptr<const SurfaceCloud> cloud;
@@ -66,12 +68,12 @@ TimedMeasurement measure_frame(const DualFrequencyFrame& frame, FrameMeasurer& m
 
 /// Phases to surface. Depends on no other frame, so frames that were measured can be prepared side
 /// by side, each thread with an unwrapper of its own.
-PreparedFrame prepare_frame(const TimedMeasurement& measured, Unwrapper& unwrapper,
+PreparedFrame prepare_frame(TimedMeasurement measured, Unwrapper& unwrapper,
                             const SensorModel& sensor, const PixelRays& rays,
                             const PipelineOptions& options);
 
 /// The same as far as ranges go: `cloud` is null.
-PreparedFrame prepare_ranges(const TimedMeasurement& measured, Unwrapper& unwrapper,
+PreparedFrame prepare_ranges(TimedMeasurement measured, Unwrapper& unwrapper,
                              const SensorModel& sensor, const PixelRays& rays,
                              const PipelineOptions& options);
 
@@ -80,7 +82,8 @@ struct FrameRecord {
   int index = 0;
   double timestamp_s = 0;
   std::string damage;    ///< not empty: the frame could not be read, and nothing else holds
-  bool repeats = false;  ///< it has the phases of the one before it
+  bool repeats = false;  ///< it has the phases of the frame before it, and only `index` and
+                         ///< `timestamp_s` hold: it was not unwrapped
   int iterations = 0;
   int curl_violations = 0;
   double phase_noise_cycles = 0;
@@ -89,6 +92,9 @@ struct FrameRecord {
   std::vector<FilterCount> filters;
   TrackingResult tracking;
   StageTimes times;
+
+  /// Whether the frame was unwrapped, filtered and tracked: it is neither damaged nor repeated.
+  bool is_prepared() const { return damage.empty() && !repeats; }
 };
 
 /// A room as the camera saw it. The world is the frame of the first placed camera.
@@ -103,14 +109,22 @@ struct RoomMap {
 
   int damaged() const;
   int repeated() const;
+  int degenerate() const;  ///< frames with a direction of motion that no surface constrained
 };
+
+/// What the frames and the surface of a map tell about it; accuracy and consistency are unknown.
+MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options);
+
+/// Throws InputError that names the first damage if more than half of the frames are damaged.
+void refuse_mostly_damaged(int damaged, int total, const std::string& first_damage);
+void refuse_mostly_damaged(const RoomMap& map);
 
 /// What a caller may hang into a run; any may be empty.
 struct MapHooks {
   /// Asked before each batch of frames with the number done so far; false ends the run early.
   std::function<bool(int frames_done)> keep_going;
-  /// Shown every frame that could be read, in order, before it is placed.
-  std::function<void(const PreparedFrame&)> on_frame;
+  /// Called in order with every frame that was unwrapped, before it is registered.
+  std::function<void(const DualFrequencyFrame& recorded, const PreparedFrame&)> on_frame;
 };
 
 /// A map on its way, which can be put aside and taken up again.
@@ -141,6 +155,7 @@ class MapRun {
 
  private:
   std::vector<SourcedFrame> take_next(FrameSource& source);
+  std::vector<bool> find_repeats(const std::vector<SourcedFrame>& frames);
 
   SensorModel sensor_;
   PipelineOptions options_;

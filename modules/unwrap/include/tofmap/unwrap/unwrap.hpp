@@ -5,25 +5,14 @@
 #include <span>
 
 #include <tofmap/core/frame.hpp>
-#include <tofmap/core/range_image.hpp>
-#include <tofmap/unwrap/beat.hpp>
-#include <tofmap/unwrap/count_estimate.hpp>
-#include <tofmap/unwrap/jump_estimate.hpp>
-#include <tofmap/unwrap/measured_frame.hpp>
-#include <tofmap/unwrap/unwrap_options.hpp>
+#include <tofmap/unwrap/common/beat.hpp>
+#include <tofmap/unwrap/common/unwrap_options.hpp>
+#include <tofmap/unwrap/common/unwrap_result.hpp>
+#include <tofmap/unwrap/errors/measured_frame.hpp>
+#include <tofmap/unwrap/joint/count_estimate.hpp>
+#include <tofmap/unwrap/jump/jump_estimate.hpp>
 
 namespace tofmap {
-
-struct UnwrapResult {
-  RangeImage image;
-  FrameErrors errors = {};            ///< of joint and jump; nothing is known of others
-  int iterations = 0;                 ///< of belief propagation; 0 for none and pixel
-  int curl_violations = 0;            ///< curl nodes that are not zero when it ended
-  bool converged = true;              ///< no curl is left
-  double largest_message_change = 0;  ///< in the last iteration
-  double phase_noise_cycles = 0;      ///< estimated; median over the pixels with a return
-  int regions = 0;                    ///< anchored each by itself; 0 for none and pixel
-};
 
 /// Finds how many wavelengths to add to the phase of A in every pixel, for the frames of one camera
 /// (Droeschel, Holz, Behnke: Multi-frequency Phase Unwrapping for Time-of-Flight Cameras, 2010;

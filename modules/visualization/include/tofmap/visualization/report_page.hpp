@@ -8,12 +8,10 @@
 
 #include <Eigen/Core>
 
+#include <tofmap/core/verdict.hpp>
 #include <tofmap/visualization/picture.hpp>
 
 namespace tofmap {
-
-/// How far a result can be trusted, from best to worst.
-enum class Verdict { good, doubtful, bad };
 
 struct PageFigure {
   Picture picture;

@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/calibration/wall_reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/core/input_file.hpp>
+#include <tofmap/core/median.hpp>
+
+namespace tofmap {
+namespace {
+
+/// How far a pixel may be from the wall that still tells its tilt: a share of the wavelength at
+/// first, since the tilt is not known, and half of that in each round after it.
+constexpr double first_reach = 0.25;
+constexpr int rounds = 4;
+
+constexpr double least_share = 0.5;
+
+/// A pixel's ray, and what A measures along it.
+struct Beam {
+  Eigen::Vector3d ray;
+  double phase_cycles;
+};
+
+std::vector<Beam> beams_of(const DualFrequencyFrame& frame, const PixelRays& rays) {
+  std::vector<Beam> beams;
+  for (Eigen::Index i = 0; i < frame.phase_a.size(); ++i) {
+    const float phase = frame.phase_a.data()[i];
+    if (std::isnan(phase)) continue;
+    beams.push_back({{rays.x.data()[i], rays.y.data()[i], rays.z.data()[i]}, phase});
+  }
+  return beams;
+}
+
+/// The range along a ray to the plane normal · x = distance; NaN if it does not meet it.
+double range_to(const Eigen::Vector3d& normal, double distance_m, const Eigen::Vector3d& ray) {
+  const double cosine = normal.dot(ray);
+  constexpr double grazing = 0.05;
+  return cosine > grazing ? distance_m / cosine : NAN;
+}
+
+/// How much farther than the plane the beams measure, the wraps taken that come nearest to it; NaN
+/// for those that do not meet it.
+std::vector<double> errors_m(const std::vector<Beam>& beams, const Eigen::Vector3d& normal,
+                             double distance_m, double wavelength_m) {
+  std::vector<double> errors;
+  errors.reserve(beams.size());
+  for (const Beam& beam : beams) {
+    const double off = beam.phase_cycles - range_to(normal, distance_m, beam.ray) / wavelength_m;
+    errors.push_back(wavelength_m * (off - std::round(off)));
+  }
+  return errors;
+}
+
+double median_of_known(const std::vector<double>& values) {
+  std::vector<double> known;
+  std::ranges::copy_if(values, std::back_inserter(known), [](double v) { return !std::isnan(v); });
+  return known.empty() ? NAN : median(known);
+}
+
+}  // namespace
+
+WallDistances read_wall_distances(const std::filesystem::path& file) {
+  refuse_no_file(file);
+  std::ifstream in(file);
+  if (!in) throw InputError(file.string() + ": cannot be read; it holds lines 'frame distance_m'");
+  WallDistances distances;
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    std::istringstream words(line.substr(0, line.find('#')));
+    words >> std::ws;
+    if (words.eof()) continue;
+    int frame = 0;
+    double distance_m = 0;
+    std::string rest;
+    const bool is_valid = words >> frame >> distance_m && !(words >> rest) && frame >= 0 &&
+                          distance_m > 0 && std::isfinite(distance_m);
+    if (!is_valid) {
+      throw InputError(file.string() + ":" + std::to_string(number) + ": '" + line +
+                       "' is no frame and its distance in metres");
+    }
+    if (!distances.emplace(frame, distance_m).second) {
+      throw InputError(file.string() + ":" + std::to_string(number) + ": frame " +
+                       std::to_string(frame) + " is there twice");
+    }
+  }
+  if (distances.empty()) throw InputError(file.string() + ": holds no line 'frame distance_m'");
+  return distances;
+}
+
+std::optional<ImageF> wall_range(const DualFrequencyFrame& frame, const SensorModel& sensor,
+                                 double distance_m) {
+  const PixelRays rays = pixel_rays(sensor.camera);
+  const std::vector<Beam> beams = beams_of(frame, rays);
+  const double wavelength_m = sensor.modulation.wavelength_a_m();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  double reach_m = first_reach * wavelength_m;
+  std::size_t on_wall = 0;
+  for (int round = 0; round < rounds; ++round, reach_m /= 2) {
+    const std::vector<double> errors = errors_m(beams, normal, distance_m, wavelength_m);
+    const double offset_m = median_of_known(errors);
+    // 1 / range is linear in the normal over the distance.
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+    on_wall = 0;
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+      const double error_m = errors[i] - offset_m;
+      if (!(std::abs(error_m) < reach_m)) continue;
+      const double range_m = range_to(normal, distance_m, beams[i].ray) + error_m;
+      const Eigen::Vector3d row = range_m * beams[i].ray;  // errors of ranges count alike
+      information += row * row.transpose();
+      gradient += row;
+      ++on_wall;
+    }
+    const Eigen::LDLT<Eigen::Matrix3d> solver(information);
+    if (on_wall < 3 || !solver.isPositive()) return std::nullopt;
+    const Eigen::Vector3d solution = solver.solve(gradient);
+    if (!solution.allFinite() || solution.isZero()) return std::nullopt;
+    normal = solution.normalized();
+  }
+  if (static_cast<double>(on_wall) < least_share * static_cast<double>(beams.size())) {
+    return std::nullopt;
+  }
+  ImageF range_m(frame.phase_a.rows(), frame.phase_a.cols());
+  for (Eigen::Index i = 0; i < range_m.size(); ++i) {
+    const Eigen::Vector3d ray(rays.x.data()[i], rays.y.data()[i], rays.z.data()[i]);
+    range_m.data()[i] = static_cast<float>(range_to(normal, distance_m, ray));
+  }
+  return range_m;
+}
+
+}  // namespace tofmap

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/diagnostics/axial_depth.hpp"
+
+#include <cmath>
+
+#include <tofmap/core/camera.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Phases near the end of a cycle, by where the cycle would end for depth along the axis.
+struct EndOfCycle {
+  int all = 0;
+  int before = 0;
+  int beyond = 0;
+
+  /// Of pixels that see far enough from the axis.
+  void add(const ImageF& phase, const ImageF& cosine) {
+    constexpr float most_cosine = 0.93F;
+    constexpr float near_end = 0.93F;
+    constexpr float rounding = 0.005F;  // of depth in millimetres, and of the lens
+    for (Eigen::Index i = 0; i < phase.size(); ++i) {
+      if (!(cosine.data()[i] < most_cosine)) continue;
+      const float share = phase.data()[i] / cosine.data()[i];
+      all += std::isnan(share) ? 0 : 1;
+      before += share >= near_end && share <= 1 - rounding ? 1 : 0;
+      beyond += share >= 1 + rounding ? 1 : 0;
+    }
+  }
+
+  /// As many are to be expected beyond as before, if phases do not end there.
+  bool is_there() const {
+    constexpr int enough = 300;
+    constexpr int some = 50;  // one of so many: less may be one object
+    return before >= enough && before * some >= all && beyond * some <= before;
+  }
+};
+
+}  // namespace
+
+bool looks_like_axial_depth(const std::vector<DualFrequencyFrame>& frames,
+                            const SensorModel& sensor) {
+  const ImageF cosine = pixel_rays(sensor.camera).z;
+  EndOfCycle end_a;
+  EndOfCycle end_b;
+  for (const DualFrequencyFrame& frame : frames) {
+    end_a.add(frame.phase_a, cosine);
+    end_b.add(frame.phase_b, cosine);
+  }
+  return end_a.is_there() && end_b.is_there();
+}
+
+std::optional<std::string> axial_depth_doubt(const std::vector<DualFrequencyFrame>& frames,
+                                             const SensorModel& sensor) {
+  if (!looks_like_axial_depth(frames, sensor)) return std::nullopt;
+  return "towards the border of the image ranges end where depth along the optical axis does; was "
+         "it taken for ranges along rays? device.depth=z turns it into them when it is recorded";
+}
+
+}  // namespace tofmap

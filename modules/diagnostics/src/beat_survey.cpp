@@ -1,0 +1,241 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/diagnostics/beat_survey.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <tofmap/core/frequency_residual.hpp>
+#include <tofmap/core/median.hpp>
+#include <tofmap/core/modulation.hpp>
+#include <tofmap/core/text.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Every how manieth pixel is looked at, and how many at least must have returns.
+constexpr int pixel_stride = 3;
+constexpr std::size_t least_pixels = 300;
+
+/// Phases with returns at both frequencies.
+struct PhasePair {
+  double a_cycles;
+  double b_cycles;
+};
+
+std::vector<PhasePair> phase_pairs(const std::vector<DualFrequencyFrame>& frames) {
+  std::vector<PhasePair> pairs;
+  for (const DualFrequencyFrame& frame : frames) {
+    for (Eigen::Index i = 0; i < frame.phase_a.size(); i += pixel_stride) {
+      const PhasePair pair{frame.phase_a.data()[i], frame.phase_b.data()[i]};
+      if (!std::isnan(pair.a_cycles) && !std::isnan(pair.b_cycles)) pairs.push_back(pair);
+    }
+  }
+  return pairs;
+}
+
+/// What A can measure more than B, by the wraps that both may have.
+class Differences {
+ public:
+  explicit Differences(const SensorModel& sensor)
+      : a_m_(sensor.modulation.wavelength_a_m()), b_m_(sensor.modulation.wavelength_b_m()) {
+    constexpr double tolerance_cycles = 0.05;  // beyond, noise lets no pair of counts be told
+    const double combined_m = combined_range_m(sensor.modulation, tolerance_cycles);
+    const double farthest_m =
+        sensor.max_range_m > 0 ? std::min(sensor.max_range_m, combined_m) : combined_m;
+    count_a_ = wrap_limits(sensor.modulation, farthest_m).count_a;
+    farthest_m_ = farthest_m + tolerance_cycles * a_m_;
+  }
+
+  double most_m() const { return std::min(a_m_, b_m_) / 2; }
+  double ambiguity_m() const { return std::abs(a_m_ - b_m_); }
+
+  /// Calls `use` with each difference of a pixel that is nearest to `about_m` for a count of A.
+  template <class Use>
+  void of(const PhasePair& phases, double about_m, Use use) const {
+    for (int n = 0; n < count_a_; ++n) {
+      const double range_a_m = a_m_ * (phases.a_cycles + n);
+      if (n > 0 && range_a_m > farthest_m_) return;
+      const double difference_m =
+          about_m +
+          frequency_residual_m(a_m_, b_m_, phases.a_cycles + n - about_m / a_m_, phases.b_cycles);
+      const double wraps_b = (range_a_m - difference_m) / b_m_ - phases.b_cycles;
+      if (wraps_b > -0.5) use(difference_m);
+    }
+  }
+
+  /// The one that is nearest; nothing if there is none.
+  std::optional<double> nearest_m(const PhasePair& phases, double about_m) const {
+    std::optional<double> nearest;
+    of(phases, about_m, [&](double difference_m) {
+      if (!nearest || std::abs(difference_m - about_m) < std::abs(*nearest - about_m)) {
+        nearest = difference_m;
+      }
+    });
+    return nearest;
+  }
+
+ private:
+  double a_m_;
+  double b_m_;
+  double farthest_m_;
+  int count_a_;
+};
+
+/// How many pixels could have a difference near each of those that are looked at.
+class Support {
+ public:
+  explicit Support(double most_m)
+      : half_(static_cast<int>(std::ceil(most_m / step_m))),
+        counts_(static_cast<std::size_t>(2 * half_ + 1), 0.0) {}
+
+  void add(double difference_m) {
+    const auto bin = static_cast<int>(std::lround(difference_m / step_m));
+    if (std::abs(bin) <= half_) ++counts_[static_cast<std::size_t>(bin + half_)];
+  }
+
+  /// Local maxima that nearly all pixels agree with that agree with the highest, nearest to zero
+  /// first.
+  std::vector<double> peaks_m() const {
+    const std::vector<double> smooth = smoothed();
+    constexpr double nearly_all = 0.95;
+    const double least = nearly_all * *std::ranges::max_element(smooth);
+    std::vector<double> peaks;
+    if (least <= 0) return peaks;
+    for (int bin = -half_; bin <= half_; ++bin) {
+      const double value = smooth[static_cast<std::size_t>(bin + half_)];
+      if (value >= least && is_highest_nearby(smooth, bin)) peaks.push_back(bin * step_m);
+    }
+    std::ranges::sort(peaks, {}, [](double peak_m) { return std::abs(peak_m); });
+    return peaks;
+  }
+
+ private:
+  static constexpr double step_m = 0.002;
+  static constexpr int reach = 30;  ///< steps over which it is smoothed
+
+  /// With a bell whose standard deviation is a third of the reach: 2 cm.
+  std::vector<double> smoothed() const {
+    std::vector<double> smooth(counts_.size(), 0.0);
+    for (int shift = -reach; shift <= reach; ++shift) {
+      const double weight = std::exp(-4.5 * shift * shift / (reach * reach));
+      for (int i = std::max(0, -shift); i < std::min(size(), size() - shift); ++i) {
+        smooth[static_cast<std::size_t>(i)] +=
+            weight * counts_[static_cast<std::size_t>(i + shift)];
+      }
+    }
+    return smooth;
+  }
+
+  bool is_highest_nearby(const std::vector<double>& smooth, int bin) const {
+    const int place = bin + half_;
+    const auto begin = smooth.begin() + std::max(0, place - reach);
+    const auto end = smooth.begin() + std::min(size(), place + reach + 1);
+    return std::max_element(begin, end) - smooth.begin() == place;
+  }
+
+  int size() const { return static_cast<int>(counts_.size()); }
+
+  int half_;
+  std::vector<double> counts_;
+};
+
+/// About the median.
+double spread_of(std::vector<float> values) {
+  const float middle = median(values);
+  for (float& value : values) value = std::abs(value - middle);
+  return sigma_of_median_deviation * double{median(values)};
+}
+
+struct Agreement {
+  std::vector<double> offsets_m;  ///< that fit equally well, nearest to zero first
+  double spread_m = 0;
+};
+
+Agreement agreement(const std::vector<PhasePair>& pairs, const SensorModel& sensor) {
+  const Differences differences(sensor);
+  Support support(differences.most_m());
+  for (const PhasePair& pair : pairs) {
+    differences.of(pair, 0, [&](double difference_m) { support.add(difference_m); });
+  }
+  Agreement found;
+  found.offsets_m = support.peaks_m();
+  if (found.offsets_m.empty()) return found;
+  std::vector<float> nearest_m;
+  for (const PhasePair& pair : pairs) {
+    const auto nearest = differences.nearest_m(pair, found.offsets_m.front());
+    if (nearest) nearest_m.push_back(static_cast<float>(*nearest));
+  }
+  if (nearest_m.empty()) return {};
+  const double refined_m = double{median(nearest_m)} - found.offsets_m.front();
+  for (double& offset_m : found.offsets_m) offset_m += refined_m;
+  found.spread_m = spread_of(std::move(nearest_m));
+  return found;
+}
+
+std::string more_or_less(double offset_m) {
+  return formatted("%.0f mm %s", 1000 * std::abs(offset_m), offset_m < 0 ? "less" : "more");
+}
+
+/// "133 mm more than B, or 200 mm less".
+std::string offset_text(const BeatSurvey& beat) {
+  std::string text = more_or_less(beat.offset_m) + " than B";
+  constexpr std::size_t some = 2;
+  for (std::size_t i = 0; i < std::min(some, beat.other_offsets_m.size()); ++i) {
+    text += ", or " + more_or_less(beat.other_offsets_m[i]);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::optional<BeatSurvey> survey_beat(const std::vector<DualFrequencyFrame>& frames,
+                                      const SensorModel& sensor) {
+  const std::vector<PhasePair> pairs = phase_pairs(frames);
+  if (pairs.size() < least_pixels) return std::nullopt;
+  Agreement as_is = agreement(pairs, sensor);
+  SensorModel swapped = sensor;
+  std::swap(swapped.modulation.frequency_a_hz, swapped.modulation.frequency_b_hz);
+  if (as_is.offsets_m.empty()) return std::nullopt;
+  BeatSurvey survey;
+  survey.offset_m = as_is.offsets_m.front();
+  survey.other_offsets_m.assign(as_is.offsets_m.begin() + 1, as_is.offsets_m.end());
+  survey.spread_m = as_is.spread_m;
+  survey.swapped_spread_m = agreement(pairs, swapped).spread_m;
+  survey.ambiguity_m = Differences(sensor).ambiguity_m();
+  return survey;
+}
+
+std::optional<std::string> pairing_doubt(const BeatSurvey& beat) {
+  constexpr double telling_ratio = 0.5;
+  if (beat.swapped_spread_m < telling_ratio * beat.spread_m) {
+    return formatted(
+        "both frequencies agree within %.0f mm if they are swapped, and within %.0f mm as they "
+        "are; are frequency_a_hz and frequency_b_hz mixed up, or the folders of A and B?",
+        1000 * beat.swapped_spread_m, 1000 * beat.spread_m);
+  }
+  // Differences that chance alone makes have a spread of .37 of the ambiguity, or more where ranges
+  // are known to be short.
+  constexpr double no_agreement = 0.3;
+  if (beat.spread_m > no_agreement * beat.ambiguity_m) {
+    return formatted(
+        "A and B agree within %.0f mm only, no better than images of different places: are "
+        "their folders or files mixed up, does device.layout fit the device, or is there "
+        "nothing but noise?",
+        1000 * beat.spread_m);
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> doubts_about(const BeatSurvey& beat) {
+  if (std::optional<std::string> doubt = pairing_doubt(beat)) return {*std::move(doubt)};
+  constexpr double most_offset_m = 0.02;  // motion between both images makes some millimetres
+  if (std::abs(beat.offset_m) < most_offset_m) return {};
+  return {"in the median pixel A measures " + offset_text(beat) +
+          ": the phase offset of one of them seems wrong; 'tofmap calibrate' against known ranges "
+          "finds both"};
+}
+
+}  // namespace tofmap

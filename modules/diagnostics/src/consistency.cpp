@@ -1,0 +1,256 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/diagnostics/consistency.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include <Eigen/Eigenvalues>
+#include <pcl/kdtree/impl/kdtree_flann.hpp>
+#include <pcl/kdtree/kdtree_flann.h>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/core/frequency_residual.hpp>
+#include <tofmap/core/median.hpp>
+#include <tofmap/core/text.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : nan; }
+
+/// A difference of phases, between minus and plus half a cycle.
+double nearest_cycle(double cycles) { return cycles - std::round(cycles); }
+
+/// By how much phase B differs from what wrap count and phase of A say, in cycles; NaN where one of
+/// them is missing.
+ImageF beat_residuals(const RangedFrame& ranged, const Modulation& modulation) {
+  const double ratio = modulation.wavelength_a_m() / modulation.wavelength_b_m();
+  const RangeImage& image = *ranged.image;
+  if (!same_size(image.range_m, ranged.frame->phase_a) ||
+      !same_size(image.range_m, ranged.frame->phase_b)) {
+    throw UsageError("consistency: ranges and phases differ in size");
+  }
+  ImageF residuals = ImageF::Constant(image.rows(), image.cols(), static_cast<float>(nan));
+  for (Eigen::Index i = 0; i < residuals.size(); ++i) {
+    const double phase_a = ranged.frame->phase_a.data()[i];
+    const double phase_b = ranged.frame->phase_b.data()[i];
+    if (image.reason.data()[i] != 0 || std::isnan(phase_a) || std::isnan(phase_b)) continue;
+    const double cycles_a = phase_a + image.wrap_count.data()[i];
+    residuals.data()[i] = frequency_residual_cycles(
+        static_cast<float>(cycles_a), static_cast<float>(phase_b), static_cast<float>(ratio));
+  }
+  return residuals;
+}
+
+/// The mean residual around a pixel, of pixels with the same wrap count.
+double mean_around(const ImageF& residuals, const ImageU8& counts, Eigen::Index row,
+                   Eigen::Index col) {
+  constexpr Eigen::Index radius = 2;
+  double sum = 0;
+  int pixels = 0;
+  const Eigen::Index last_row = std::min(residuals.rows() - 1, row + radius);
+  const Eigen::Index last_col = std::min(residuals.cols() - 1, col + radius);
+  for (Eigen::Index r = std::max<Eigen::Index>(0, row - radius); r <= last_row; ++r) {
+    for (Eigen::Index c = std::max<Eigen::Index>(0, col - radius); c <= last_col; ++c) {
+      if (std::isnan(residuals(r, c)) || counts(r, c) != counts(row, col)) continue;
+      // Relative to the pixel's own, so that nothing wraps on the way.
+      sum += nearest_cycle(residuals(r, c) - residuals(row, col));
+      ++pixels;
+    }
+  }
+  return nearest_cycle(residuals(row, col) + sum / pixels);
+}
+
+/// By how little another wrap count of A moves phase B, in cycles: of counts up to three away,
+/// since farther ones are as many wavelengths off, and no near miss. NaN if they can tell none.
+double smallest_step_cycles(const Modulation& modulation) {
+  constexpr int counts = 4;
+  const double step_cycles =
+      residual_step_m(modulation.wavelength_a_m(), modulation.wavelength_b_m(), counts) /
+      modulation.wavelength_b_m();
+  return step_cycles < 1 ? step_cycles : nan;
+}
+
+/// Points of one frame in another: how many fall on a range, and how many of these it sees through.
+struct Overlap {
+  int points = 0;
+  int seen_through = 0;
+};
+
+Overlap overlap(const RangedFrame& from, const RangedFrame& to, const CameraModel& camera,
+                const PixelRays& rays) {
+  constexpr Eigen::Index stride = 4;
+  constexpr double least_tolerance_m = 0.1;  // what a coarse map blurs anyway
+  constexpr double sigmas = 4;
+  const Pose to_from_from = to.world_from_camera->inverse() * *from.world_from_camera;
+  Overlap result;
+  for (Eigen::Index v = 0; v < from.image->rows(); v += stride) {
+    for (Eigen::Index u = 0; u < from.image->cols(); u += stride) {
+      if (!from.image->valid(v, u)) continue;
+      const double range_m = from.image->range_m(v, u);
+      const Eigen::Vector3d point_m =
+          to_from_from * (range_m * Eigen::Vector3d(rays.x(v, u), rays.y(v, u), rays.z(v, u)));
+      const std::optional<Eigen::Vector2d> pixel = project(camera, point_m);
+      if (!pixel) continue;
+      const auto col = static_cast<Eigen::Index>(std::lround(pixel->x()));
+      const auto row = static_cast<Eigen::Index>(std::lround(pixel->y()));
+      if (row < 0 || col < 0 || row >= to.image->rows() || col >= to.image->cols()) continue;
+      if (!to.image->valid(row, col)) continue;
+      const double behind_m = to.image->range_m(row, col) - point_m.norm();
+      const double variance_m2 = from.image->variance_m2(v, u) + to.image->variance_m2(row, col);
+      const double tolerance_m = std::max(least_tolerance_m, sigmas * std::sqrt(variance_m2));
+      if (behind_m < -tolerance_m) continue;  // hidden: neither for nor against
+      ++result.points;
+      result.seen_through += behind_m > tolerance_m ? 1 : 0;
+    }
+  }
+  return result;
+}
+
+using Tree = pcl::KdTreeFLANN<MapPoint>;
+
+/// Root mean square distance of the points around one from their plane; nothing where the surface
+/// is not planar.
+std::optional<double> thickness_at(const MapCloud& map, const Tree& tree, int index) {
+  constexpr double radius_m = 0.15;
+  constexpr double same_direction = 0.94;  // cosine of 20 degrees
+  constexpr std::size_t least_points = 12;
+  std::vector<int> neighbours;
+  std::vector<float> squares;
+  tree.radiusSearch(map, index, radius_m, neighbours, squares);
+  const Eigen::Vector3f normal = map[index].getNormalVector3fMap();
+  std::vector<Eigen::Vector3d> points;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const int i : neighbours) {
+    const Eigen::Vector3f other = map[i].getNormalVector3fMap();
+    if (other.dot(normal) < -same_direction) continue;  // the other side of a panel
+    if (!(other.dot(normal) > same_direction)) return std::nullopt;
+    points.emplace_back(map[i].getVector3fMap().cast<double>());
+    mean += points.back();
+  }
+  if (points.size() < least_points) return std::nullopt;
+  mean /= static_cast<double>(points.size());
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& point : points) {
+    scatter += (point - mean) * (point - mean).transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()[0]) / static_cast<double>(points.size()));
+}
+
+}  // namespace
+
+BeatAgreement beat_agreement(const std::vector<RangedFrame>& frames, const Modulation& modulation) {
+  const double step_cycles = smallest_step_cycles(modulation);
+  double square_sum = 0;
+  double misfits = 0;
+  double pixels = 0;
+  for (const RangedFrame& ranged : frames) {
+    const ImageF residuals = beat_residuals(ranged, modulation);
+    for (Eigen::Index row = 0; row < residuals.rows(); ++row) {
+      for (Eigen::Index col = 0; col < residuals.cols(); ++col) {
+        const double residual = residuals(row, col);
+        if (std::isnan(residual)) continue;
+        ++pixels;
+        square_sum += residual * residual;
+        const double around = mean_around(residuals, ranged.image->wrap_count, row, col);
+        misfits += std::abs(around) > step_cycles / 2 ? 1 : 0;
+      }
+    }
+  }
+  return {std::isnan(step_cycles) ? nan : percent(misfits, pixels),
+          pixels > 0 ? std::sqrt(square_sum / pixels) : nan};
+}
+
+double ambiguous_percent(const std::vector<RangedFrame>& frames) {
+  double ambiguous = 0;
+  double returns = 0;
+  for (const RangedFrame& ranged : frames) {
+    ambiguous += count_reason(*ranged.image, InvalidReason::ambiguous);
+    returns += static_cast<double>(ranged.image->reason.size()) -
+               count_reason(*ranged.image, InvalidReason::no_return);
+  }
+  return percent(ambiguous, returns);
+}
+
+double contradicted_percent(const std::vector<RangedFrame>& frames, const CameraModel& camera) {
+  constexpr int least_points = 50;  // fewer is chance
+  const PixelRays rays = pixel_rays(camera);
+  std::int64_t points = 0;
+  std::int64_t seen_through = 0;
+#pragma omp parallel for schedule(dynamic, 1) reduction(+ : points, seen_through)
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const RangedFrame& from = frames[i];
+    for (const RangedFrame& to : frames) {
+      if (&from == &to || !from.world_from_camera || !to.world_from_camera) continue;
+      const Overlap pair = overlap(from, to, camera, rays);
+      if (pair.points < least_points) continue;
+      points += pair.points;
+      seen_through += pair.seen_through;
+    }
+  }
+  return percent(static_cast<double>(seen_through), static_cast<double>(points));
+}
+
+double plane_thickness_m(const MapCloud& map) {
+  constexpr std::size_t places = 3000;
+  if (map.empty()) return nan;
+  constexpr bool sorted = false;
+  Tree tree(sorted);
+  tree.setInputCloud(map.makeShared());
+  std::vector<double> thicknesses;
+  const std::size_t step = std::max<std::size_t>(1, map.size() / places);
+  for (std::size_t i = 0; i < map.size(); i += step) {
+    if (const auto thickness = thickness_at(map, tree, static_cast<int>(i))) {
+      thicknesses.push_back(*thickness);
+    }
+  }
+  return thicknesses.empty() ? nan : median(thicknesses);
+}
+
+Consistency unknown_consistency() { return {nan, nan, nan, nan, nan, nan}; }
+
+int consistency_frames(const CameraModel& camera) {
+  constexpr double most_pixels = 6e6;
+  return static_cast<int>(std::clamp(most_pixels / (camera.width_px * camera.height_px), 20., 60.));
+}
+
+Consistency consistency_of(const std::vector<RangedFrame>& unwrapped,
+                           const std::vector<RangedFrame>& filtered, const MapCloud& map,
+                           const SensorModel& sensor) {
+  const BeatAgreement beat = beat_agreement(unwrapped, sensor.modulation);
+  return {.beat_misfit_percent = beat.misfit_percent,
+          .beat_residual_cycles = beat.residual_cycles,
+          .ambiguous_percent = ambiguous_percent(unwrapped),
+          .contradicted_percent = contradicted_percent(filtered, sensor.camera),
+          .plane_thickness_m = plane_thickness_m(map),
+          .curl_violations_per_frame = nan};
+}
+
+std::vector<std::string> doubts_about(const Consistency& consistency) {
+  // Measured: docs/evaluation.md. NaN exceeds no limit.
+  constexpr double most_contradicted_percent = 3;
+  constexpr double most_misfit_percent = 10;
+  std::vector<std::string> doubts;
+  if (consistency.contradicted_percent > most_contradicted_percent) {
+    doubts.push_back(formatted(
+        "frames contradict each other in %.1f %% of what they both see: ranges or path are wrong",
+        consistency.contradicted_percent));
+  }
+  if (consistency.beat_misfit_percent > most_misfit_percent) {
+    doubts.push_back(
+        formatted("%.0f %% of the pixels would fit both frequencies better with another "
+                  "wrap count: wraps are wrong, or the frequencies' offsets differ "
+                  "('tofmap info' tells)",
+                  consistency.beat_misfit_percent));
+  }
+  return doubts;
+}
+
+}  // namespace tofmap

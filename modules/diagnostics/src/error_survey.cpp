@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/diagnostics/error_survey.hpp"
+
+#include <cmath>
+
+#include <tofmap/core/median.hpp>
+#include <tofmap/core/text.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Errors from here on are told. Calibrated cameras stay below; motion and light that comes by
+/// other ways make some millimetres of each.
+constexpr double least_offset_m = 0.01;
+constexpr double least_periodic_m = 0.008;
+constexpr double least_per_decade_m = 0.005;
+constexpr double least_systematic_m = 0.015;
+constexpr double least_flow_px = 1.5;
+constexpr double least_ambient_share = 0.03;
+
+double millimetres(double metres) { return 1000 * metres; }
+
+}  // namespace
+
+void ErrorTally::add(const MeasuredFrame& frame) {
+  camera_ = frame.errors.camera;
+  if (frame.errors.pixels > 0) flows_px_.push_back(static_cast<float>(frame.errors.flow_px));
+  pixels_ += static_cast<double>((frame.valid != 0).count());
+  constexpr float raised = 1.4F;
+  for (Eigen::Index i = 0; i < frame.ambient.size(); ++i) {
+    if (frame.valid.data()[i] == 0 || frame.ambient.data()[i] < raised) continue;
+    ambient_pixels_ += 1;
+    ambient_factors_ += frame.ambient.data()[i];
+  }
+}
+
+ErrorSurvey ErrorTally::survey() const {
+  ErrorSurvey survey;
+  survey.camera = camera_;
+  survey.frames = static_cast<int>(flows_px_.size());
+  std::vector<float> flows_px = flows_px_;
+  if (!flows_px.empty()) survey.flow_px = median(flows_px);
+  if (pixels_ > 0) survey.ambient_share = ambient_pixels_ / pixels_;
+  if (ambient_pixels_ > 0) survey.ambient_factor = ambient_factors_ / ambient_pixels_;
+  return survey;
+}
+
+ErrorSurvey survey_errors(const std::vector<DualFrequencyFrame>& frames, const SensorModel& sensor,
+                          const UnwrapOptions& options) {
+  FrameMeasurer measurer(sensor, options);
+  ErrorTally tally;
+  for (const DualFrequencyFrame& frame : frames) tally.add(measurer.measure(frame));
+  return tally.survey();
+}
+
+std::vector<std::string> remarks_about(const ErrorSurvey& survey) {
+  std::vector<std::string> remarks;
+  if (survey.camera.frames > 0) {
+    const double offset_m = survey.camera.offset_m();
+    const double periodic_m = survey.camera.periodic_rms_m;
+    const double per_decade_m = survey.camera.per_decade_m();
+    if (std::abs(offset_m) >= least_offset_m) {
+      remarks.push_back(formatted(
+          "offset between the frequencies: A measures %.0f mm %s than B; allowed for in "
+          "unwrapping, "
+          "but one of them is off by it: 'tofmap calibrate' against known ranges tells which",
+          millimetres(std::abs(offset_m)), offset_m < 0 ? "less" : "more"));
+    }
+    if (periodic_m >= least_periodic_m) {
+      remarks.push_back(
+          formatted("the frequencies disagree periodically, by %.0f mm (RMS); allowed for in "
+                    "unwrapping, while "
+                    "ranges keep a periodic error until 'tofmap calibrate' finds it",
+                    millimetres(periodic_m)));
+    }
+    if (std::abs(per_decade_m) >= least_per_decade_m) {
+      remarks.push_back(formatted(
+          "the frequencies disagree by %.0f mm more for every factor of ten in amplitude; "
+          "allowed for in unwrapping",
+          millimetres(per_decade_m)));
+    }
+    if (survey.camera.systematic_m >= least_systematic_m) {
+      remarks.push_back(formatted(
+          "the frequencies disagree by %.0f mm (RMS) beyond noise, offset and periodic errors; "
+          "wrap counts are taken for less sure by as much",
+          millimetres(survey.camera.systematic_m)));
+    }
+  }
+  if (survey.flow_px >= least_flow_px) {
+    remarks.push_back(formatted(
+        "the image moves by %.1f pixels (median) from A's exposure to B's; B is brought back "
+        "to where A was exposed",
+        survey.flow_px));
+  }
+  if (survey.ambient_share >= least_ambient_share) {
+    remarks.push_back(formatted(
+        "%.0f %% of the pixels are %.1f times as noisy as their amplitudes say, as under ambient "
+        "light; taken into account where they are",
+        100 * survey.ambient_share, survey.ambient_factor));
+  }
+  return remarks;
+}
+
+}  // namespace tofmap

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/diagnostics/map_verdict.hpp"
+
+#include <algorithm>
+
+#include <tofmap/core/text.hpp>
+
+namespace tofmap {
+
+Judgement judge(const MapEvidence& evidence) {
+  constexpr double half_percent = 50;        // with fewer frames it is a map of something else
+  constexpr double nearly_all_percent = 95;  // every recording loses some frames
+  constexpr double some_percent = 10;        // so many frames may rely on the motion before them
+  Judgement judgement;
+  const auto hold_against = [&](Verdict verdict, const std::string& reason) {
+    judgement.verdict = std::max(judgement.verdict, verdict);
+    judgement.reasons.push_back(reason);
+  };
+  if (evidence.is_empty) hold_against(Verdict::bad, "the map is empty");
+  if (!evidence.is_unwrapped) hold_against(Verdict::bad, "nothing was unwrapped");
+  const double registered_percent = percent_of_frames(evidence, evidence.registered);
+  if (registered_percent < nearly_all_percent) {
+    hold_against(registered_percent < half_percent ? Verdict::bad : Verdict::doubtful,
+                 formatted("%.0f %% of the frames could not be placed", 100 - registered_percent));
+  }
+  const Verdict of_surface = evidence.accuracy_m
+                                 ? verdict_on_accuracy(*evidence.accuracy_m, evidence.voxel_m)
+                                 : Verdict::good;
+  if (of_surface != Verdict::good) {
+    hold_against(of_surface, "its error is larger than its voxels");
+  }
+  const double degenerate_percent = percent_of_frames(evidence, evidence.degenerate);
+  if (degenerate_percent > some_percent) {
+    hold_against(
+        Verdict::doubtful,
+        formatted("in %.0f %% of the frames no surface held a direction", degenerate_percent));
+  }
+  if (!evidence.is_seen_twice) hold_against(Verdict::doubtful, "no place was seen by two frames");
+  if (evidence.is_interrupted) hold_against(Verdict::doubtful, "the run was interrupted");
+  if (evidence.is_warned) hold_against(Verdict::doubtful, "the warnings below");
+  return judgement;
+}
+
+std::string told_reasons(const Judgement& judgement) {
+  if (judgement.reasons.empty()) return "";
+  return " Held against it: " + joined(judgement.reasons, "; ") + ".";
+}
+
+Verdict verdict_on_accuracy(double accuracy_m, double voxel_m) {
+  constexpr double much = 5;
+  if (!(accuracy_m <= much * voxel_m)) return Verdict::bad;  // NaN as well
+  return accuracy_m <= voxel_m ? Verdict::good : Verdict::doubtful;
+}
+
+Verdict verdict_on_wraps(double wrong_wrap_percent) {
+  // Filters drop a few percent of wrong wraps; a fifth ruins a map (docs/experiments.md).
+  constexpr double few_percent = 2;
+  constexpr double many_percent = 10;
+  if (wrong_wrap_percent > many_percent) return Verdict::bad;
+  return wrong_wrap_percent <= few_percent ? Verdict::good : Verdict::doubtful;
+}
+
+double percent_of_frames(const MapEvidence& evidence, int part) {
+  return evidence.frames > 0 ? 100.0 * part / evidence.frames : 0;
+}
+
+}  // namespace tofmap

@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/diagnostics/recording_survey.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <tofmap/core/median.hpp>
+#include <tofmap/core/text.hpp>
+#include <tofmap/diagnostics/axial_depth.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Frames whose frequencies are compared, spread evenly.
+constexpr int beat_frames = 12;
+
+/// Images with fewer returns may be of one range.
+constexpr int least_returns = 100;
+
+/// Below what phases of 16 bits can differ by.
+constexpr float no_difference = 1e-5F;
+
+bool is_constant(const ImageF& phase) {
+  float least = 2;
+  float most = -1;
+  int returns = 0;
+  for (const float value : phase.reshaped()) {
+    if (std::isnan(value)) continue;
+    least = std::min(least, value);
+    most = std::max(most, value);
+    ++returns;
+  }
+  return returns >= least_returns && most - least < no_difference;
+}
+
+bool is_without_return(const DualFrequencyFrame& frame) {
+  return (frame.phase_a.isNaN() || frame.phase_b.isNaN()).all();
+}
+
+/// Pixels of all frames.
+struct PixelTotals {
+  double all = 0;
+  double without_return = 0;  ///< at either frequency
+  double saturated = 0;       ///< at either frequency
+
+  void add(const DualFrequencyFrame& frame, double saturation_amplitude) {
+    all += static_cast<double>(frame.phase_a.size());
+    without_return += static_cast<double>((frame.phase_a.isNaN() || frame.phase_b.isNaN()).count());
+    if (!frame.has_amplitude() || saturation_amplitude <= 0) return;
+    const auto limit = static_cast<float>(saturation_amplitude);
+    saturated +=
+        static_cast<double>((frame.amplitude_a >= limit || frame.amplitude_b >= limit).count());
+  }
+
+  double share(double of) const { return all > 0 ? of / all : 0; }
+};
+
+void survey_times(const std::vector<SequenceFrameFiles>& files, RecordingSurvey& survey) {
+  std::vector<double> periods_s;
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    if (!files[i].damage.empty() || !files[i - 1].damage.empty()) continue;
+    periods_s.push_back(files[i].timestamp_s - files[i - 1].timestamp_s);
+    if (periods_s.back() <= survey.longest_gap_s) continue;
+    survey.longest_gap_s = periods_s.back();
+    survey.frame_before_gap = static_cast<int>(i) - 1;
+  }
+  if (!periods_s.empty()) survey.median_period_s = median(periods_s);
+}
+
+void doubt_returns(const RecordingSurvey& survey, std::vector<std::string>& doubts) {
+  constexpr double most_without_return = 0.5;
+  const int whole = survey.frames - static_cast<int>(survey.damages.size());
+  if (whole > 0 && survey.without_return == whole) {
+    doubts.emplace_back("no pixel has a return; are the phase images mislabelled?");
+  } else if (survey.without_return > 0) {
+    doubts.push_back(counted(static_cast<std::size_t>(survey.without_return), "frame") +
+                     " without any return; was the camera covered?");
+  } else if (survey.no_return_share > most_without_return) {
+    doubts.push_back(
+        formatted("%.0f %% of the pixels have no return; is the exposure too short, or the "
+                  "scene out of reach?",
+                  100 * survey.no_return_share));
+  }
+  constexpr double most_saturated = 0.05;
+  if (survey.saturated_share > most_saturated) {
+    doubts.push_back(
+        formatted("%.0f %% of the pixels are saturated, and left out; a shorter exposure "
+                  "would keep them",
+                  100 * survey.saturated_share));
+  }
+}
+
+void doubt_images(const RecordingSurvey& survey, std::vector<std::string>& doubts) {
+  if (!survey.constant_images.empty()) {
+    doubts.push_back(
+        formatted("%zu images hold one phase everywhere, %s the first; they are no "
+                  "measurement",
+                  survey.constant_images.size(), survey.constant_images.front().c_str()));
+  }
+  if (const auto doubt = repetition_doubt(survey.repeated)) doubts.push_back(*doubt);
+}
+
+void doubt_times(const RecordingSurvey& survey, std::vector<std::string>& doubts) {
+  constexpr double longest_period_s = 10;
+  constexpr double shortest_period_s = 1e-3;
+  const bool is_none_of_a_camera =
+      survey.median_period_s > longest_period_s ||
+      (survey.median_period_s > 0 && survey.median_period_s < shortest_period_s);
+  if (is_none_of_a_camera) {
+    doubts.push_back(formatted("%.3g s from frame to frame; are the times in frames.txt seconds?",
+                               survey.median_period_s));
+  }
+  constexpr double most_periods = 5;
+  if (survey.longest_gap_s > most_periods * survey.median_period_s) {
+    doubts.push_back(
+        formatted("after frame %d nothing was recorded for %.2f s, %.0f frame periods; the "
+                  "camera may be lost there",
+                  survey.frame_before_gap, survey.longest_gap_s,
+                  survey.longest_gap_s / survey.median_period_s));
+  }
+}
+
+}  // namespace
+
+bool repeats(const DualFrequencyFrame& frame, const DualFrequencyFrame& last) {
+  return same_values(frame.phase_a, last.phase_a) && same_values(frame.phase_b, last.phase_b);
+}
+
+std::optional<std::string> repetition_doubt(int repeated) {
+  if (repeated == 0) return std::nullopt;
+  return counted(static_cast<std::size_t>(repeated), "frame") +
+         (repeated == 1 ? " repeats" : " repeat") +
+         " the one before; did the camera's software stand still?";
+}
+
+RecordingSurvey survey_recording(const SequenceReader& recording,
+                                 const std::function<bool(int)>& keep_going) {
+  const SensorModel& sensor = recording.sensor();
+  const int count = *recording.frame_count();
+  const int every = 1 + (count - 1) / beat_frames;
+  RecordingSurvey survey;
+  PixelTotals totals;
+  std::vector<DualFrequencyFrame> some;
+  DualFrequencyFrame last;
+  for (int i = 0; i < count; ++i) {
+    if (keep_going && !keep_going(i)) break;
+    ++survey.frames;
+    SourcedFrame sourced = recording.read(i);
+    if (!sourced.frame) {
+      survey.damages.push_back(sourced.damage);
+      continue;
+    }
+    DualFrequencyFrame& frame = *sourced.frame;
+    totals.add(frame, sensor.saturation_amplitude);
+    survey.without_amplitude += frame.has_amplitude() ? 0 : 1;
+    survey.without_return += is_without_return(frame) ? 1 : 0;
+    survey.repeated += repeats(frame, last) ? 1 : 0;
+    const SequenceFrameFiles& files = recording.files()[static_cast<std::size_t>(i)];
+    if (is_constant(frame.phase_a)) survey.constant_images.push_back(files.phase_a.string());
+    if (is_constant(frame.phase_b)) survey.constant_images.push_back(files.phase_b.string());
+    if (i % every == 0) some.push_back(frame);
+    last = std::move(frame);
+  }
+  survey.no_return_share = totals.share(totals.without_return);
+  survey.saturated_share = totals.share(totals.saturated);
+  survey_times(recording.files(), survey);
+  survey.axial_depth_doubt = axial_depth_doubt(some, sensor);
+  survey.beat = survey_beat(some, sensor);
+  survey.errors = survey_errors(some, sensor);
+  return survey;
+}
+
+std::vector<std::string> doubts_about(const RecordingSurvey& survey, const SensorModel& sensor) {
+  std::vector<std::string> doubts;
+  if (sensor.max_range_m > combined_range_m(sensor.modulation)) {
+    doubts.emplace_back(
+        "the scene reaches farther than this pair of frequencies can tell apart; are they right?");
+  }
+  doubt_returns(survey, doubts);
+  doubt_images(survey, doubts);
+  doubt_times(survey, doubts);
+  if (survey.axial_depth_doubt) {
+    doubts.push_back(*survey.axial_depth_doubt);
+    return doubts;  // A and B cannot agree then
+  }
+  // Constant images have been doubted already, and do not agree with others.
+  if (survey.beat && survey.constant_images.empty()) {
+    for (std::string& doubt : doubts_about(*survey.beat)) doubts.push_back(std::move(doubt));
+  }
+  return doubts;
+}
+
+}  // namespace tofmap

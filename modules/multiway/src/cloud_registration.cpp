@@ -1,0 +1,287 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/multiway/cloud_registration.hpp"
+
+#include "cloud_graph.hpp"
+#include "cloud_pair.hpp"
+#include "cloud_remarks.hpp"
+#include "cloud_units.hpp"
+#include "levelled_cloud.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include <omp.h>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/core/median.hpp>
+#include <tofmap/core/side_by_side.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Voxels that are finer than those which leave some thousand points by more than this leave
+/// hundreds of times as many.
+constexpr double most_refinement = 20;
+
+/// What registration may be off beyond its covariance, in the finest voxels.
+constexpr double slack_voxels = 0.5;
+
+/// A pose between centred frames as one between the clouds' own.
+Pose between_own_frames(const Pose& target_from_source, const LevelledCloud& source,
+                        const LevelledCloud& target) {
+  return Eigen::Translation3d(target.centre_m) * target_from_source *
+         Eigen::Translation3d(-source.centre_m);
+}
+
+/// Registers clouds in steps that share what the steps before found out.
+class Registration {
+ public:
+  Registration(std::span<const PointSet> clouds, std::span<const std::string> names,
+               const CloudRegistrationOptions& options,
+               const std::function<bool(int, int)>& keep_going)
+      : clouds_(clouds),
+        names_(names),
+        options_(options),
+        keep_going_(keep_going),
+        spacings_(side_by_side(static_cast<int>(clouds.size()),
+                               [&](int i) { return feature_voxel(clouds[i]); })),
+        is_common_(of_common_size(spacings_)),
+        levels_(clouds.size()) {
+    out_.clouds.resize(clouds.size());
+    out_.voxel_m = options.voxel_m > 0 ? options.voxel_m : common_voxel();
+    const double least_m = common_voxel() / most_refinement;
+    if (out_.voxel_m >= least_m) return;
+    throw UsageError(too_fine(out_.voxel_m, least_m));
+  }
+
+  CloudRegistration run() {
+    align_all_pairs();
+    place();
+    for (int i = 0; i < static_cast<int>(clouds_.size()) && !out_.interrupted; ++i) {
+      if (!cloud(i).is_placed) try_other_units(i);
+    }
+    place();
+    explain();
+    finish();
+    return std::move(out_);
+  }
+
+ private:
+  PlacedCloud& cloud(int i) { return out_.clouds[static_cast<std::size_t>(i)]; }
+  std::optional<LevelledCloud>& levels(int i) { return levels_[static_cast<std::size_t>(i)]; }
+
+  double common_voxel() const {
+    std::vector<double> common;
+    for (std::size_t i = 0; i < spacings_.size(); ++i) {
+      if (is_common_[i]) common.push_back(spacings_[i]);
+    }
+    return median(common);
+  }
+
+  std::optional<LevelledCloud> levels_with_unit(int i, double unit_m) const {
+    return make_levels(clouds_[static_cast<std::size_t>(i)], unit_m, out_.voxel_m);
+  }
+
+  bool may_go_on(int done, int all) {
+    if (keep_going_ && !keep_going_(done, all)) out_.interrupted = true;
+    return !out_.interrupted;
+  }
+
+  void align_all_pairs() {
+    const int count = static_cast<int>(clouds_.size());
+    levels_ = side_by_side(count, [&](int i) {
+      return is_common_[static_cast<std::size_t>(i)] ? levels_with_unit(i, 1) : std::nullopt;
+    });
+    for (int source = 0; source < count; ++source) {
+      for (int target = 0; target < source; ++target) {
+        if (!levels(source) || !levels(target)) continue;
+        out_.pairs.emplace_back();
+        out_.pairs.back().source = source;
+        out_.pairs.back().target = target;
+      }
+    }
+    const int all = static_cast<int>(out_.pairs.size());
+    const int batch = omp_get_max_threads();
+    for (int done = 0; done < all; done += batch) {
+      if (!may_go_on(done, all)) {
+        out_.pairs.resize(static_cast<std::size_t>(done));
+        return;
+      }
+      const auto found = side_by_side(std::min(batch, all - done), [&](int i) {
+        const CloudPair& pair = out_.pairs[static_cast<std::size_t>(done + i)];
+        return with_indices(align_pair(*levels(pair.source), *levels(pair.target), options_),
+                            pair.source, pair.target);
+      });
+      std::ranges::copy(found, out_.pairs.begin() + done);
+    }
+    may_go_on(all, all);
+  }
+
+  static CloudPair with_indices(CloudPair pair, int source, int target) {
+    pair.source = source;
+    pair.target = target;
+    return pair;
+  }
+
+  /// Where all pairs together say that the clouds are.
+  void place() {
+    const double slack_m = slack_voxels * out_.voxel_m / 4;
+    const auto poses = fit_graph(clouds_.size(), out_.pairs, slack_m, options_.kernel_width);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      out_.clouds[i].is_placed = poses[i].has_value();
+      if (poses[i]) out_.clouds[i].common_from_cloud = *poses[i];
+    }
+  }
+
+  /// Looks whether a cloud fits a placed one, or any of the common size, if its unit is another.
+  void try_other_units(int i) {
+    const double spacing = spacings_[static_cast<std::size_t>(i)];
+    for (const LengthUnit& unit : likely_units(spacing, common_voxel())) {
+      std::optional<LevelledCloud> scaled = levels_with_unit(i, unit.length);
+      if (!scaled) continue;
+      for (int other = 0; other < static_cast<int>(clouds_.size()); ++other) {
+        if (other == i || !levels(other) || !is_reference(other)) continue;
+        const CloudPair pair = align_pair(*scaled, *levels(other), options_);
+        if (pair.verdict != PairVerdict::registered) continue;
+        cloud(i).remark = other_unit(unit, names_[static_cast<std::size_t>(other)]);
+        if (!options_.convert_units) return;
+        cloud(i).unit_m = unit.length;
+        levels(i) = std::move(scaled);
+        std::erase_if(out_.pairs, [&](const CloudPair& unscaled) {
+          return unscaled.source == i || unscaled.target == i;
+        });
+        out_.pairs.push_back(with_indices(pair, i, other));
+        return;
+      }
+    }
+  }
+
+  /// Units are found out by clouds that are placed; if none is, by any of the common size.
+  bool is_reference(int i) {
+    return cloud(i).is_placed || (out_.placed() == 0 && is_common_[static_cast<std::size_t>(i)]);
+  }
+
+  void explain() {
+    for (int i = 0; i < static_cast<int>(clouds_.size()); ++i) {
+      const auto index = static_cast<std::size_t>(i);
+      if (cloud(i).is_placed || !cloud(i).remark.empty()) continue;
+      if (clouds_[index].points.size() < least_oriented_points ||
+          (is_common_[index] && !levels(i))) {
+        cloud(i).remark = "has too few points on surfaces";
+      } else if (!is_common_[index]) {
+        cloud(i).remark = odd_size(spacings_[index] / common_voxel());
+      } else {
+        cloud(i).remark = why_not_placed(i, out_.pairs, names_);
+      }
+    }
+  }
+
+  /// From centred frames to the clouds' own, and what each cloud is tied to.
+  void finish() {
+    const auto first = std::ranges::find_if(out_.clouds, &PlacedCloud::is_placed);
+    if (first != out_.clouds.end()) {
+      const auto index = static_cast<std::size_t>(first - out_.clouds.begin());
+      const LevelledCloud& common = *levels_[index];
+      for (std::size_t i = 0; i < out_.clouds.size(); ++i) {
+        PlacedCloud& one = out_.clouds[i];
+        if (!one.is_placed) continue;
+        one.common_from_cloud = between_own_frames(one.common_from_cloud, *levels_[i], common);
+      }
+    }
+    std::ranges::stable_sort(out_.pairs, std::ranges::less(), [](const CloudPair& pair) {
+      return std::pair(pair.source, pair.target);
+    });
+    for (CloudPair& pair : out_.pairs) {
+      pair.target_from_source =
+          between_own_frames(pair.target_from_source, *levels(pair.source), *levels(pair.target));
+      if (pair.verdict == PairVerdict::registered) tie(pair);
+    }
+  }
+
+  void tie(const CloudPair& pair) {
+    for (const auto& [one, other] :
+         {std::pair(pair.source, pair.target), std::pair(pair.target, pair.source)}) {
+      PlacedCloud& placed = cloud(one);
+      if (!placed.is_placed) continue;
+      placed.tied_to.push_back(other);
+      std::ranges::sort(placed.tied_to);
+      if (pair.fit.inlier_share <= placed.inlier_share) continue;
+      placed.inlier_share = pair.fit.inlier_share;
+      placed.rmse_m = pair.fit.rmse_m;
+    }
+  }
+
+  std::span<const PointSet> clouds_;
+  std::span<const std::string> names_;
+  const CloudRegistrationOptions& options_;
+  const std::function<bool(int, int)>& keep_going_;
+  std::vector<double> spacings_;  ///< voxels for features, in each cloud's own unit
+  std::vector<bool> is_common_;   ///< whether a cloud is of the size of most
+  std::vector<std::optional<LevelledCloud>> levels_;
+  CloudRegistration out_;
+};
+
+}  // namespace
+
+std::vector<OptionField<CloudRegistrationOptions>> CloudRegistrationOptions::fields() {
+  using O = CloudRegistrationOptions;
+  return {
+      {"voxel_m", &O::voxel_m, 0, 1000, "m",
+       "voxels of the coarsest level, where features are compared; 0: some five thousand points "
+       "a cloud are left"},
+      {"method", &O::method, 0, 0, "", "how clouds are refined",
+       "generalised | point_to_plane | pcl_icp | pcl_gicp"},
+      {"min_overlap", &O::min_overlap, 0, 1, "",
+       "share of one of two clouds that must lie near the other"},
+      {"min_inlier_share", &O::min_inlier_share, 0, 1, "",
+       "share of what lies near that must lie on the surface, of clouds that overlap wholly; up to "
+       "0.15 more of those that hardly do"},
+      {"min_direction_share", &O::min_direction_share, 0, 1, "",
+       "share of the surface that must hold each direction of motion"},
+      {"kernel_width", &O::kernel_width, 0.5, 100, "",
+       "width of the kernel that takes their say from pairs that others contradict, in standard "
+       "deviations"},
+      {"convert_units", &O::convert_units, 0, 0, "",
+       "place a cloud in another unit than the others scaled to theirs, instead of leaving it out"},
+  };
+}
+
+const char* verdict_name(PairVerdict verdict) {
+  switch (verdict) {
+    case PairVerdict::registered:
+      return "registered";
+    case PairVerdict::few_matches:
+      return "few_matches";
+    case PairVerdict::low_overlap:
+      return "low_overlap";
+    case PairVerdict::low_inliers:
+      return "low_inliers";
+    case PairVerdict::contradicted:
+      return "contradicted";
+    case PairVerdict::degenerate:
+      return "degenerate";
+    case PairVerdict::ambiguous:
+      return "ambiguous";
+    case PairVerdict::disagrees:
+      return "disagrees";
+  }
+  return "unknown";
+}
+
+int CloudRegistration::placed() const {
+  return static_cast<int>(std::ranges::count_if(clouds, &PlacedCloud::is_placed));
+}
+
+CloudRegistration register_clouds(std::span<const PointSet> clouds,
+                                  std::span<const std::string> names,
+                                  const CloudRegistrationOptions& options,
+                                  const std::function<bool(int, int)>& keep_going) {
+  if (clouds.size() < 2 || clouds.size() != names.size()) {
+    throw UsageError("registration takes two clouds at least, and a name for each");
+  }
+  return Registration(clouds, names, options, keep_going).run();
+}
+
+}  // namespace tofmap

@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/pipeline/run_state.hpp"
+
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string_view>
+
+#include <boost/crc.hpp>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr const char* file_name = "state.bin";
+// The number after the comma is raised whenever what is stored changes between releases.
+constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 5";
+
+/// What a run must have in common with the one it goes on from, a fact a line.
+std::vector<std::string> identity(const SensorModel& sensor, PipelineOptions options) {
+  std::ostringstream text;
+  text.precision(17);
+  const CameraModel& camera = sensor.camera;
+  text << "camera: " << camera.width_px << " x " << camera.height_px << " px, " << camera.fx_px
+       << ' ' << camera.fy_px << ' ' << camera.cx_px << ' ' << camera.cy_px << '\n'
+       << "frequencies: " << sensor.modulation.frequency_a_hz << ' '
+       << sensor.modulation.frequency_b_hz << " Hz\n";
+  OptionTable table;
+  bind_options(table, options);
+  text << table.to_yaml(false);
+  std::vector<std::string> lines;
+  std::istringstream in(text.str());
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+void check_identity(std::istream& in, const std::vector<std::string>& now,
+                    const std::filesystem::path& folder) {
+  std::string there;
+  for (const std::string& line : now) {
+    if (std::getline(in, there) && there == line) continue;
+    throw UsageError(folder.string() + ": its run has '" + there + "', this one '" + line +
+                     "'; give the same recording and options, or start anew without --resume");
+  }
+}
+
+/// What tells so many frames of a recording from those of another: their times, and the phases of
+/// the first and the last.
+std::string recording_line(const SequenceReader& source, int frames) {
+  boost::crc_32_type checksum;
+  for (int i = 0; i < frames; ++i) {
+    const double time_s = source.files()[static_cast<std::size_t>(i)].timestamp_s;
+    checksum.process_bytes(&time_s, sizeof time_s);
+  }
+  for (const int i : {0, frames - 1}) {
+    if (frames == 0) break;
+    const SourcedFrame sourced = source.read(i);
+    if (!sourced.frame) continue;
+    const ImageF& phase = sourced.frame->phase_a;
+    checksum.process_bytes(phase.data(), static_cast<std::size_t>(phase.size()) * sizeof(float));
+  }
+  return "recording: " + std::to_string(frames) + " frames, " + std::to_string(checksum.checksum());
+}
+
+void check_recording(const std::string& line, const SequenceReader& source,
+                     const std::filesystem::path& folder) {
+  int frames = -1;
+  std::sscanf(line.c_str(), "recording: %d", &frames);
+  const bool has_them = frames >= 0 && frames <= *source.frame_count();
+  if (has_them && line == recording_line(source, frames)) return;
+  throw InputError(folder.string() +
+                   ": its run is of another recording; give that one, or start anew without "
+                   "--resume");
+}
+
+std::string checksum_line(std::string_view text) {
+  boost::crc_32_type checksum;
+  checksum.process_bytes(text.data(), text.size());
+  return "\nchecksum: " + std::to_string(checksum.checksum());
+}
+
+/// What was written, its checksum taken off. Throws InputError if that does not fit.
+std::string read_checked(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::size_t end = text.rfind("\nchecksum: ");
+  const bool is_whole = end != std::string::npos &&
+                        text.compare(end, std::string::npos,
+                                     checksum_line(std::string_view(text).substr(0, end))) == 0;
+  if (!is_whole) throw InputError(file.string() + ": is damaged; start anew without --resume");
+  text.resize(end);
+  return text;
+}
+
+}  // namespace
+
+void write_run_state(const std::filesystem::path& folder, const MapRun& run,
+                     const SequenceReader& source, PipelineOptions options) {
+  std::ostringstream state;
+  state << first_line << '\n';
+  for (const std::string& line : identity(source.sensor(), std::move(options))) {
+    state << line << '\n';
+  }
+  state << recording_line(source, static_cast<int>(run.frames().size())) << '\n';
+  run.save(state);
+  const std::string text = std::move(state).str();
+  const std::filesystem::path file = folder / file_name;
+  std::ofstream out(file, std::ios::binary);
+  out << text << checksum_line(text);
+  out.close();
+  if (!out) throw InputError(file.string() + ": cannot be written; is the disk full?");
+}
+
+void resume_run(const std::filesystem::path& folder, MapRun& run, SequenceReader& source,
+                PipelineOptions options) {
+  if (!std::filesystem::exists(folder)) return;
+  const std::filesystem::path file = folder / file_name;
+  if (!std::filesystem::is_regular_file(file)) {
+    throw InputError(folder.string() +
+                     ": holds no interrupted run to go on with; start anew without --resume");
+  }
+  std::istringstream in(read_checked(file));
+  std::string line;
+  if (!std::getline(in, line) || line != first_line) {
+    throw InputError(file.string() +
+                     ": was written by another version; start anew without --resume");
+  }
+  check_identity(in, identity(source.sensor(), std::move(options)), folder);
+  std::getline(in, line);
+  check_recording(line, source, folder);
+  try {
+    run.load(in);
+  } catch (const std::exception&) {
+    throw InputError(file.string() + ": was written by another build; start anew without --resume");
+  }
+  source.start_at(static_cast<int>(run.frames().size()));
+}
+
+}  // namespace tofmap

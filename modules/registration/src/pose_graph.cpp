@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/registration/pose_graph.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include <Eigen/Cholesky>
+#include <ceres/ceres.h>
+#include <ceres/rotation.h>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// A pose as Ceres turns it.
+struct Node {
+  Eigen::Quaterniond rotation;
+  Eigen::Vector3d translation_m;
+};
+
+/// The error of an edge in standard deviations, one number a direction.
+class EdgeError {
+ public:
+  explicit EdgeError(const PoseEdge& edge)
+      : rotation_(Eigen::Quaterniond(edge.from_from_to.linear()).normalized()),
+        translation_m_(edge.from_from_to.translation()) {
+    const Matrix6d information = edge.covariance.inverse();
+    whitening_ = Eigen::LLT<Matrix6d>(information).matrixU();
+  }
+
+  template <class Scalar>
+  bool operator()(const Scalar* from_rotation, const Scalar* from_translation,
+                  const Scalar* to_rotation, const Scalar* to_translation, Scalar* residual) const {
+    using Vector = Eigen::Matrix<Scalar, 3, 1>;
+    using Quaternion = Eigen::Quaternion<Scalar>;
+    const Eigen::Map<const Quaternion> q_from(from_rotation);
+    const Eigen::Map<const Quaternion> q_to(to_rotation);
+    const Eigen::Map<const Vector> t_from(from_translation);
+    const Eigen::Map<const Vector> t_to(to_translation);
+    const Quaternion turn =
+        q_from.conjugate() * q_to * rotation_.conjugate().template cast<Scalar>();
+    const Scalar wxyz[4] = {turn.w(), turn.x(), turn.y(), turn.z()};
+    Eigen::Matrix<Scalar, 6, 1> error;
+    ceres::QuaternionToAngleAxis(wxyz, error.data());
+    error.template tail<3>() =
+        q_from.conjugate() * (t_to - t_from) - translation_m_.template cast<Scalar>();
+    Eigen::Map<Eigen::Matrix<Scalar, 6, 1>>{residual} = whitening_.template cast<Scalar>() * error;
+    return true;
+  }
+
+ private:
+  Eigen::Quaterniond rotation_;
+  Eigen::Vector3d translation_m_;
+  Matrix6d whitening_;
+};
+
+/// Geman and McClure: ρ(s) = s / (1 + s / w²), from squared errors.
+class GemanMcClureLoss : public ceres::LossFunction {
+ public:
+  explicit GemanMcClureLoss(double width) : inverse_square_(1 / (width * width)) {}
+
+  void Evaluate(double squared, double out[3]) const override {
+    const double share = 1 / (1 + squared * inverse_square_);
+    out[0] = squared * share;
+    out[1] = share * share;
+    out[2] = -2 * inverse_square_ * share * share * share;
+  }
+
+ private:
+  double inverse_square_;
+};
+
+void check_edges(std::span<const PoseEdge> edges, std::size_t poses) {
+  for (const PoseEdge& edge : edges) {
+    const auto is_there = [&](int pose) {
+      return pose >= 0 && static_cast<std::size_t>(pose) < poses;
+    };
+    if (!is_there(edge.from) || !is_there(edge.to) || edge.from == edge.to) {
+      throw UsageError("pose graph of " + std::to_string(poses) + " poses: an edge from " +
+                       std::to_string(edge.from) + " to " + std::to_string(edge.to));
+    }
+  }
+}
+
+Node node_of(const Pose& pose) {
+  return {Eigen::Quaterniond(pose.linear()).normalized(), pose.translation()};
+}
+
+/// One pass with a fixed kernel.
+ceres::Solver::Summary solve(std::span<const PoseEdge> edges, double kernel_width,
+                             std::vector<Node>& nodes) {
+  // Constants shared by all blocks are not the problem's to delete.
+  ceres::Problem::Options ownership;
+  ownership.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::EigenQuaternionManifold turns;
+  GemanMcClureLoss kernel(kernel_width);
+  ceres::Problem problem(ownership);
+  for (Node& node : nodes) {
+    problem.AddParameterBlock(node.rotation.coeffs().data(), 4, &turns);
+    problem.AddParameterBlock(node.translation_m.data(), 3);
+  }
+  problem.SetParameterBlockConstant(nodes.front().rotation.coeffs().data());
+  problem.SetParameterBlockConstant(nodes.front().translation_m.data());
+  for (const PoseEdge& edge : edges) {
+    Node& from = nodes[static_cast<std::size_t>(edge.from)];
+    Node& to = nodes[static_cast<std::size_t>(edge.to)];
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<EdgeError, 6, 4, 3, 4, 3>(new EdgeError(edge)),
+        edge.may_be_wrong ? &kernel : nullptr, from.rotation.coeffs().data(),
+        from.translation_m.data(), to.rotation.coeffs().data(), to.translation_m.data());
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.num_threads = 1;  // the same bits everywhere
+  options.max_num_iterations = 50;
+  options.function_tolerance = 1e-9;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  return summary;
+}
+
+}  // namespace
+
+double edge_deviation(const PoseEdge& edge, const std::vector<Pose>& poses) {
+  const Node from = node_of(poses[static_cast<std::size_t>(edge.from)]);
+  const Node to = node_of(poses[static_cast<std::size_t>(edge.to)]);
+  Eigen::Matrix<double, 6, 1> residual;
+  const EdgeError error(edge);
+  error(from.rotation.coeffs().data(), from.translation_m.data(), to.rotation.coeffs().data(),
+        to.translation_m.data(), residual.data());
+  return residual.norm();
+}
+
+void widen(PoseEdge& edge, double rotation_sigma_rad, double translation_sigma_m) {
+  edge.covariance.diagonal().head<3>().array() += rotation_sigma_rad * rotation_sigma_rad;
+  edge.covariance.diagonal().tail<3>().array() += translation_sigma_m * translation_sigma_m;
+}
+
+PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const PoseEdge> edges,
+                                    double kernel_width) {
+  check_edges(edges, poses.size());
+  PoseGraphResult result;
+  result.poses = std::move(poses);
+  if (result.poses.empty()) return result;
+  std::vector<Node> nodes;
+  for (const Pose& pose : result.poses) nodes.push_back(node_of(pose));
+  double width = kernel_width;
+  for (const PoseEdge& edge : edges) {
+    if (edge.may_be_wrong) width = std::max(width, 2 * edge_deviation(edge, result.poses));
+  }
+  while (true) {
+    const ceres::Solver::Summary summary = solve(edges, width, nodes);
+    result.iterations += static_cast<int>(summary.iterations.size());
+    result.converged = summary.termination_type == ceres::CONVERGENCE;
+    if (width <= kernel_width) break;
+    constexpr double shrinking = 2;
+    width = std::max(kernel_width, width / shrinking);
+  }
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    result.poses[i].linear() = nodes[i].rotation.normalized().toRotationMatrix();
+    result.poses[i].translation() = nodes[i].translation_m;
+  }
+  for (const PoseEdge& edge : edges) {
+    result.edge_deviations.push_back(edge_deviation(edge, result.poses));
+  }
+  return result;
+}
+
+bool is_outvoted(double deviations, double kernel_width) {
+  return deviations > std::sqrt(3) * kernel_width;  // Geman and McClure's weight is 1/16 there
+}
+
+}  // namespace tofmap

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <tofmap/simulation/scenes.hpp>
+
+namespace tofmap {
+
+// The scenes of docs/simulator.md, one function each.
+Scene wall_scene();
+Scene slope_scene();
+Scene beyond_scene();
+Scene corridor_scene();
+Scene room_scene();
+Scene flat_scene();
+Scene hall_scene();
+Scene atrium_scene();
+Scene passage_scene();
+Scene random_scene(int seed);
+
+/// Floor, ceiling and four walls of a room with one corner at the origin.
+void add_hull(TriangleMesh& mesh, const Eigen::Vector3d& size_m, double floor, double ceiling,
+              double walls);
+
+}  // namespace tofmap

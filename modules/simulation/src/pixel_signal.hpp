@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <optional>
+
+#include <tofmap/simulation/simulator.hpp>
+
+namespace tofmap {
+
+/// What a pixel says of a complex signal.
+struct PhaseAndAmplitude {
+  float phase_cycles = 0;  ///< [0, 1), also after rounding
+  float amplitude = 0;
+};
+
+/// Nothing where the amplitude rounds to zero.
+inline std::optional<PhaseAndAmplitude> measure(const std::complex<double>& signal) {
+  constexpr double max_amplitude = 65535;
+  const double modulus = std::abs(signal);
+  if (modulus < 0.5) return std::nullopt;
+  const double cycles = std::arg(signal) / (2 * std::numbers::pi);
+  const auto wrapped = static_cast<float>(cycles - std::floor(cycles));
+  return PhaseAndAmplitude{wrapped < 1 ? wrapped : 0,
+                           static_cast<float>(std::min(modulus, max_amplitude))};
+}
+
+/// The noise that gives `range_noise_m` at A on a surface of reflectance 0.5 that faces the camera
+/// at 5 m: σ_φ = 2π σ_r / λ_A = σ_n / a (docs/simulator.md, equation 4).
+inline double noise_strength(double range_noise_m, const Modulation& modulation) {
+  constexpr double reference_amplitude = amplitude_unit * 0.5 / (5.0 * 5.0);
+  return reference_amplitude * 2 * std::numbers::pi * range_noise_m / modulation.wavelength_a_m();
+}
+
+}  // namespace tofmap

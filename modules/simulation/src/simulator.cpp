@@ -1,0 +1,404 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/simulation/simulator.hpp"
+
+#include "noise.hpp"
+#include "pixel_signal.hpp"
+#include "sensor_effects.hpp"
+#include "sensor_readout.hpp"
+#include "systematic_errors.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/core/error.hpp>
+#include <tofmap/simulation/pixel_label.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+/// Checks every option as the command line would, for those who fill the struct in code.
+SimulatorOptions checked(SimulatorOptions options) {
+  OptionTable table;
+  SimulatorOptions copy = options;
+  table.bind("simulator", copy);
+  for (const OptionField<SimulatorOptions>& field : SimulatorOptions::fields()) {
+    if (const auto* whole = std::get_if<int SimulatorOptions::*>(&field.member)) {
+      table.set("simulator." + std::string(field.name), std::to_string(options.*(*whole)));
+    } else if (const auto* number = std::get_if<double SimulatorOptions::*>(&field.member)) {
+      const double value = options.*(*number);
+      if (!(value >= field.min && value <= field.max)) {
+        table.set("simulator." + std::string(field.name), std::to_string(value));
+      }
+    }
+  }
+  check_systematic_errors(options);
+  return options;
+}
+
+SensorModel sensor_model(const SimulatorOptions& options) {
+  SensorModel sensor;
+  CameraModel& camera = sensor.camera;
+  camera = pinhole_camera(options.horizontal_fov_deg * std::numbers::pi / 180, options.width_px,
+                          options.height_px);
+  camera.distortion = {options.distortion_k1, options.distortion_k2, options.distortion_p1,
+                       options.distortion_p2, options.distortion_k3};
+  sensor.modulation = {options.frequency_a_hz, options.frequency_b_hz};
+  sensor.max_range_m = options.max_range_m;
+  try {
+    validate(camera);
+    validate(sensor.modulation);
+  } catch (const InputError& error) {  // it comes of the options, not of a file
+    throw UsageError(std::string("simulator options: ") + error.what());
+  }
+  return sensor;
+}
+
+/// The rays of a grid of n x n points over each pixel's square.
+std::vector<Eigen::Vector3f> subpixel_rays(const CameraModel& camera, int n) {
+  std::vector<Eigen::Vector3f> rays;
+  rays.reserve(static_cast<std::size_t>(camera.width_px) * camera.height_px * n * n);
+  for (int v = 0; v < camera.height_px; ++v) {
+    for (int u = 0; u < camera.width_px; ++u) {
+      for (int i = 0; i < n * n; ++i) {
+        const int row = i / n;
+        const int col = i % n;
+        const double du = (col + 0.5) / n - 0.5;
+        const double dv = (row + 0.5) / n - 0.5;
+        rays.push_back(pixel_ray(camera, u + du, v + dv).cast<float>());
+      }
+    }
+  }
+  return rays;
+}
+
+CameraMotion camera_motion(const Scene& scene, const SimulatorOptions& options) {
+  if (!options.trajectory_file.empty()) {
+    const Trajectory poses = read_trajectory(options.trajectory_file);
+    if (poses.empty()) throw InputError(options.trajectory_file + ": holds no pose");
+    return replay_motion(poses, options.frames, options.b_delay_share);
+  }
+  const MotionLimits limits{options.max_step_m, options.max_turn_deg * std::numbers::pi / 180};
+  return plan_motion(scene.path, limits, options.frames, scene.min_frames, options.frame_rate_hz,
+                     options.b_delay_share);
+}
+
+}  // namespace
+
+std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
+  using S = SimulatorOptions;
+  return {
+      {"width_px", &S::width_px, 8, 4096, "px", "image width"},
+      {"height_px", &S::height_px, 8, 4096, "px", "image height"},
+      {"horizontal_fov_deg", &S::horizontal_fov_deg, 1, 150, "deg", "horizontal field of view"},
+      {"distortion_k1", &S::distortion_k1, -10, 10, "", "radial distortion, as OpenCV's k1"},
+      {"distortion_k2", &S::distortion_k2, -10, 10, "", "radial distortion, as OpenCV's k2"},
+      {"distortion_p1", &S::distortion_p1, -1, 1, "", "tangential distortion, as OpenCV's p1"},
+      {"distortion_p2", &S::distortion_p2, -1, 1, "", "tangential distortion, as OpenCV's p2"},
+      {"distortion_k3", &S::distortion_k3, -10, 10, "", "radial distortion, as OpenCV's k3"},
+      {"frequency_a_hz", &S::frequency_a_hz, 1e6, 1e9, "Hz", "modulation frequency of image A"},
+      {"frequency_b_hz", &S::frequency_b_hz, 1e6, 1e9, "Hz", "modulation frequency of image B"},
+      {"range_noise_m", &S::range_noise_m, 0, 10, "m",
+       "standard deviation of A's range at 5 m on a surface of reflectance 0.5 facing the camera"},
+      {"subpixels", &S::subpixels, 1, 16, "", "rays a pixel, along each of its sides"},
+      {"wiggle_m", &S::wiggle_m, 0, 0.2, "m",
+       "how far A's ranges swing about the true ones four times a wavelength; B's as many degrees"},
+      {"multipath_rays", &S::multipath_rays, 0, 4096, "",
+       "rays a pixel for light that comes by way of one other surface; 0: there is none"},
+      {"dark_level", &S::dark_level, 0, 65535, "",
+       "charge of a sample without light, in units of the amplitude; its shot noise comes on top"},
+      {"full_well", &S::full_well, 0, 1e6, "",
+       "charge that a sample can hold, in units of the amplitude; 0: any"},
+      {"exposure_share", &S::exposure_share, 0, 1, "",
+       "how long the four samples of an image take, as a share of a frame period"},
+      {"offset_a_m", &S::offset_a_m, -0.2, 0.2, "m", "how much too long all ranges of A are"},
+      {"offset_b_m", &S::offset_b_m, -0.2, 0.2, "m", "how much too long all ranges of B are"},
+      {"periodic_a_m", &S::periodic_a_m, 0, 0.2, "m",
+       "largest periodic error of A's ranges, two and four times a wavelength"},
+      {"periodic_b_m", &S::periodic_b_m, 0, 0.2, "m",
+       "largest periodic error of B's ranges, two and four times a wavelength"},
+      {"amplitude_error_a_m", &S::amplitude_error_a_m, -0.2, 0.2, "m",
+       "how much too long A's ranges are at an amplitude of 60, less with its logarithm to 0 at "
+       "60000"},
+      {"amplitude_error_b_m", &S::amplitude_error_b_m, -0.2, 0.2, "m",
+       "how much too long B's ranges are at an amplitude of 60, less with its logarithm to 0 at "
+       "60000"},
+      {"fixed_pattern_m", &S::fixed_pattern_m, 0, 0.2, "m",
+       "standard deviation of the constant errors that pixels have of their own, at A and at B"},
+      {"errors_seed", &S::errors_seed, 0, 2147483647, "",
+       "of the camera: draws its periodic errors and its fixed pattern, apart from the noise"},
+      {"ambient_noise", &S::ambient_noise, 1, 20, "",
+       "factor by which noise is larger where ambient light falls; 1: it falls nowhere"},
+      {"ambient_left", &S::ambient_left, 0, 1, "",
+       "where the part of the image begins that ambient light falls on, as a share of the width"},
+      {"ambient_top", &S::ambient_top, 0, 1, "",
+       "where that part begins, as a share of the height, from the top"},
+      {"ambient_right", &S::ambient_right, 0, 1, "", "where it ends, as a share of the width"},
+      {"ambient_bottom", &S::ambient_bottom, 0, 1, "", "where it ends, as a share of the height"},
+      {"phase_bits", &S::phase_bits, 0, 16, "",
+       "phases are rounded to 2^bits steps a cycle, 4 bits or more; 0: they are not"},
+      {"b_delay_share", &S::b_delay_share, 0, 1, "", "B follows A by this share of a frame period"},
+      {"frames", &S::frames, 0, 1000000, "", "frames to record; 0: as many as the path needs"},
+      {"frame_rate_hz", &S::frame_rate_hz, 0.01, 10000, "Hz", "frames a second"},
+      {"max_step_m", &S::max_step_m, 0.001, 10, "m", "how far the camera moves a frame, at most"},
+      {"max_turn_deg", &S::max_turn_deg, 0.01, 90, "deg", "how far it turns a frame, at most"},
+      // Truth images hold millimetres in 16 bits.
+      {"max_range_m", &S::max_range_m, 0, 65.5, "m",
+       "surfaces beyond return nothing, and the recording says so; 0: all return something"},
+      {"trajectory_file", &S::trajectory_file, 0, 0, "",
+       "camera poses in TUM form, one a frame; empty: the scene's path"},
+      {"seed", &S::seed, 0, 2147483647, "", "of the noise"},
+  };
+}
+
+Simulator::Simulator(Scene scene, const SimulatorOptions& options, std::function<bool()> keep_going)
+    : scene_(std::move(scene)),
+      options_(checked(options)),
+      sensor_(sensor_model(options_)),
+      reach_m_(options_.max_range_m > 0 ? options_.max_range_m : scene_.max_range_m),
+      ray_scene_(scene_.surface),
+      motion_(camera_motion(scene_, options_)),
+      rays_(subpixel_rays(sensor_.camera, options_.subpixels)),
+      noise_sigma_(noise_strength(options_.range_noise_m, sensor_.modulation)),
+      keep_going_(std::move(keep_going)) {}
+
+std::optional<SourcedFrame> Simulator::next() {
+  if (next_index_ >= *frame_count()) return std::nullopt;
+  SourcedFrame sourced;
+  sourced.index = next_index_;
+  sourced.frame = simulate(next_index_++).frame;
+  if (is_stopped()) return std::nullopt;
+  sourced.timestamp_s = sourced.frame->timestamp_s;
+  return sourced;
+}
+
+/// Where the camera is while it takes one image.
+struct Simulator::Exposure {
+  /// At each of the four samples; the same pose four times if the exposure is so short that the
+  /// camera stands still.
+  std::array<Pose, 4> world_from_camera;
+  bool stands_still = true;
+  double wavelength_m = 0;
+  std::uint64_t noise_key = 0;  ///< draws the rays of light by way of other surfaces
+};
+
+struct Simulator::Exposed {
+  ImageF phase;
+  ImageF amplitude;
+  ImageU8 label;  ///< 0 if not wanted
+};
+
+struct Simulator::Truth {
+  ImageF range_m;
+  ImageF cos_incidence;
+};
+
+void Simulator::check_index(int index) const {
+  if (index >= 0 && index < *frame_count()) return;
+  throw UsageError("frame " + std::to_string(index) + " of the simulation: there are frames 0 " +
+                   "to " + std::to_string(*frame_count() - 1));
+}
+
+SimulatedFrame Simulator::simulate(int index) const {
+  check_index(index);
+  const StampedPose& at_a = motion_.at_a[static_cast<std::size_t>(index)];
+  SimulatedFrame simulated;
+  DualFrequencyFrame& frame = simulated.frame;
+  frame.index = index;
+  frame.timestamp_s = at_a.timestamp_s;
+  const auto readout = [&](ImageOfFrame image) {
+    return sensor_readout(options_, sensor_, index, image);
+  };
+  constexpr bool with_labels = true;
+  Exposed a = expose(exposure_a(index), readout(ImageOfFrame::a), with_labels);
+  Exposed b = expose(exposure_b(index), readout(ImageOfFrame::b), !with_labels);
+  frame.phase_a = std::move(a.phase);
+  frame.amplitude_a = std::move(a.amplitude);
+  frame.phase_b = std::move(b.phase);
+  frame.amplitude_b = std::move(b.amplitude);
+  // Without a return at either frequency there is no range.
+  simulated.label =
+      frame.phase_b.isNaN().select(static_cast<std::uint8_t>(PixelLabel::no_return), a.label);
+  simulated.world_from_camera = at_a.world_from_camera;
+  Truth truth = cast_truth(at_a.world_from_camera);
+  simulated.range_truth_m = std::move(truth.range_m);
+  simulated.cos_incidence = std::move(truth.cos_incidence);
+  return simulated;
+}
+
+IdealFrame Simulator::ideal(int index) const {
+  check_index(index);
+  const StampedPose& at_a = motion_.at_a[static_cast<std::size_t>(index)];
+  return {.index = index,
+          .timestamp_s = at_a.timestamp_s,
+          .signal_a = ideal_signals(exposure_a(index)),
+          .signal_b = ideal_signals(exposure_b(index)),
+          .world_from_camera = at_a.world_from_camera,
+          .range_truth_m = cast_truth(at_a.world_from_camera).range_m};
+}
+
+Simulator::Exposure Simulator::exposure_a(int index) const {
+  return exposure_of(motion_.at_a, index, sensor_.modulation.wavelength_a_m(),
+                     noise_key(options_, index, ImageOfFrame::a));
+}
+
+Simulator::Exposure Simulator::exposure_b(int index) const {
+  return exposure_of(motion_.at_b, index, sensor_.modulation.wavelength_b_m(),
+                     noise_key(options_, index, ImageOfFrame::b));
+}
+
+/// The four samples share the exposure evenly, about the instant of the image.
+Simulator::Exposure Simulator::exposure_of(const Trajectory& poses, int index, double wavelength_m,
+                                           std::uint64_t key) const {
+  Exposure exposure;
+  exposure.wavelength_m = wavelength_m;
+  exposure.noise_key = key;
+  const auto i = static_cast<std::size_t>(index);
+  exposure.world_from_camera.fill(poses[i].world_from_camera);
+  if (options_.exposure_share == 0 || poses.size() == 1) return exposure;
+  exposure.stands_still = false;
+  const bool is_last = i + 1 == poses.size();
+  const Pose& from = poses[is_last ? i - 1 : i].world_from_camera;
+  const Pose& to = poses[is_last ? i : i + 1].world_from_camera;
+  for (int k = 0; k < 4; ++k) {
+    const double share = (is_last ? 1 : 0) + options_.exposure_share * (k - 1.5) / 4;
+    exposure.world_from_camera[static_cast<std::size_t>(k)] = interpolate(from, to, share);
+  }
+  return exposure;
+}
+
+/// The light of one pixel from one pose; `rays` are left with what they met.
+PixelLight Simulator::light_of(std::size_t pixel, const Exposure& exposure,
+                               const Pose& world_from_camera, std::vector<SubRay>& rays) const {
+  const Eigen::Matrix3d turn = world_from_camera.linear();
+  const Eigen::Vector3d origin = world_from_camera.translation();
+  PixelLight light;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    SubRay& ray = rays[i];
+    ray.direction = turn * rays_[pixel * rays.size() + i].cast<double>();
+    ray.hit = ray_scene_.cast(origin, ray.direction, reach_m_);
+    if (!ray.hit) continue;
+    const RayHit& hit = *ray.hit;
+    const double strength =
+        amplitude_unit * hit.reflectance * hit.cos_incidence / (hit.range_m * hit.range_m);
+    light += light_from(strength, hit.range_m, exposure.wavelength_m);
+  }
+  light = light / static_cast<double>(rays.size());
+  const SubRay& middle = rays[rays.size() / 2];
+  if (options_.multipath_rays > 0 && middle.hit) {
+    const std::uint64_t key = mix(exposure.noise_key ^ mix(pixel));
+    const Lamp lamp{sensor_.camera, world_from_camera, reach_m_};
+    light += indirect_light(ray_scene_, lamp, middle.direction, *middle.hit,
+                            options_.multipath_rays, key, exposure.wavelength_m);
+  }
+  return light;
+}
+
+/// Without noise and errors of ranges; `rays` are left with what they met. Nothing if no ray meets
+/// a surface.
+std::optional<std::complex<double>> Simulator::ideal_signal(std::size_t pixel,
+                                                            const Exposure& exposure,
+                                                            const SensorEffects& effects,
+                                                            std::vector<SubRay>& rays) const {
+  std::array<PixelLight, 4> samples;
+  samples.fill(light_of(pixel, exposure, exposure.world_from_camera[0], rays));
+  for (std::size_t k = 1; k < samples.size() && !exposure.stands_still; ++k) {
+    samples[k] = light_of(pixel, exposure, exposure.world_from_camera[k], rays);
+  }
+  const bool any_hit =
+      std::ranges::any_of(rays, [](const SubRay& ray) { return ray.hit.has_value(); }) ||
+      std::ranges::any_of(samples, [](const PixelLight& light) { return light.level > 0; });
+  if (!any_hit) return std::nullopt;
+  return effects.are_none() && exposure.stands_still ? samples[0].first
+                                                     : demodulate(samples, effects);
+}
+
+/// Calls `visit(row, col, signal, rays)` for every pixel that meets a surface, from several
+/// threads.
+template <class Visit>
+void Simulator::for_each_signal(const Exposure& exposure, const Visit& visit) const {
+  const int rows = sensor_.camera.height_px;
+  const int cols = sensor_.camera.width_px;
+  const auto rays_per_pixel = static_cast<std::size_t>(options_.subpixels * options_.subpixels);
+  const SensorEffects effects = sensor_effects(options_, sensor_.modulation);
+#pragma omp parallel for schedule(dynamic)
+  for (int v = 0; v < rows; ++v) {
+    if (is_stopped()) continue;
+    std::vector<SubRay> rays(rays_per_pixel);
+    for (int u = 0; u < cols; ++u) {
+      const std::size_t pixel = static_cast<std::size_t>(v) * cols + u;
+      const auto signal = ideal_signal(pixel, exposure, effects, rays);
+      if (signal) visit(v, u, *signal, rays);
+    }
+  }
+}
+
+ImageC Simulator::ideal_signals(const Exposure& exposure) const {
+  const std::complex<double> nothing(std::numeric_limits<double>::quiet_NaN(), 0);
+  ImageC out = ImageC::Constant(sensor_.camera.height_px, sensor_.camera.width_px, nothing);
+  for_each_signal(exposure, [&](int v, int u, const std::complex<double>& signal,
+                                const std::vector<SubRay>&) { out(v, u) = signal; });
+  return out;
+}
+
+Simulator::Exposed Simulator::expose(const Exposure& exposure, const SensorReadout& readout,
+                                     bool with_labels) const {
+  const int rows = sensor_.camera.height_px;
+  const int cols = sensor_.camera.width_px;
+  Exposed out{ImageF::Constant(rows, cols, nan), ImageF::Zero(rows, cols),
+              ImageU8::Zero(rows, cols)};
+  for_each_signal(exposure, [&](int v, int u, const std::complex<double>& signal,
+                                const std::vector<SubRay>& rays) {
+    const auto pixel = readout.read(signal, v, u);
+    if (!pixel) return;
+    out.amplitude(v, u) = pixel->measured.amplitude;
+    out.phase(v, u) = pixel->measured.phase_cycles;
+    if (!with_labels) return;
+    // A label says what the pixel would have measured without errors of its range.
+    const auto without_errors = measure(pixel->signal_without_errors).value_or(pixel->measured);
+    out.label(v, u) = static_cast<std::uint8_t>(label_pixel(
+        rays, without_errors.phase_cycles, exposure.wavelength_m, pixel->range_sigma_m));
+  });
+  return out;
+}
+
+Simulator::Truth Simulator::cast_truth(const Pose& world_from_camera) const {
+  const ImageF nothing = ImageF::Constant(sensor_.camera.height_px, sensor_.camera.width_px, nan);
+  Truth truth{nothing, nothing};
+  for (int v = 0; v < sensor_.camera.height_px && !is_stopped(); ++v) {
+    for (int u = 0; u < sensor_.camera.width_px; ++u) {
+      const Eigen::Vector3d ray = world_from_camera.linear() * pixel_ray(sensor_.camera, u, v);
+      const auto hit = ray_scene_.cast(world_from_camera.translation(), ray, reach_m_);
+      if (!hit) continue;
+      truth.range_m(v, u) = static_cast<float>(hit->range_m);
+      truth.cos_incidence(v, u) = static_cast<float>(hit->cos_incidence);
+    }
+  }
+  return truth;
+}
+
+int simulate_sequence(const Simulator& simulator, const std::filesystem::path& folder,
+                      const std::function<bool(int done, int total)>& keep_going) {
+  SequenceWriter writer(folder, simulator.sensor());
+  write_mesh_ply(folder / "scene.ply", simulator.surface());
+  const int total = *simulator.frame_count();
+  for (int i = 0; i < total; ++i) {
+    if (keep_going && !keep_going(i, total)) break;
+    const SimulatedFrame simulated = simulator.simulate(i);
+    if (simulator.is_stopped()) break;
+    writer.add(simulated.frame, simulated.world_from_camera, simulated.range_truth_m,
+               simulated.label);
+  }
+  return writer.count();
+}
+
+}  // namespace tofmap

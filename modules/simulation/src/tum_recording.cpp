@@ -1,0 +1,255 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/simulation/tum_recording.hpp"
+
+#include "noise.hpp"
+#include "pixel_signal.hpp"
+#include "sensor_effects.hpp"
+#include "systematic_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include <tofmap/acquisition/png_image.hpp>
+#include <tofmap/core/error.hpp>
+#include <tofmap/core/input_file.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+/// Truth images hold millimetres in 16 bits.
+constexpr float longest_range_m = 65.5F;
+
+struct Line {
+  double timestamp_s = 0;
+  std::string file;
+};
+
+/// Nothing wrong with a line that comes after `last_time_s`; else what it is.
+std::string complaint_about(const std::string& text, double last_time_s, Line& line) {
+  std::istringstream words(text);
+  if (!(words >> line.timestamp_s >> line.file)) return "'" + text + "' is no time and file";
+  // Recordings are written in microseconds; nearer times would be one instant.
+  constexpr double least_step_s = 1e-6;
+  if (line.timestamp_s - last_time_s < least_step_s) {
+    return "its time is not later than that of the line before";
+  }
+  return "";
+}
+
+struct ImageList {
+  std::vector<Line> lines;
+  std::vector<std::string> damages;  ///< of lines that cannot be used
+};
+
+/// Throws InputError if there is no line that can be used.
+ImageList read_list(const std::filesystem::path& file) {
+  refuse_no_file(file);
+  std::ifstream in(file);
+  if (!in) {
+    throw InputError(file.string() +
+                     ": cannot be read; a recording of the TUM RGB-D benchmark has depth.txt with "
+                     "lines 'timestamp file'");
+  }
+  ImageList list;
+  double last_time_s = -std::numeric_limits<double>::infinity();
+  std::string text;
+  for (int number = 1; std::getline(in, text); ++number) {
+    const std::size_t first = text.find_first_not_of(" \t\r");
+    if (first == std::string::npos || text[first] == '#') continue;
+    Line line;
+    const std::string complaint = complaint_about(text, last_time_s, line);
+    if (!complaint.empty()) {
+      list.damages.push_back(file.string() + ":" + std::to_string(number) + ": " + complaint);
+      continue;
+    }
+    last_time_s = line.timestamp_s;
+    list.lines.push_back(std::move(line));
+  }
+  if (!list.lines.empty()) return list;
+  throw InputError(list.damages.empty() ? file.string() + ": lists no image"
+                                        : list.damages.front());
+}
+
+/// Every n-th pixel of an image, n - 1 of them left out on either side of it.
+ImageU16 thinned(const ImageU16& image, int n) {
+  return image(Eigen::seq(n / 2, Eigen::last, n), Eigen::seq(n / 2, Eigen::last, n));
+}
+
+CameraModel thinned_camera(const TumOptions& options, const ImageU16& first) {
+  const int n = options.every_pixel;
+  CameraModel camera;
+  camera.width_px = static_cast<int>(first.cols());
+  camera.height_px = static_cast<int>(first.rows());
+  camera.fx_px = options.fx_px / n;
+  camera.fy_px = options.fy_px / n;
+  camera.cx_px = (options.cx_px - n / 2) / n;
+  camera.cy_px = (options.cy_px - n / 2) / n;
+  return camera;
+}
+
+/// Options of the simulator that need no scene.
+constexpr std::string_view used_options[] = {"frequency_a_hz",
+                                             "frequency_b_hz",
+                                             "range_noise_m",
+                                             "wiggle_m",
+                                             "dark_level",
+                                             "full_well",
+                                             "offset_a_m",
+                                             "offset_b_m",
+                                             "periodic_a_m",
+                                             "periodic_b_m",
+                                             "amplitude_error_a_m",
+                                             "amplitude_error_b_m",
+                                             "fixed_pattern_m",
+                                             "errors_seed",
+                                             "ambient_noise",
+                                             "ambient_left",
+                                             "ambient_top",
+                                             "ambient_right",
+                                             "ambient_bottom",
+                                             "phase_bits",
+                                             "frames",
+                                             "max_range_m",
+                                             "seed"};
+
+/// An option that is set would otherwise be silently without effect.
+void refuse_unused(const SimulatorOptions& options) {
+  const SimulatorOptions defaults;
+  for (const OptionField<SimulatorOptions>& field : SimulatorOptions::fields()) {
+    const bool is_set =
+        std::visit([&](auto member) { return options.*member != defaults.*member; }, field.member);
+    if (!is_set || std::ranges::find(used_options, field.name) != std::end(used_options)) continue;
+    throw UsageError("simulator." + std::string(field.name) +
+                     " needs a scene, and has no effect on recorded depth; leave it out");
+  }
+}
+
+/// The first image of the size that two images have, so that a single odd one does not stand for
+/// all; of several sizes that one image has each, the first. Throws InputError if none can be read.
+ImageU16 typical_image(const std::vector<TumRecording::DepthImage>& images) {
+  std::vector<ImageU16> seen;
+  std::string damage;
+  for (const TumRecording::DepthImage& image : images) {
+    try {
+      ImageU16 read = read_png_16(image.file);
+      if (std::ranges::any_of(seen, [&](const ImageU16& one) { return same_size(one, read); })) {
+        return read;
+      }
+      seen.push_back(std::move(read));
+    } catch (const InputError& error) {
+      if (damage.empty()) damage = error.what();
+    }
+  }
+  if (seen.empty()) throw InputError(damage);
+  return seen.front();
+}
+
+/// Of a surface at that range, without noise and errors of ranges.
+std::complex<double> ideal_signal(double strength, double range_m, double wavelength_m,
+                                  const SensorEffects& effects) {
+  const PixelLight light = light_from(strength, range_m, wavelength_m);
+  return effects.are_none() ? light.first : demodulate({light, light, light, light}, effects);
+}
+
+}  // namespace
+
+std::vector<OptionField<TumOptions>> TumOptions::fields() {
+  using T = TumOptions;
+  return {
+      {"fx_px", &T::fx_px, 1, 1e5, "px", "focal length of the depth images"},
+      {"fy_px", &T::fy_px, 1, 1e5, "px", "focal length of the depth images"},
+      {"cx_px", &T::cx_px, -1e5, 1e5, "px", "their optical centre"},
+      {"cy_px", &T::cy_px, -1e5, 1e5, "px", "their optical centre"},
+      {"steps_per_m", &T::steps_per_m, 1, 1e6, "", "what depth images count in a metre"},
+      {"every_pixel", &T::every_pixel, 1, 16, "", "every how manieth pixel is taken, in both axes"},
+      {"reflectance", &T::reflectance, 0.01, 1, "", "of all surfaces"},
+      {"max_pose_gap_s", &T::max_pose_gap_s, 0, 10, "s",
+       "a pose farther than this from an image in time is none of it"},
+  };
+}
+
+TumRecording::TumRecording(std::filesystem::path folder, const TumOptions& options,
+                           const SimulatorOptions& simulator)
+    : folder_(std::move(folder)), options_(options), simulator_(simulator) {
+  refuse_unused(simulator_);
+  check_systematic_errors(simulator_);
+  ImageList list = read_list(folder_ / "depth.txt");
+  for (const Line& line : list.lines) images_.push_back({line.timestamp_s, folder_ / line.file});
+  left_out_ = std::move(list.damages);
+  const std::filesystem::path poses = folder_ / "groundtruth.txt";
+  std::error_code unknown;
+  if (std::filesystem::exists(poses, unknown)) {
+    UsableTrajectory usable = read_usable_trajectory(poses);
+    poses_ = std::move(usable.poses);
+    damaged_poses_ = std::move(usable.damages);
+  }
+  sensor_.camera = thinned_camera(options_, thinned(typical_image(images_), options_.every_pixel));
+  sensor_.modulation = {simulator.frequency_a_hz, simulator.frequency_b_hz};
+  sensor_.max_range_m = simulator.max_range_m;
+  validate(sensor_.camera);
+  validate(sensor_.modulation);
+  rays_ = pixel_rays(sensor_.camera);
+  noise_sigma_ = std::hypot(noise_strength(simulator.range_noise_m, sensor_.modulation),
+                            dark_noise_sigma(sensor_effects(simulator_, sensor_.modulation)));
+}
+
+TumRecording::Frame TumRecording::read(int index) const {
+  const DepthImage& image = images_.at(static_cast<std::size_t>(index));
+  const ImageU16 depth = thinned(read_png_16(image.file), options_.every_pixel);
+  if (!same_size(depth, rays_.z)) {
+    throw InputError(image.file.string() + ": is of another size than other images");
+  }
+  Frame out;
+  out.world_from_camera = pose_at(poses_, image.timestamp_s, options_.max_pose_gap_s);
+  DualFrequencyFrame& frame = out.frame;
+  frame.index = index;
+  frame.timestamp_s = image.timestamp_s;
+  const ImageF nothing = ImageF::Constant(depth.rows(), depth.cols(), nan);
+  out.range_truth_m = frame.phase_a = frame.phase_b = nothing;
+  frame.amplitude_a = frame.amplitude_b = ImageF::Zero(depth.rows(), depth.cols());
+  const auto key =
+      mix(static_cast<std::uint64_t>(simulator_.seed)) + 2 * static_cast<std::uint64_t>(index);
+  const Modulation& modulation = sensor_.modulation;
+  const SensorEffects effects = sensor_effects(simulator_, modulation);
+  const RangeErrors errors_a = range_errors_a(simulator_, modulation);
+  const RangeErrors errors_b = range_errors_b(simulator_, modulation);
+  const AmbientLight ambient = ambient_light(simulator_, sensor_.camera);
+  const float farthest_m = sensor_.max_range_m > 0
+                               ? std::min(longest_range_m, static_cast<float>(sensor_.max_range_m))
+                               : longest_range_m;
+  for (Eigen::Index i = 0; i < depth.size(); ++i) {
+    if (depth.data()[i] == 0) continue;
+    const float range_m =
+        static_cast<float>(depth.data()[i] / options_.steps_per_m) / rays_.z.data()[i];
+    if (range_m > farthest_m) continue;
+    out.range_truth_m.data()[i] = range_m;
+    const double strength = amplitude_unit * options_.reflectance / (double{range_m} * range_m);
+    const double noise_sigma =
+        noise_sigma_ * ambient.noise_factor(i / depth.cols(), i % depth.cols());
+    const auto at = [&](const RangeErrors& errors, std::uint64_t image_key) {
+      const auto pixel = static_cast<std::size_t>(i);
+      const std::complex<double> ideal =
+          ideal_signal(strength, double{range_m}, errors.wavelength_m, effects);
+      const std::complex<double> noise = noise_sigma * complex_noise(mix(image_key), pixel);
+      return measure(errors.rotation(ideal, pixel) * ideal + noise);
+    };
+    const auto a = at(errors_a, key);
+    const auto b = at(errors_b, key + 1);
+    if (!a || !b) continue;
+    frame.phase_a.data()[i] = quantised(a->phase_cycles, simulator_.phase_bits);
+    frame.amplitude_a.data()[i] = a->amplitude;
+    frame.phase_b.data()[i] = quantised(b->phase_cycles, simulator_.phase_bits);
+    frame.amplitude_b.data()[i] = b->amplitude;
+  }
+  return out;
+}
+
+}  // namespace tofmap

@@ -1,0 +1,346 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/unwrap/errors/error_tracker.hpp"
+
+#include "errors/constant_search.hpp"
+#include "errors/exposure_alignment.hpp"
+#include "errors/exposure_matching.hpp"
+#include "errors/median.hpp"
+#include "errors/residual_fit.hpp"
+#include "errors/residual_samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <istream>
+#include <optional>
+#include <ostream>
+#include <stdexcept>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+namespace tofmap {
+namespace {
+
+using Terms = ErrorTracker::Terms;
+using TermsMatrix = ErrorTracker::TermsMatrix;
+
+/// What cameras are like before one has been seen: standard deviations of the coefficients.
+constexpr double prior_offset_m = 0.06;
+constexpr double prior_harmonic_m = 0.012;
+constexpr double prior_per_decade_m = 0.01;
+
+/// Samples of one frame err alike: of so many one is independent. To predict the frame itself, its
+/// own samples count more than to predict others.
+constexpr double correlated_samples = 30;
+constexpr double correlated_samples_of_own = 6;
+
+/// What is kept of the past from frame to frame: a memory of some fifty frames.
+constexpr double memory = 0.98;
+
+/// A frame with fewer samples says too little.
+constexpr std::size_t least_samples = 100;
+
+/// Motion up to this is small: B sees in every pixel what A sees there.
+constexpr double still_px = 0.7;
+
+/// B fits A if as many samples are as predicted.
+constexpr double good_support = 0.8;
+constexpr double least_support = 0.5;
+
+/// What of systematic errors is not known of a camera of which no frame was good enough.
+constexpr double unknown_systematic_m = 0.03;
+
+/// Frames until which the camera is hardly known, and each is fitted several times.
+constexpr int first_frames = 5;
+
+Terms prior_precision() {
+  Terms precision = Terms::Constant(1 / (prior_harmonic_m * prior_harmonic_m));
+  precision[0] = 1 / (prior_offset_m * prior_offset_m);
+  precision[ErrorTracker::terms - 1] = 1 / (prior_per_decade_m * prior_per_decade_m);
+  return precision;
+}
+
+std::optional<ApparentRotation> apparent_rotation(const ExposurePair& pair,
+                                                  const CameraModel& camera) {
+  if (!pair.has_amplitude()) return std::nullopt;
+  return align_exposures(pair.amplitude_a, pair.amplitude_b, camera);
+}
+
+/// Where to look for the motion first.
+ExposureMotion turned(const std::optional<ApparentRotation>& apparent) {
+  ExposureMotion start;
+  if (apparent) start.rotation_rad = apparent->rotation_rad;
+  return start;
+}
+
+/// True if a fit without much motion may miss some: residuals fit badly, or all are off alike, or
+/// the motion is more than expected.
+bool may_have_moved(const ResidualFit& fit) {
+  constexpr double much_systematic_m = 0.012;
+  constexpr double much_constant_m = 0.02;
+  constexpr double much_nats = 1;
+  return fit.support() < good_support || fit.systematic_m() > much_systematic_m ||
+         std::abs(fit.constant_m()) > much_constant_m || fit.motion_cost() > much_nats;
+}
+
+/// One explanation is better than another if it costs so much less.
+constexpr double clearly_nats = 2;
+
+/// What residuals have besides noise, where two explanations are compared.
+double compared_systematic_m(const ResidualFit& one, const ResidualFit& other) {
+  constexpr double least_systematic_m = 0.01;
+  return std::max(least_systematic_m, std::min(one.systematic_m(), other.systematic_m()));
+}
+
+/// True if the first fit explains the residuals clearly better than the second.
+bool explains_better(const ResidualFit& one, const ResidualFit& other) {
+  const double systematic_m = compared_systematic_m(one, other);
+  return one.cost(systematic_m) + clearly_nats < other.cost(systematic_m);
+}
+
+/// The same, if the apparent rotation may be wrong.
+bool explains_better_without_apparent(const ResidualFit& one, const ResidualFit& other) {
+  const double systematic_m = compared_systematic_m(one, other);
+  return one.cost_without_apparent(systematic_m) + clearly_nats <
+         other.cost_without_apparent(systematic_m);
+}
+
+/// The most likely coefficients, given what frames say of them.
+Terms solve(TermsMatrix information, const Terms& gradient) {
+  information.diagonal() += prior_precision();
+  return information.ldlt().solve(gradient);
+}
+
+void set_coefficients(const Terms& terms, CameraErrors& errors) {
+  std::copy_n(terms.data(), ErrorTracker::terms, errors.coefficient_m.begin());
+}
+
+double median_amplitude(const ImageF& amplitude) {
+  std::vector<float> lit;
+  for (const float a : amplitude.reshaped()) {
+    if (a > 0) lit.push_back(a);
+  }
+  return lit.empty() ? 1 : double{median_of_positive(lit)};
+}
+
+template <class Number>
+void write_number(std::ostream& out, const Number& number) {
+  out.write(reinterpret_cast<const char*>(&number), sizeof(number));
+}
+
+template <class Number>
+void read_number(std::istream& in, Number& number) {
+  in.read(reinterpret_cast<char*>(&number), sizeof(number));
+  if (!in) throw std::runtime_error("the state of the error tracker ends early");
+}
+
+void write_image(std::ostream& out, const ImageF& image) {
+  write_number(out, image.rows());
+  write_number(out, image.cols());
+  out.write(reinterpret_cast<const char*>(image.data()),
+            static_cast<std::streamsize>(sizeof(float)) * image.size());
+}
+
+void read_image(std::istream& in, ImageF& image) {
+  Eigen::Index rows = 0;
+  Eigen::Index cols = 0;
+  read_number(in, rows);
+  read_number(in, cols);
+  constexpr Eigen::Index most = 1 << 16;
+  if (rows < 0 || cols < 0 || rows > most || cols > most) {
+    throw std::runtime_error("the state of the error tracker has an image of impossible size");
+  }
+  image.resize(rows, cols);
+  in.read(reinterpret_cast<char*>(image.data()),
+          static_cast<std::streamsize>(sizeof(float)) * image.size());
+  if (!in) throw std::runtime_error("the state of the error tracker ends early");
+}
+
+}  // namespace
+
+ErrorTracker::ErrorTracker(const BeatLimits& limits, const CameraModel& camera)
+    : limits_(limits), camera_(camera) {
+  if (camera.width_px > 0 && camera.fx_px > 0) rays_ = pixel_rays(camera);
+}
+
+ErrorTracker::Tracked ErrorTracker::track(const DualFrequencyFrame& frame,
+                                          const PhaseSigma& sigma) {
+  const PixelRays no_rays;
+  const PairGeometry geometry{limits_, camera_,
+                              same_size(rays_.x, frame.phase_a) ? rays_ : no_rays};
+  const ExposurePair pair{frame.phase_a, frame.amplitude_a, sigma.a_cycles,
+                          frame.phase_b, frame.amplitude_b, sigma.b_cycles};
+  if (camera_errors_.frames == 0 && frame.has_amplitude()) {
+    camera_errors_.reference_amplitude = median_amplitude(frame.amplitude_a);
+  }
+  Tracked tracked{{}, unmatched(pair)};
+  tracked.errors.camera = camera_errors_;
+  const SurfaceSamples samples = gather_samples(pair, geometry, residual_step_m(limits_));
+  if (samples.size() >= least_samples) {
+    tracked.errors = explain(samples, pair, geometry);
+  } else if (camera_errors_.frames == 0) {
+    tracked.errors.camera.systematic_m = unknown_systematic_m;
+  }
+  if (tracked.errors.flow_px <= still_px) {
+    match_still_exposure(pair, geometry, tracked.errors.camera,
+                         {tracked.errors.motion, tracked.errors.flow_px}, tracked.b);
+  } else {
+    match_moved(samples, pair, geometry, tracked);
+  }
+  last_ = {frame.phase_b, frame.amplitude_b, sigma.b_cycles, tracked.errors.motion};
+  return tracked;
+}
+
+/// Finds motion and errors of a frame, and learns from it what the camera is like.
+FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposurePair& pair,
+                                  const PairGeometry& geometry) {
+  const bool is_first = camera_errors_.frames == 0;
+  bool is_late = camera_errors_.late_frames > 0;  // then this frame may well be, too
+  ResidualFit fit(samples, pair, geometry, camera_errors_, prompt_exposures);
+  fit.find_motion({}, is_first);
+  if (geometry.knows_camera() && (is_late || may_have_moved(fit))) {
+    ResidualFit moved(samples, pair, geometry, camera_errors_, late_exposures);
+    ResidualFit going_on = moved;
+    const auto apparent = apparent_rotation(pair, camera_);
+    if (apparent) {
+      fit.expect(*apparent);
+      moved.expect(*apparent);
+    }
+    moved.find_motion(turned(apparent), true);
+    if (is_late) {
+      // Cameras go on as they went. Where they turn towards what they pass, amplitudes show nothing
+      // of it, and alignment may take one texture for another.
+      going_on.find_motion(last_.motion, true);
+      if (explains_better_without_apparent(going_on, moved)) moved = going_on;
+    }
+    is_late = is_late ? !explains_better(fit, moved) : explains_better(moved, fit);
+    if (is_late) fit = moved;
+  }
+
+  // The frame's own samples, on top of what was known; where little was, more than once, as better
+  // known errors let more samples find their counts.
+  CameraErrors own = camera_errors_;
+  TermsMatrix information;
+  Terms gradient;
+  const int passes = camera_errors_.frames < first_frames ? 3 : 1;
+  for (int pass = 0; pass < passes; ++pass) {
+    information.setZero();
+    gradient.setZero();
+    fit.add_camera_equations(information, gradient);
+    set_coefficients(solve(memory * information_ + information / correlated_samples_of_own,
+                           memory * gradient_ + gradient / correlated_samples_of_own),
+                     own);
+    fit.refine(own);
+  }
+  if (fit.support() >= least_support && information.allFinite() && gradient.allFinite()) {
+    learn(information / correlated_samples, gradient / correlated_samples, fit);
+    camera_errors_.late_frames = is_late ? camera_errors_.late_frames + 1 : 0;
+  }
+
+  FrameErrors errors;
+  errors.camera = own;
+  errors.motion = fit.motion();
+  errors.flow_px = fit.flow_px();
+  errors.support = fit.support();
+  errors.pixels = static_cast<int>(samples.size());
+  errors.camera.coefficient_m[0] += fit.constant_m();
+  errors.camera.amplitude_gain = fit.amplitude_gain();
+  errors.camera.periodic_rms_m = camera_errors_.periodic_rms_m;
+  errors.camera.systematic_m = std::max(fit.systematic_m(), camera_errors_.systematic_m);
+  errors.camera.frames = camera_errors_.frames;
+  return errors;
+}
+
+/// Adds what a frame says to what was known of the camera.
+void ErrorTracker::learn(const TermsMatrix& information, const Terms& gradient,
+                         const ResidualFit& fit) {
+  information_ = memory * information_ + information;
+  gradient_ = memory * gradient_ + gradient;
+  set_coefficients(solve(information_, gradient_), camera_errors_);
+  take_smaller_offset(fit);
+  constexpr int longest_mean = 20;
+  const double share = 1.0 / std::min(camera_errors_.frames + 1, longest_mean);
+  const double before_m2 = camera_errors_.systematic_m * camera_errors_.systematic_m;
+  const double now_m2 = fit.systematic_m() * fit.systematic_m();
+  camera_errors_.systematic_m = std::sqrt((1 - share) * before_m2 + share * now_m2);
+  const double periodic_m = fit.periodic_rms_m();
+  camera_errors_.periodic_rms_m =
+      std::sqrt((1 - share) * camera_errors_.periodic_rms_m * camera_errors_.periodic_rms_m +
+                share * periodic_m * periodic_m);
+  camera_errors_.amplitude_gain += share * (fit.amplitude_gain() - camera_errors_.amplitude_gain);
+  ++camera_errors_.frames;
+}
+
+/// Offsets a residual step apart explain residuals alike, with other counts in all pixels, unless a
+/// surface is so near that it has no count less. The smaller offset is likelier: the first frame
+/// may have taken the other while its motion was not known well.
+void ErrorTracker::take_smaller_offset(const ResidualFit& fit) {
+  const double offset_m = camera_errors_.offset_m();
+  if (std::abs(offset_m) <= largest_constant_m(limits_)) return;
+  const Terms gradient =
+      gradient_ - information_.col(0) * std::copysign(residual_step_m(limits_), offset_m);
+  CameraErrors smaller = camera_errors_;
+  set_coefficients(solve(information_, gradient), smaller);
+  ResidualFit with_smaller = fit;
+  with_smaller.refine(smaller);
+  if (explains_better(fit, with_smaller)) return;
+  gradient_ = gradient;
+  camera_errors_ = smaller;
+}
+
+/// Where the image has moved by pixels from A to B, and B comes late, the last frame's B may have
+/// been taken from a place that is nearer, and shows what this frame's does not.
+void ErrorTracker::match_moved(const SurfaceSamples& samples, const ExposurePair& pair,
+                               const PairGeometry& geometry, Tracked& tracked) {
+  const CameraErrors& camera = tracked.errors.camera;
+  const auto match_own = [&] {
+    match_exposure(pair, geometry, camera, {tracked.errors.motion, tracked.errors.flow_px},
+                   tracked.b);
+  };
+  const bool has_last = same_size(last_.phase, pair.phase_b) && pair.has_amplitude();
+  if (!has_last || camera_errors_.late_frames == 0) return match_own();
+  const ExposurePair with_last{pair.phase_a, pair.amplitude_a, pair.sigma_a_cycles,
+                               last_.phase,  last_.amplitude,  last_.sigma_cycles};
+  ResidualFit last(samples, with_last, geometry, camera, late_exposures);
+  const auto apparent = apparent_rotation(with_last, camera_);
+  if (apparent) last.expect(*apparent);
+  last.find_motion(turned(apparent), false);
+  if (last.support() < least_support) return match_own();
+  const auto match_last = [&] {
+    match_exposure(with_last, geometry, camera, {last.motion(), last.flow_px()}, tracked.b);
+  };
+  tracked.errors.used_last_b = true;
+  if (last.support() > tracked.errors.support) {
+    match_last();
+    match_own();
+  } else {
+    match_own();
+    match_last();
+  }
+}
+
+void ErrorTracker::save(std::ostream& out) const {
+  write_number(out, camera_errors_);
+  out.write(reinterpret_cast<const char*>(information_.data()), sizeof(double) * terms * terms);
+  out.write(reinterpret_cast<const char*>(gradient_.data()), sizeof(double) * terms);
+  for (const ImageF* image : {&last_.phase, &last_.amplitude, &last_.sigma_cycles}) {
+    write_image(out, *image);
+  }
+  for (const double number : last_.motion.translation_m) write_number(out, number);
+  for (const double number : last_.motion.rotation_rad) write_number(out, number);
+}
+
+void ErrorTracker::load(std::istream& in) {
+  read_number(in, camera_errors_);
+  in.read(reinterpret_cast<char*>(information_.data()), sizeof(double) * terms * terms);
+  in.read(reinterpret_cast<char*>(gradient_.data()), sizeof(double) * terms);
+  for (ImageF* image : {&last_.phase, &last_.amplitude, &last_.sigma_cycles}) {
+    read_image(in, *image);
+  }
+  for (double& number : last_.motion.translation_m) read_number(in, number);
+  for (double& number : last_.motion.rotation_rad) read_number(in, number);
+}
+
+}  // namespace tofmap

@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/unwrap/errors/phase_noise.hpp"
+
+#include "errors/median.hpp"
+#include "errors/phase_differences.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include <tofmap/core/median.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Differences of phases, in half a cycle around 0, and their standard deviations up to the scale.
+struct Differences {
+  std::vector<float> cycles;
+  std::vector<float> relative_sigma;
+
+  std::size_t size() const { return cycles.size(); }
+};
+
+/// Rows from one sampled one to the next: about 16000 differences tell the noise to 1 %.
+Eigen::Index sampling_step(const ImageF& phase) {
+  constexpr Eigen::Index enough = 8000;
+  return std::max<Eigen::Index>(1, phase.size() / enough);
+}
+
+void append_differences(const ImageF& phase, const ImageF& amplitude, const Stencil& stencil,
+                        Eigen::Index step_row, Eigen::Index step_col, Differences& differences) {
+  const Eigen::Index step = sampling_step(phase);
+  std::vector<float> cycles(static_cast<std::size_t>(phase.cols()));
+  std::vector<float> relative_sigma(cycles.size());
+  for (Eigen::Index v = step / 2; v < phase.rows(); v += step) {
+    const int count = find_differences(phase, amplitude, stencil, v, step_row, step_col,
+                                       cycles.data(), relative_sigma.data());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      if (!std::isfinite(relative_sigma[i])) continue;
+      differences.cycles.push_back(cycles[i]);
+      differences.relative_sigma.push_back(relative_sigma[i]);
+    }
+  }
+}
+
+Differences sample_differences(const ImageF& phase, const ImageF& amplitude,
+                               const Stencil& stencil) {
+  Differences differences;
+  for (auto* numbers : {&differences.cycles, &differences.relative_sigma}) {
+    numbers->reserve(static_cast<std::size_t>(2 * phase.size() / sampling_step(phase) + 1));
+  }
+  append_differences(phase, amplitude, stencil, 0, 1, differences);
+  append_differences(phase, amplitude, stencil, 1, 0, differences);
+  return differences;
+}
+
+/// The scale at which half of the differences lie within their median deviation.
+double scale_by_median(const Differences& differences) {
+  std::vector<float> normalised(differences.size());
+  for (std::size_t i = 0; i < normalised.size(); ++i) {
+    normalised[i] = std::abs(differences.cycles[i]) / differences.relative_sigma[i];
+  }
+  return sigma_of_median_deviation * median_of_positive(normalised);
+}
+
+/// The scale that explains the mean cosine: E cos 2πd = exp(−2π²σ²) for a normal d, wrapped or not.
+double scale_by_cosine(const Differences& differences) {
+  constexpr double two_pi = 2 * std::numbers::pi;
+  double cosines = 0;
+  for (const float cycles : differences.cycles) cosines += std::cos(two_pi * cycles);
+  const auto expected = [&](double scale) {
+    double sum = 0;
+    for (const float relative_sigma : differences.relative_sigma) {
+      const double sigma = two_pi * scale * relative_sigma;
+      sum += std::exp(-0.5 * sigma * sigma);
+    }
+    return sum;
+  };
+  double low = 0;
+  double high = 1 / differences.relative_sigma.front();
+  while (expected(high) > std::max(cosines, 1.0)) high *= 2;
+  constexpr int bisections = 24;
+  for (int i = 0; i < bisections; ++i) {
+    const double middle = (low + high) / 2;
+    (expected(middle) > cosines ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+/// The quieter half of the differences.
+Differences quieter_half(const Differences& differences) {
+  const float median = median_of_positive(differences.relative_sigma);
+  Differences quieter;
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    if (!(differences.relative_sigma[i] < median)) continue;
+    quieter.cycles.push_back(differences.cycles[i]);
+    quieter.relative_sigma.push_back(differences.relative_sigma[i]);
+  }
+  // Where half of them are as quiet as any, they all are.
+  return quieter.size() < differences.size() / 4 ? differences : quieter;
+}
+
+double median_amplitude(const ImageF& amplitude) {
+  std::vector<float> positive;
+  for (const float a : amplitude.reshaped()) {
+    if (a > 0) positive.push_back(a);
+  }
+  return positive.empty() ? 1 : median_of_positive(positive);
+}
+
+/// The step from one phase to the next larger one that the camera can give: the least difference
+/// between phases of a sample. No less than that of 16 bits.
+double quantisation_step_cycles(const ImageF& phase) {
+  constexpr double least_cycles = 1 / 65535.0;
+  constexpr double coarsest_cycles = 1 / 16.0;
+  constexpr Eigen::Index enough = 400;
+  std::vector<float> sample;
+  for (Eigen::Index i = 0; i < phase.size(); i += 1 + phase.size() / enough) {
+    if (!std::isnan(phase.data()[i])) sample.push_back(phase.data()[i]);
+  }
+  std::ranges::sort(sample);
+  double step = coarsest_cycles;
+  for (std::size_t i = 1; i < sample.size(); ++i) {
+    const double gap = double{sample[i]} - double{sample[i - 1]};
+    if (gap > least_cycles / 2) step = std::min(step, gap);
+  }
+  return std::max(step, least_cycles);
+}
+
+/// c of one frequency; `quantisation_cycles` is the step of its phases.
+double noise_scale(const ImageF& phase, const ImageF& amplitude, double quantisation_cycles) {
+  constexpr std::size_t enough = 16;
+  constexpr double fallback_cycles = 0.01;
+  // From here on a normal difference passes half a cycle too often for its median.
+  constexpr double wrapping_cycles = 0.2;
+  Differences differences = sample_differences(phase, amplitude, second_difference);
+  if (differences.size() < enough) return fallback_cycles * median_amplitude(amplitude);
+  double relative_sigma = median_of_positive(differences.relative_sigma);
+  double scale = scale_by_median(differences);
+  if (scale * relative_sigma > wrapping_cycles) {
+    differences = quieter_half(differences);
+    relative_sigma = median_of_positive(differences.relative_sigma);
+    scale = scale_by_median(differences);
+    if (scale * relative_sigma > wrapping_cycles) {
+      scale = scale_by_cosine(sample_differences(phase, amplitude, first_difference));
+    }
+  }
+  return std::max(scale, quantisation_cycles / relative_sigma);
+}
+
+}  // namespace
+
+PhaseNoise estimate_phase_noise(const DualFrequencyFrame& frame) {
+  const double step_a_cycles = quantisation_step_cycles(frame.phase_a);
+  const double step_b_cycles = quantisation_step_cycles(frame.phase_b);
+  return {.scale_a = noise_scale(frame.phase_a, frame.amplitude_a, step_a_cycles),
+          .scale_b = noise_scale(frame.phase_b, frame.amplitude_b, step_b_cycles),
+          .quantisation_a_cycles = step_a_cycles,
+          .quantisation_b_cycles = step_b_cycles};
+}
+
+}  // namespace tofmap

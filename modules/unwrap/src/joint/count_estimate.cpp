@@ -1,0 +1,226 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/unwrap/joint/count_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include <tofmap/core/range_image.hpp>
+
+namespace tofmap {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+/// Phase noise from which on neighbouring pixels alone do not tell which way a phase wraps.
+constexpr float loud_cycles = 0.08F;
+
+/// A coarser scale is worth its time if at least this share of the pixels is that noisy.
+constexpr float loud_share = 0.02F;
+
+std::complex<float> phasor(float phase, float amplitude) {
+  return std::polar(amplitude, 2 * std::numbers::pi_v<float> * phase);
+}
+
+float phase_of(std::complex<float> sum) {
+  const float cycles = std::arg(sum) / (2 * std::numbers::pi_v<float>);
+  return cycles < 0 ? std::min(cycles + 1, std::nextafter(1.0F, 0.0F)) : cycles;
+}
+
+bool is_loud(const PhaseSigma& sigma) {
+  const auto returns = static_cast<float>((sigma.a_cycles == sigma.a_cycles).count());
+  const auto loud = static_cast<float>((sigma.a_cycles > loud_cycles).count());
+  return loud > loud_share * returns;
+}
+
+/// The count that brings the pixel nearest to the range of a block, both in cycles.
+std::uint8_t nearest_count(float block_cycles, float phase, int counts) {
+  return static_cast<std::uint8_t>(
+      std::clamp(static_cast<int>(std::lround(block_cycles - phase)), 0, counts - 1));
+}
+
+/// What the counts of a block, which the pixel is in, say of the pixel's: a factor for each.
+void set_hint(const CountBeliefs& coarse, Eigen::Index row, Eigen::Index col, float block_phase,
+              float phase, std::vector<float>& factors) {
+  // Blocks and pixels see the same light: little of what blocks say is news.
+  constexpr float news = 0.15F;
+  constexpr float least_share = 1e-3F;
+  const auto counts = static_cast<int>(factors.size());
+  const float best = coarse.probability(row, col);
+  const float rival = coarse.rival_probability(row, col);
+  const float others = (1 - best - rival) / static_cast<float>(std::max(counts - 2, 1));
+  const float least = std::max(others / best, least_share);
+  const auto set = [&](std::uint8_t count, float share) {
+    const int n = nearest_count(block_phase + static_cast<float>(count), phase, counts);
+    factors[static_cast<std::size_t>(n)] = std::pow(share, news);
+  };
+  std::fill(factors.begin(), factors.end(), std::pow(least, news));
+  set(coarse.rival(row, col), std::max(rival / best, least));
+  set(coarse.count(row, col), 1);
+}
+
+/// Lets noisy pixels hear what the blocks of 2 x 2 that they are in have found out.
+void hint(const DualFrequencyFrame& pixels, const PhaseSigma& sigma,
+          const DualFrequencyFrame& blocks, const CountBeliefs& coarse, CountModel& model) {
+  std::vector<float> factors(static_cast<std::size_t>(model.counts()));
+  for (Eigen::Index v = 0; v < pixels.phase_a.rows(); ++v) {
+    for (Eigen::Index u = 0; u < pixels.phase_a.cols(); ++u) {
+      if (std::isnan(pixels.phase_a(v, u)) || sigma.a_cycles(v, u) < loud_cycles) continue;
+      set_hint(coarse, v / 2, u / 2, blocks.phase_a(v / 2, u / 2), pixels.phase_a(v, u), factors);
+      model.weigh_evidence(static_cast<int>(v), static_cast<int>(u), factors);
+    }
+  }
+}
+
+/// What two scales together give to the count of the coarse one, which is the surer: both see the
+/// same light, so agreement makes nothing surer, and the choice of the surer one errs to its side.
+float joint_probability(float coarse, float fine, bool agree) {
+  return agree ? coarse : coarse * coarse / (coarse + fine);
+}
+
+/// Takes over what the blocks know better: where pixels are loud and the block is surer.
+void adopt(const DualFrequencyFrame& pixels, const NoisyFrame& blocks, int block_px,
+           const CountBeliefs& coarse, int counts, CountBeliefs& fine) {
+  for (Eigen::Index v = 0; v < pixels.phase_a.rows(); ++v) {
+    for (Eigen::Index u = 0; u < pixels.phase_a.cols(); ++u) {
+      const Eigen::Index row = v / block_px;
+      const Eigen::Index col = u / block_px;
+      const float pixel_sigma = static_cast<float>(block_px) * blocks.sigma.a_cycles(row, col);
+      if (std::isnan(pixels.phase_a(v, u)) || pixel_sigma <= loud_cycles) continue;
+      if (coarse.other_probability(row, col) >= fine.other_probability(v, u)) continue;
+      const float phase = pixels.phase_a(v, u);
+      const float block_phase = blocks.frame.phase_a(row, col);
+      const auto count = [&](std::uint8_t n) {
+        return nearest_count(block_phase + static_cast<float>(n), phase, counts);
+      };
+      const std::uint8_t adopted = count(coarse.count(row, col));
+      const bool agree = adopted == fine.count(v, u);
+      fine.count(v, u) = adopted;
+      fine.probability(v, u) =
+          joint_probability(coarse.probability(row, col), fine.probability(v, u), agree);
+      fine.other_probability(v, u) =
+          agree ? coarse.other_probability(row, col) : 1 - fine.probability(v, u);
+      fine.rival(v, u) = count(coarse.rival(row, col));
+      fine.rival_probability(v, u) = coarse.rival_probability(row, col);
+    }
+  }
+}
+
+}  // namespace
+
+namespace {
+
+/// Phasors of one frequency in a block, summed, and the variance of the noise of the sum.
+struct BlockSum {
+  std::complex<float> phasor = 0;
+  float noise_variance = 0;
+
+  void add(float phase, float amplitude, float sigma_cycles) {
+    const float noise = amplitude * sigma_cycles;
+    phasor += tofmap::phasor(phase, amplitude);
+    noise_variance += noise * noise;
+  }
+
+  float amplitude() const { return std::max(std::abs(phasor), 1e-6F); }
+  /// At most that of a phase that is anything.
+  float sigma_cycles() const { return std::sqrt(noise_variance) / amplitude(); }
+};
+
+}  // namespace
+
+NoisyFrame halve(const DualFrequencyFrame& frame, const PhaseSigma& sigma) {
+  const Eigen::Index rows = (frame.phase_a.rows() + 1) / 2;
+  const Eigen::Index cols = (frame.phase_a.cols() + 1) / 2;
+  NoisyFrame out;
+  out.frame.index = frame.index;
+  out.frame.timestamp_s = frame.timestamp_s;
+  for (ImageF* image :
+       {&out.frame.phase_a, &out.frame.phase_b, &out.sigma.a_cycles, &out.sigma.b_cycles}) {
+    image->setConstant(rows, cols, nan);
+  }
+  for (ImageF* image : {&out.frame.amplitude_a, &out.frame.amplitude_b}) {
+    image->setZero(rows, cols);
+  }
+  const bool weighted = frame.has_amplitude();
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    for (Eigen::Index col = 0; col < cols; ++col) {
+      BlockSum a;
+      BlockSum b;
+      int count = 0;
+      for (Eigen::Index v = 2 * row; v < std::min(2 * row + 2, frame.phase_a.rows()); ++v) {
+        for (Eigen::Index u = 2 * col; u < std::min(2 * col + 2, frame.phase_a.cols()); ++u) {
+          if (std::isnan(frame.phase_a(v, u)) || std::isnan(frame.phase_b(v, u))) continue;
+          a.add(frame.phase_a(v, u), weighted ? frame.amplitude_a(v, u) : 1.0F,
+                sigma.a_cycles(v, u));
+          b.add(frame.phase_b(v, u), weighted ? frame.amplitude_b(v, u) : 1.0F,
+                sigma.b_cycles(v, u));
+          ++count;
+        }
+      }
+      if (count == 0) continue;
+      out.frame.phase_a(row, col) = phase_of(a.phasor);
+      out.frame.phase_b(row, col) = phase_of(b.phasor);
+      out.frame.amplitude_a(row, col) = a.amplitude() / static_cast<float>(count);
+      out.frame.amplitude_b(row, col) = b.amplitude() / static_cast<float>(count);
+      out.sigma.a_cycles(row, col) = a.sigma_cycles();
+      out.sigma.b_cycles(row, col) = b.sigma_cycles();
+    }
+  }
+  return out;
+}
+
+/// Prepares the scales that noise asks for, at most so many: their blocks and noise.
+int CountEstimator::divide(const DualFrequencyFrame& frame, const PhaseSigma& sigma, int most) {
+  scales_.resize(static_cast<std::size_t>(most));
+  const DualFrequencyFrame* finer = &frame;
+  const PhaseSigma* finer_sigma = &sigma;
+  int count = 1;
+  while (count < most && is_loud(*finer_sigma)) {
+    Scale& scale = scales_[static_cast<std::size_t>(count)];
+    scale.blocks = halve(*finer, *finer_sigma);
+    finer = &scale.blocks.frame;
+    finer_sigma = &scale.blocks.sigma;
+    ++count;
+  }
+  return count;
+}
+
+CountBeliefs CountEstimator::estimate(const DualFrequencyFrame& frame, const BeatLimits& limits,
+                                      const PhaseSigma& sigma, double residual_sigma_m,
+                                      const CountEstimation& options) {
+  const int count = divide(frame, sigma, options.scales);
+  const auto seen_at = [&](std::size_t s) -> const DualFrequencyFrame& {
+    return s == 0 ? frame : scales_[s].blocks.frame;
+  };
+  for (auto s = static_cast<std::size_t>(count); s-- > 0;) {
+    Scale& scale = scales_[s];
+    CountPrior prior = options.prior;
+    prior.slope_m *= static_cast<double>(1U << s);
+    const PhaseSigma& its_sigma = s == 0 ? sigma : scale.blocks.sigma;
+    scale.model.assign(seen_at(s), limits, its_sigma, residual_sigma_m, prior);
+    if (static_cast<int>(s) + 1 < count) {
+      const Scale& coarser = scales_[s + 1];
+      hint(seen_at(s), its_sigma, coarser.blocks.frame, coarser.beliefs, scale.model);
+    }
+    scale.beliefs = scale.propagation.run(scale.model, options.iterations);
+  }
+
+  CountBeliefs beliefs = std::move(scales_[0].beliefs);
+  for (std::size_t s = 1; s < static_cast<std::size_t>(count); ++s) {
+    const Scale& coarse = scales_[s];
+    adopt(frame, coarse.blocks, 1 << s, coarse.beliefs, limits.count_a, beliefs);
+    beliefs.iterations += coarse.beliefs.iterations;
+    beliefs.largest_message_change =
+        std::max(beliefs.largest_message_change, coarse.beliefs.largest_message_change);
+  }
+  beliefs.count = frame.phase_a.isNaN().select(invalid_wrap_count, beliefs.count);
+  beliefs.probability = frame.phase_a.isNaN().select(0.0F, beliefs.probability);
+  return beliefs;
+}
+
+}  // namespace tofmap

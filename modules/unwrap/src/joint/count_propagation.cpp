@@ -1,0 +1,411 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/unwrap/joint/count_propagation.hpp"
+
+#include "common/fast_math.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include <tofmap/core/range_image.hpp>
+#include <tofmap/core/vector_clones.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Edges of a pixel to the neighbours before it.
+enum Neighbour { left, above };
+
+/// Rows treated at a time: few enough for the second-level cache, and enough to pass through memory
+/// in long lines.
+constexpr int block_rows = 32 * DiagonalLayout::lanes;
+
+/// The change of messages is watched on every so many diagonals: that costs little, and their
+/// largest change is that of all, or close to it.
+constexpr int watched_diagonals = 8;
+
+/// One number for each pixel of a block.
+using Row = std::array<float, block_rows>;
+
+/// Numbers of a block of pixels for every count, `step` apart.
+template <class T>
+struct Planes {
+  T* data;
+  std::size_t step;
+
+  T* operator[](int count) const { return data + static_cast<std::size_t>(count) * step; }
+};
+
+/// One edge of each pixel of a block, to a neighbour on the next diagonal of the sweep.
+struct Edge {
+  Planes<const HalfFloat> back;  ///< the last message the other way
+  Planes<HalfFloat> out;         ///< in the same place, but before anything was sent
+  const float* same;
+  const float* next;
+};
+
+/// A block of pixels of one diagonal, and what it sends to both neighbours on the next.
+struct Block {
+  int rows;
+  int lanes;  ///< rows of whole vectors, of which the last ones have no pixel
+  int counts;
+  Planes<const HalfFloat> evidence;
+  Planes<const HalfFloat> in_first;  ///< messages from both neighbours on the diagonal before
+  Planes<const HalfFloat> in_second;
+  Edge first;
+  Edge second;
+  float direction;  ///< −1 where the edges are stored the other way: their steps change sign
+  float* scratch;   ///< room for 2 (counts + 1) vectors; the last of each half is 0
+};
+
+/// What a block's pixels have for one count: their evidence, and the messages of all neighbours.
+struct Factors {
+  const HalfFloat* evidence;
+  const HalfFloat* in_first;
+  const HalfFloat* in_second;
+  const HalfFloat* back_first;
+  const HalfFloat* back_second;
+
+  Factors(const Block& block, int count)
+      : evidence(block.evidence[count]),
+        in_first(block.in_first[count]),
+        in_second(block.in_second[count]),
+        back_first(block.first.back[count]),
+        back_second(block.second.back[count]) {}
+
+  /// Asks memory for what comes after `row`: there are more planes than the processor follows by
+  /// itself.
+  [[gnu::always_inline]] void prefetch(int row) const {
+    constexpr int ahead = 64;
+    for (const HalfFloat* plane : {evidence, in_first, in_second, back_first, back_second}) {
+      __builtin_prefetch(plane + row + ahead);
+    }
+  }
+};
+
+/// What persists between blocks. A message along an edge has its place at the right or lower pixel
+/// of the edge, whichever way it goes: the next one the other way takes it, after it was heard.
+struct Buffers {
+  std::array<std::vector<HalfFloat>, 2>& messages;
+  const HalfFloat* ones;
+  float* scratch;
+};
+
+enum class Sweep { forward, backward };
+
+/// The pixels of diagonal d from `row` on, in a sweep to later or to earlier diagonals. `has_back`
+/// is false before anything has been sent against the sweep.
+Block block_at(const CountModel& model, const Buffers& buffers, Sweep sweep, int d, int row,
+               bool has_back) {
+  const DiagonalLayout& layout = model.layout();
+  const auto counts = static_cast<std::size_t>(model.counts());
+  const bool forward = sweep == Sweep::forward;
+  // Messages to and from earlier pixels are kept here, those to and from later ones there.
+  const std::size_t here = layout.place(d, row, counts);
+  const std::size_t there = layout.place(d + 1, row, counts);
+  const Planes<HalfFloat> to_left{&buffers.messages[left][here], layout.plane_step(d)};
+  const Planes<HalfFloat> to_above{&buffers.messages[above][here], layout.plane_step(d)};
+  const Planes<HalfFloat> to_right{&buffers.messages[left][there], layout.plane_step(d + 1)};
+  const Planes<HalfFloat> to_below{&buffers.messages[above][there + 1], layout.plane_step(d + 1)};
+  const auto read_only = [](const Planes<HalfFloat>& planes) {
+    return Planes<const HalfFloat>{planes.data, planes.step};
+  };
+  // Edges are stored at their left or upper pixel.
+  const std::size_t edge_right = layout.place(forward ? d : d - 1, row, 1);
+  const std::size_t edge_down = forward ? edge_right : edge_right - 1;
+  const auto edge = [&](const Planes<HalfFloat>& slot, const CountModel::Edges& edges,
+                        std::size_t place) {
+    return Edge{has_back ? read_only(slot) : Planes<const HalfFloat>{buffers.ones, 0}, slot,
+                &edges.same[place], &edges.next[place]};
+  };
+  const int rows = std::min(block_rows, layout.end(d) - row);
+  return {rows,
+          DiagonalLayout::whole_vectors(rows),
+          model.counts(),
+          {&model.evidence()[here], layout.plane_step(d)},
+          read_only(forward ? to_left : to_right),
+          read_only(forward ? to_above : to_below),
+          edge(forward ? to_right : to_left, model.right(), edge_right),
+          edge(forward ? to_below : to_above, model.down(), edge_down),
+          forward ? 1.0F : -1.0F,
+          buffers.scratch};
+}
+
+/// Makes products of two messages, 1e-24 … 1, so large that products of two such are normal
+/// numbers.
+constexpr float large = 0x1p40F;
+
+/// Numbers of as many pixels as fit into one vector of the layout: each stays in a register while
+/// loops go through the counts.
+using Lanes [[gnu::vector_size(DiagonalLayout::lanes * sizeof(float))]] = float;
+using LaneBits [[gnu::vector_size(sizeof(Lanes))]] = std::uint32_t;
+using LaneHalves [[gnu::vector_size(sizeof(Lanes) / 2)]] = HalfFloat;
+
+template <class Vector, class Number>
+[[gnu::always_inline]] inline Vector load(const Number* from) {
+  Vector vector;
+  std::memcpy(&vector, from, sizeof(vector));
+  return vector;
+}
+
+template <class Vector, class Number>
+[[gnu::always_inline]] inline void store(const Vector& vector, Number* to) {
+  std::memcpy(to, &vector, sizeof(vector));
+}
+
+[[gnu::always_inline]] inline Lanes widened_lanes(const HalfFloat* from) {
+  std::array<std::uint32_t, DiagonalLayout::lanes> bits;
+  for (std::size_t k = 0; k < bits.size(); ++k) {
+    bits[k] = static_cast<std::uint32_t>(from[k]) << 16U;
+  }
+  return std::bit_cast<Lanes>(bits);
+}
+
+[[gnu::always_inline]] inline void store_halved(const Lanes& lanes, HalfFloat* to) {
+  const LaneBits rounded = (std::bit_cast<LaneBits>(lanes) + 0x8000U) >> 16U;
+  store(__builtin_convertvector(rounded, LaneHalves), to);
+}
+
+/// 1 / √x of positive normal numbers, to 5e-6: Newton's method, begun with half the exponent.
+[[gnu::always_inline]] inline Lanes inverse_root_of(const Lanes& x) {
+  const Lanes half = 0.5F * x;
+  Lanes root = std::bit_cast<Lanes>(0x5f375a86U - (std::bit_cast<LaneBits>(x) >> 1U));
+  root *= 1.5F - half * root * root;
+  root *= 1.5F - half * root * root;
+  return root;
+}
+
+/// Equation 16, for the messages along one edge of the pixels from `row` of a block on. `weighted`
+/// holds what remains of their beliefs without the message the other way, count by count, and a
+/// vector of 0.
+[[gnu::always_inline]] inline void send(const Block& block, const Edge& edge, int row,
+                                        const float* weighted, const Lanes& sum) {
+  const Lanes none{};
+  const auto same = load<Lanes>(edge.same + row);
+  const Lanes step = block.direction * load<Lanes>(edge.next + row);
+  const Lanes up = step > none ? step : none;
+  const Lanes down = step < none ? -step : none;
+  const Lanes scale = 1.0F / (sum * (1.0F + same + up + down));
+  Lanes before = none;
+  auto here = load<Lanes>(weighted);
+  for (int n = 0; n < block.counts; ++n) {
+    const auto after = load<Lanes>(weighted + (n + 1) * DiagonalLayout::lanes);
+    const Lanes total = sum + same * here + up * before + down * after;
+    store_halved(total * scale, edge.out[n] + row);
+    before = here;
+    here = after;
+  }
+}
+
+/// Builds and sends the messages of a block.
+TOFMAP_VECTOR_CLONES void send_block(const Block& block_) {
+  const Block block = block_;
+  float* first = block.scratch;
+  float* second = first + (block.counts + 1) * DiagonalLayout::lanes;
+  for (int i = 0; i < block.lanes; i += DiagonalLayout::lanes) {
+    Lanes sum_first{};
+    Lanes sum_second{};
+    for (int n = 0; n < block.counts; ++n) {
+      const Factors of(block, n);
+      of.prefetch(i);
+      const Lanes to_first = widened_lanes(of.back_first + i);
+      const Lanes to_second = widened_lanes(of.back_second + i);
+      // √(in / out) = in / √(in · out).
+      const Lanes in = large * widened_lanes(of.in_first + i) * widened_lanes(of.in_second + i);
+      const Lanes out = large * to_first * to_second;
+      const Lanes shared = widened_lanes(of.evidence + i) * in * inverse_root_of(in * out);
+      const Lanes without_first = shared * to_second;
+      const Lanes without_second = shared * to_first;
+      store(without_first, first + n * DiagonalLayout::lanes);
+      store(without_second, second + n * DiagonalLayout::lanes);
+      sum_first += without_first;
+      sum_second += without_second;
+    }
+    send(block, block.first, i, first, sum_first);
+    send(block, block.second, i, second, sum_second);
+  }
+}
+
+/// The largest difference between messages along one edge of each pixel and what they were.
+TOFMAP_VECTOR_CLONES float largest_change(const Block& block, const Planes<const HalfFloat>& now,
+                                          const Planes<const HalfFloat>& before) {
+  Row largest{};
+  for (int n = 0; n < block.counts; ++n) {
+    const HalfFloat* one = now[n];
+    const HalfFloat* other = before[n];
+#pragma GCC ivdep
+    for (int i = 0; i < block.lanes; ++i) {
+      const float change = std::abs(std::sqrt(widened(one[i])) - std::sqrt(widened(other[i])));
+      largest[i] = change > largest[i] ? change : largest[i];
+    }
+  }
+  return *std::max_element(largest.begin(), largest.begin() + block.rows);
+}
+
+/// The two most likely counts of a block and their probabilities.
+struct BlockBeliefs {
+  Row best;
+  Row rival;
+  Row best_count;
+  Row rival_count;
+  Row others;  ///< of all other counts together
+};
+
+/// Equation 15, where all messages have come in.
+TOFMAP_VECTOR_CLONES void read_block(const Block& block_, BlockBeliefs& out) {
+  const Block block = block_;
+  const Lanes none{};
+  for (int i = 0; i < block.lanes; i += DiagonalLayout::lanes) {
+    Lanes best = none - 1.0F;
+    Lanes rival = none - 1.0F;
+    Lanes best_count = none;
+    Lanes rival_count = none;
+    Lanes sum = none;
+    Lanes others = none;
+    for (int n = 0; n < block.counts; ++n) {
+      const Factors of(block, n);
+      of.prefetch(i);
+      const Lanes in = large * widened_lanes(of.in_first + i) * widened_lanes(of.in_second + i);
+      const Lanes back =
+          large * widened_lanes(of.back_first + i) * widened_lanes(of.back_second + i);
+      // √(in · back) = x / √x.
+      const Lanes belief = widened_lanes(of.evidence + i) * in * back * inverse_root_of(in * back);
+      const Lanes count = none + static_cast<float>(n);
+      sum += belief;
+      const auto is_best = belief > best;
+      const auto is_rival = belief > rival;
+      const Lanes overtaken = best > none ? best : none;
+      const Lanes beaten = is_rival ? belief : rival;
+      const Lanes beaten_count = is_rival ? count : rival_count;
+      others += is_best ? overtaken : belief;
+      rival_count = is_best ? best_count : beaten_count;
+      rival = is_best ? best : beaten;
+      best_count = is_best ? count : best_count;
+      best = is_best ? belief : best;
+    }
+    const auto write = [i](const Lanes& lanes, Row& row) { store(lanes, row.data() + i); };
+    write(best / sum, out.best);
+    write((rival > none ? rival : none) / sum, out.rival);
+    write(others / sum, out.others);
+    write(best_count, out.best_count);
+    write(rival_count, out.rival_count);
+  }
+}
+
+}  // namespace
+
+void CountPropagation::reset(const CountModel& model) {
+  const std::size_t size = model.layout().size(static_cast<std::size_t>(model.counts()));
+  scratch_.assign(2 * static_cast<std::size_t>((model.counts() + 1) * DiagonalLayout::lanes), 0.0F);
+  ones_.assign(block_rows, half_one);
+  if (rows_ == model.layout().rows() && cols_ == model.layout().cols() &&
+      counts_ == model.counts()) {
+    return;
+  }
+  rows_ = model.layout().rows();
+  cols_ = model.layout().cols();
+  counts_ = model.counts();
+  // Where there is no pixel nothing is known, and where there is no edge nothing is learned: these
+  // messages stay 1, and are sent as 1 again.
+  for (auto& message : messages_) message.assign(size, half_one);
+  for (auto& message : before_) message.assign(size, half_one);
+}
+
+void CountPropagation::sweep_forward(const CountModel& model, bool is_first) {
+  const DiagonalLayout& layout = model.layout();
+  const Buffers buffers{messages_, ones_.data(), scratch_.data()};
+  for (int d = 0; d < layout.diagonals(); ++d) {
+    for (int row = layout.begin(d); row < layout.end(d); row += block_rows) {
+      send_block(block_at(model, buffers, Sweep::forward, d, row, !is_first));
+    }
+  }
+}
+
+void CountPropagation::sweep_backward(const CountModel& model) {
+  const DiagonalLayout& layout = model.layout();
+  const Buffers buffers{messages_, ones_.data(), scratch_.data()};
+  for (int d = layout.diagonals() - 1; d >= 0; --d) {
+    for (int row = layout.begin(d); row < layout.end(d); row += block_rows) {
+      send_block(block_at(model, buffers, Sweep::backward, d, row, true));
+    }
+  }
+}
+
+/// The last sweep back, in which all messages of a pixel have come in before it sends its own.
+void CountPropagation::read_backward(const CountModel& model, CountBeliefs& beliefs) {
+  const DiagonalLayout& layout = model.layout();
+  const auto counts = static_cast<std::size_t>(model.counts());
+  const Buffers buffers{messages_, ones_.data(), scratch_.data()};
+  BlockBeliefs read;
+  float change = 0;
+  for (int d = layout.diagonals() - 1; d >= 0; --d) {
+    for (int row = layout.begin(d); row < layout.end(d); row += block_rows) {
+      const Block block = block_at(model, buffers, Sweep::backward, d, row, true);
+      read_block(block, read);
+      for (int i = 0; i < block.rows; ++i) {
+        const int v = row + i;
+        const int u = d - v;
+        const auto at = static_cast<std::size_t>(i);
+        beliefs.count(v, u) = static_cast<std::uint8_t>(read.best_count[at]);
+        beliefs.probability(v, u) = read.best[at];
+        beliefs.other_probability(v, u) = read.others[at];
+        beliefs.rival(v, u) = static_cast<std::uint8_t>(read.rival_count[at]);
+        beliefs.rival_probability(v, u) = read.rival[at];
+      }
+      send_block(block);
+      if (d % watched_diagonals != 0) continue;
+      const std::size_t here = layout.place(d, row, counts);
+      for (const Neighbour to : {left, above}) {
+        const Edge& edge = to == left ? block.first : block.second;
+        const Planes<const HalfFloat> before{&before_[to][here], layout.plane_step(d)};
+        change = std::max(change, largest_change(block, edge.back, before));
+      }
+    }
+  }
+  beliefs.largest_message_change = change;
+}
+
+/// Keeps the messages whose change the last sweep back will watch: those that were sent back, or 1
+/// before there were any.
+void CountPropagation::remember_watched(const CountModel& model, bool was_sent) {
+  const DiagonalLayout& layout = model.layout();
+  const auto counts = static_cast<std::size_t>(model.counts());
+  for (int d = 0; d < layout.diagonals(); d += watched_diagonals) {
+    const std::size_t first = layout.place(d, layout.begin(d) - 1, counts);
+    const std::size_t size = layout.plane_step(d) * counts;
+    for (const Neighbour to : {left, above}) {
+      HalfFloat* before = before_[to].data() + first;
+      if (was_sent) {
+        std::copy_n(messages_[to].data() + first, size, before);
+      } else {
+        std::fill_n(before, size, half_one);
+      }
+    }
+  }
+}
+
+CountBeliefs CountPropagation::run(const CountModel& model, int iterations) {
+  reset(model);
+  const int rows = model.layout().rows();
+  const int cols = model.layout().cols();
+  CountBeliefs beliefs{.count = ImageU8(rows, cols),
+                       .probability = ImageF(rows, cols),
+                       .other_probability = ImageF(rows, cols),
+                       .rival = ImageU8(rows, cols),
+                       .rival_probability = ImageF(rows, cols),
+                       .iterations = iterations};
+  for (int i = 0; i + 1 < iterations; ++i) {
+    sweep_forward(model, i == 0);
+    sweep_backward(model);
+  }
+  remember_watched(model, iterations > 1);
+  sweep_forward(model, iterations == 1);
+  read_backward(model, beliefs);
+  return beliefs;
+}
+
+}  // namespace tofmap

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "joint/joint.hpp"
+
+#include "common/counted_ranges.hpp"
+#include "joint/count_confidence.hpp"
+#include "tofmap/unwrap/common/range_fusion.hpp"
+
+namespace tofmap {
+namespace {
+
+/// The options of `joint` as its stages know them.
+CountEstimation count_estimation(const UnwrapOptions& options) {
+  return {.prior = {.outlier_share = options.outlier_share,
+                    .slope_m = options.slope_m,
+                    .amplitude_edges = options.amplitude_edges,
+                    .mixed_pixels = options.mixed_pixels},
+          .iterations = options.count_iterations,
+          .scales = options.scales};
+}
+
+/// Makes pixels invalid that have a rival count which the pair of frequencies cannot tell from
+/// the chosen one, and which is nearly as likely.
+void drop_ambiguous(const CountBeliefs& beliefs, const BeatLimits& limits, RangeImage& image) {
+  constexpr float nearly = 0.1F;
+  for (Eigen::Index v = 0; v < image.rows(); ++v) {
+    for (Eigen::Index u = 0; u < image.cols(); ++u) {
+      if (!image.valid(v, u)) continue;
+      if (beliefs.rival_probability(v, u) < nearly * beliefs.probability(v, u)) continue;
+      if (can_tell_apart(limits, beliefs.count(v, u), beliefs.rival(v, u))) continue;
+      image.invalidate(v, u, InvalidReason::ambiguous);
+    }
+  }
+}
+
+}  // namespace
+
+UnwrapResult unwrap_jointly(CountEstimator& estimator, const MeasuredFrame& frame,
+                            const BeatLimits& limits, const UnwrapOptions& options) {
+  const CountBeliefs beliefs = estimator.estimate(
+      frame.returns, limits, frame.sigma, frame.residual_sigma_m, count_estimation(options));
+  const ImageF confidence = count_confidence(beliefs, frame.sigma.a_cycles, limits);
+  UnwrapResult result;
+  if (options.fuse_frequencies) {
+    const FusedRanges fused =
+        fuse_ranges(frame.returns, beliefs.count, limits, frame.sigma, frame.residual_sigma_m);
+    result.image = make_range_image(fused.range_m, fused.sigma_m, beliefs.count, confidence);
+  } else {
+    result.image = make_range_image(frame.returns.phase_a, frame.sigma.a_cycles, beliefs.count,
+                                    confidence, limits);
+  }
+  drop_ambiguous(beliefs, limits, result.image);
+  result.iterations = beliefs.iterations;
+  result.largest_message_change = beliefs.largest_message_change;
+  return result;
+}
+
+}  // namespace tofmap

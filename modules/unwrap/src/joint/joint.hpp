@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <tofmap/unwrap/common/unwrap_result.hpp>
+#include <tofmap/unwrap/errors/measured_frame.hpp>
+#include <tofmap/unwrap/joint/count_estimate.hpp>
+
+namespace tofmap {
+
+/// The method `joint`: counts by belief propagation, ranges from both frequencies. B is matched to
+/// A.
+UnwrapResult unwrap_jointly(CountEstimator& estimator, const MeasuredFrame& frame,
+                            const BeatLimits& limits, const UnwrapOptions& options);
+
+}  // namespace tofmap

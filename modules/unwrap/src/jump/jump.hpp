@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tofmap/unwrap/common/unwrap_result.hpp"
+#include "tofmap/unwrap/errors/measured_frame.hpp"
+#include "tofmap/unwrap/jump/jump_estimate.hpp"
+
+namespace tofmap {
+
+/// The methods `paper`, `jump` and `single`: evidence, propagation, integration, anchors.
+UnwrapResult unwrap_by_jumps(JumpEstimator& estimator, const MeasuredFrame& frame,
+                             const BeatLimits& limits, const JumpMethod& method,
+                             const UnwrapOptions& options);
+
+}  // namespace tofmap

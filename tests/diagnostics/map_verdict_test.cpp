@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/diagnostics/map_verdict.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace tofmap {
+namespace {
+
+constexpr double voxel_m = 0.04;
+
+/// What is known of a map of 100 frames, all of them registered, where the truth is not known and
+/// there are no warnings.
+MapEvidence good_evidence() { return {.frames = 100, .registered = 100, .voxel_m = voxel_m}; }
+
+Verdict verdict_on(const MapEvidence& evidence) { return judge(evidence).verdict; }
+
+Verdict verdict_with_error(MapEvidence evidence, double accuracy_m) {
+  evidence.accuracy_m = accuracy_m;
+  return verdict_on(evidence);
+}
+
+TEST(Verdict, GoesByTheMapErrorInVoxels) {
+  EXPECT_EQ(verdict_on_accuracy(0.04, voxel_m), Verdict::good);
+  EXPECT_EQ(verdict_on_accuracy(0.041, voxel_m), Verdict::doubtful);
+  EXPECT_EQ(verdict_on_accuracy(0.2, voxel_m), Verdict::doubtful);
+  EXPECT_EQ(verdict_on_accuracy(0.201, voxel_m), Verdict::bad);
+  EXPECT_EQ(verdict_on_accuracy(NAN, voxel_m), Verdict::bad) << "an empty map";
+}
+
+TEST(Verdict, GoesByTheFramesThatWereRegistered) {
+  MapEvidence evidence = good_evidence();
+  EXPECT_EQ(verdict_on(evidence), Verdict::good);
+  evidence.registered = 95;
+  EXPECT_EQ(verdict_on(evidence), Verdict::good);
+  evidence.registered = 94;
+  EXPECT_EQ(verdict_on(evidence), Verdict::doubtful);
+  evidence.registered = 49;
+  EXPECT_EQ(verdict_on(evidence), Verdict::bad);
+  EXPECT_EQ(verdict_on({}), Verdict::bad) << "no frame at all";
+}
+
+TEST(Verdict, GoesByDirectionsThatNoSurfaceConstrained) {
+  MapEvidence evidence = good_evidence();
+  evidence.degenerate = 10;
+  EXPECT_EQ(verdict_on(evidence), Verdict::good);
+  evidence.degenerate = 11;
+  EXPECT_EQ(verdict_on(evidence), Verdict::doubtful);
+}
+
+TEST(Verdict, IsTheWorstOfAllThatIsKnown) {
+  MapEvidence evidence = good_evidence();
+  EXPECT_EQ(verdict_with_error(evidence, 0.01), Verdict::good);
+  EXPECT_EQ(verdict_with_error(evidence, 1), Verdict::bad);
+  MapEvidence wrapped = evidence;
+  wrapped.is_unwrapped = false;
+  EXPECT_EQ(verdict_with_error(wrapped, 0.05), Verdict::bad);
+  MapEvidence empty = evidence;
+  empty.is_empty = true;
+  EXPECT_EQ(verdict_on(empty), Verdict::bad);
+  evidence.is_interrupted = true;
+  EXPECT_EQ(verdict_with_error(evidence, 0.01), Verdict::doubtful);
+  evidence.registered = 0;
+  EXPECT_EQ(verdict_with_error(evidence, 0.05), Verdict::bad);
+}
+
+TEST(Verdict, IsNoBetterThanWhatCouldBeChecked) {
+  MapEvidence evidence = good_evidence();
+  evidence.is_seen_twice = false;
+  EXPECT_EQ(verdict_on(evidence), Verdict::doubtful);
+  evidence.is_seen_twice = true;
+  evidence.is_warned = true;
+  EXPECT_EQ(verdict_on(evidence), Verdict::doubtful);
+}
+
+TEST(Verdict, TellsItsReasons) {
+  MapEvidence evidence = good_evidence();
+  EXPECT_EQ(told_reasons(judge(evidence)), "");
+  evidence.registered = 90;
+  evidence.is_interrupted = true;
+  EXPECT_EQ(told_reasons(judge(evidence)),
+            " Held against it: 10 % of the frames could not be placed; the run was interrupted.");
+}
+
+TEST(Verdict, OnRangesGoesByWrongWraps) {
+  EXPECT_EQ(verdict_on_wraps(2), Verdict::good);
+  EXPECT_EQ(verdict_on_wraps(2.1), Verdict::doubtful);
+  EXPECT_EQ(verdict_on_wraps(10), Verdict::doubtful);
+  EXPECT_EQ(verdict_on_wraps(10.1), Verdict::bad);
+  EXPECT_EQ(verdict_on_wraps(NAN), Verdict::doubtful) << "not known";
+}
+
+}  // namespace
+}  // namespace tofmap

@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "simulation/sample_scenes.hpp"
+#include "support/temporary_folder.hpp"
+
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tofmap/diagnostics/recording_survey.hpp>
+#include <tofmap/simulation/simulator.hpp>
+
+namespace tofmap {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// A recording of a simulated room, spoilt on its way.
+class Survey : public testing::Test {
+ protected:
+  static constexpr int frame_count = 6;
+
+  static SimulatorOptions options() {
+    SimulatorOptions options;
+    options.width_px = 88;
+    options.height_px = 72;
+    options.subpixels = 1;
+    options.frames = frame_count;
+    return options;
+  }
+
+  void record(const std::function<void(DualFrequencyFrame&)>& spoil,
+              const std::function<void(SensorModel&)>& mislabel = {}) {
+    const Simulator simulator(make_scene("room"), options());
+    SensorModel sensor = simulator.sensor();
+    if (mislabel) mislabel(sensor);
+    SequenceWriter writer(folder_.path() / "recording", sensor);
+    for (int i = 0; i < frame_count; ++i) {
+      DualFrequencyFrame frame = simulator.simulate(i).frame;
+      if (spoil) spoil(frame);
+      writer.add(frame);
+    }
+  }
+
+  RecordingSurvey survey(const CameraCalibration& calibration = {}) {
+    const SequenceReader reader(folder_.path() / "recording", calibration);
+    RecordingSurvey found = survey_recording(reader);
+    doubts_ = doubts_about(found, reader.sensor());
+    return found;
+  }
+
+  test::TemporaryFolder folder_;
+  std::vector<std::string> doubts_;
+};
+
+TEST_F(Survey, FindsNothingWrongWithAGoodRecording) {
+  record({});
+  const RecordingSurvey found = survey();
+  EXPECT_EQ(found.frames, frame_count);
+  ASSERT_TRUE(found.beat);
+  EXPECT_NEAR(found.beat->offset_m, 0, 0.01);
+  EXPECT_NEAR(found.median_period_s, 1 / options().frame_rate_hz, 1e-3);
+  EXPECT_THAT(doubts_, IsEmpty());
+}
+
+TEST_F(Survey, DoubtsFrequenciesThatAreSwapped) {
+  record({}, [](SensorModel& sensor) {
+    std::swap(sensor.modulation.frequency_a_hz, sensor.modulation.frequency_b_hz);
+  });
+  survey();
+  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("mixed up")));
+}
+
+TEST_F(Survey, DoubtsImagesThatDoNotBelongTogether) {
+  // As with a device that takes A and B in turn, and is said to deliver both in one image.
+  record([](DualFrequencyFrame& frame) {
+    const Eigen::Index half = frame.phase_a.rows() / 2;
+    frame.phase_b.topRows(half) = frame.phase_a.bottomRows(half);
+    frame.phase_a.bottomRows(half).setConstant(std::nanf(""));
+  });
+  survey();
+  EXPECT_THAT(doubts_, Contains(HasSubstr("different places")));
+}
+
+TEST_F(Survey, DoubtsDepthAlongTheAxis) {
+  const ImageF cosine = pixel_rays(Simulator(make_scene("room"), options()).sensor().camera).z;
+  record([&](DualFrequencyFrame& frame) {
+    frame.phase_a *= cosine;
+    frame.phase_b *= cosine;
+  });
+  survey();
+  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("optical axis")));
+}
+
+TEST_F(Survey, DoubtsNoWallForItsNoise) {
+  SimulatorOptions noisy = options();
+  noisy.range_noise_m = 0.02;  // 5 cm at 8 m
+  const Simulator simulator(test::facing_wall_scene(8, 0.5), noisy);
+  const auto beat = survey_beat({simulator.simulate(0).frame}, simulator.sensor());
+  ASSERT_TRUE(beat);
+  EXPECT_GT(beat->spread_m, 0.06);
+  EXPECT_THAT(doubts_about(*beat), IsEmpty());
+}
+
+TEST_F(Survey, EstimatesByHowMuchThePhaseOffsetsDiffer) {
+  record({});
+  const Modulation modulation = Simulator(make_scene("room"), options()).sensor().modulation;
+  const double ambiguity_m = modulation.wavelength_a_m() - modulation.wavelength_b_m();
+  for (const double offset_m : {0.03, 0.08, 0.15, 0.2, 0.3, -0.1}) {
+    CameraCalibration wrong;
+    wrong.error_b.offset_m = offset_m;  // taken out of B, which had none
+    const RecordingSurvey found = survey(wrong);
+    EXPECT_NEAR(found.beat->offset_m, offset_m, 0.01);
+    EXPECT_THAT(doubts_, ElementsAre(HasSubstr("phase offset")));
+  }
+  // One wrap more of both, and A measures more: only known ranges tell that it is less.
+  CameraCalibration wrong;
+  wrong.error_b.offset_m = -0.2;
+  const RecordingSurvey found = survey(wrong);
+  EXPECT_NEAR(found.beat->offset_m, ambiguity_m - 0.2, 0.01);
+  ASSERT_FALSE(found.beat->other_offsets_m.empty());
+  EXPECT_NEAR(found.beat->other_offsets_m.front(), -0.2, 0.01);
+}
+
+TEST_F(Survey, NamesImagesOfOnePhase) {
+  record([](DualFrequencyFrame& frame) {
+    if (frame.index == 2) frame.phase_b.setConstant(0.25F);
+  });
+  EXPECT_THAT(survey().constant_images, ElementsAre(HasSubstr("phase_b/000002.png")));
+  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("phase_b/000002.png")));
+}
+
+TEST_F(Survey, CountsFramesThatRepeat) {
+  DualFrequencyFrame first;
+  record([&](DualFrequencyFrame& frame) {
+    if (frame.index == 0) first = frame;
+    if (frame.index != 1 && frame.index != 2) return;
+    frame.phase_a = first.phase_a;
+    frame.phase_b = frame.index == 1 ? first.phase_b : frame.phase_b;
+  });
+  EXPECT_EQ(survey().repeated, 1);
+  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("1 frame repeats")));
+}
+
+TEST_F(Survey, CountsFramesWithoutAnyReturn) {
+  record([](DualFrequencyFrame& frame) {
+    if (frame.index == 3) frame.phase_a.setConstant(NAN);
+  });
+  EXPECT_EQ(survey().without_return, 1);
+  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("camera covered")));
+}
+
+TEST_F(Survey, TellsHowMuchIsSaturated) {
+  record([](DualFrequencyFrame& frame) { frame.amplitude_a.topRows(18).setConstant(65535); });
+  EXPECT_NEAR(survey().saturated_share, 0.25, 1e-9);
+  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("25 % of the pixels are saturated")));
+}
+
+TEST_F(Survey, DoubtsTimesInMilliseconds) {
+  record([](DualFrequencyFrame& frame) { frame.timestamp_s *= 1000; });
+  survey();
+  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("seconds?")));
+}
+
+TEST_F(Survey, NamesAGapInTime) {
+  record([](DualFrequencyFrame& frame) { frame.timestamp_s += frame.index > 3 ? 2 : 0; });
+  EXPECT_EQ(survey().frame_before_gap, 3);
+  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("after frame 3")));
+}
+
+}  // namespace
+}  // namespace tofmap

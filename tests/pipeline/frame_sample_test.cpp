@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/pipeline/frame_sample.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <gmock/gmock.h>
+
+namespace tofmap {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+CameraModel camera_of(int width_px) {
+  CameraModel camera;
+  camera.width_px = width_px;
+  camera.height_px = 4;
+  return camera;
+}
+
+/// Adds frames of these indices that hold nothing else.
+void add(FrameSample& sample, const std::vector<int>& indices) {
+  for (const int index : indices) {
+    DualFrequencyFrame frame;
+    frame.index = index;
+    sample.add(frame, {});
+  }
+}
+
+std::vector<int> up_to(int total) {
+  std::vector<int> indices(static_cast<std::size_t>(total));
+  for (int i = 0; i < total; ++i) indices[static_cast<std::size_t>(i)] = i;
+  return indices;
+}
+
+std::vector<int> indices_of(const FrameSample& sample) {
+  std::vector<int> indices;
+  for (const SampledFrame& frame : sample.frames()) indices.push_back(frame.recorded.index);
+  return indices;
+}
+
+/// What is kept of a run whose length nobody knows.
+std::vector<int> kept_of(int total, int wanted, int width_px = 4) {
+  FrameSample sample(camera_of(width_px), wanted, std::nullopt);
+  add(sample, up_to(total));
+  return indices_of(sample);
+}
+
+TEST(SpreadIndices, LieInTheMiddlesOfEqualParts) {
+  EXPECT_THAT(spread_indices(9, 3), ElementsAre(1, 4, 7));
+  EXPECT_THAT(spread_indices(3, 9), ElementsAre(0, 1, 2)) << "no more than there are";
+  EXPECT_THAT(spread_indices(0, 9), IsEmpty());
+  EXPECT_THAT(spread_indices(9, 0), IsEmpty());
+}
+
+TEST(SpreadIndices, OfTheLongestRecordingsStayWithin) {
+  constexpr int total = std::numeric_limits<int>::max();
+  const std::vector<int> indices = spread_indices(total, 1000);
+  EXPECT_TRUE(std::ranges::is_sorted(indices));
+  EXPECT_GE(indices.front(), 0);
+  EXPECT_GT(indices.back(), total - total / 1000);
+}
+
+TEST(FrameSample, OfKnownLengthKeepsFramesSpreadOverTheRun) {
+  FrameSample sample(camera_of(4), 3, 9);
+  add(sample, up_to(9));
+  EXPECT_THAT(indices_of(sample), ElementsAre(1, 4, 7));
+  EXPECT_TRUE(sample.wants(4));
+  EXPECT_FALSE(sample.wants(5));
+}
+
+TEST(FrameSample, OfKnownLengthTakesFramesInAnyOrderAndNamesThoseThatAreMissing) {
+  FrameSample sample(camera_of(4), 3, 9);
+  add(sample, {5, 6, 7, 8});
+  EXPECT_THAT(sample.missing(9), ElementsAre(1, 4));
+  EXPECT_THAT(sample.missing(4), ElementsAre(1)) << "those before frame 4";
+  add(sample, {4, 1});
+  EXPECT_THAT(indices_of(sample), ElementsAre(1, 4, 7));
+  EXPECT_THAT(sample.missing(9), IsEmpty());
+}
+
+TEST(FrameSample, OfUnknownLengthKeepsAllOfAFew) {
+  EXPECT_THAT(kept_of(4, 3), ElementsAre(0, 1, 2, 3));
+}
+
+TEST(FrameSample, OfUnknownLengthKeepsAtLeastWhatIsWantedSpreadEvenly) {
+  for (const int total : {20, 57, 100, 1000}) {
+    const std::vector<int> kept = kept_of(total, 8);
+    EXPECT_GE(kept.size(), 8U) << total;
+    EXPECT_LT(kept.size(), 16U) << total;
+    EXPECT_EQ(kept.front(), 0);
+    const int step = kept[1] - kept[0];
+    for (std::size_t i = 1; i < kept.size(); ++i) EXPECT_EQ(kept[i] - kept[i - 1], step) << total;
+    EXPECT_GE(kept.back() + 2 * step, total) << total;
+  }
+}
+
+TEST(FrameSample, KeepsFewerOfLargeImages) {
+  constexpr int width_px = 2 << 20;  // 416 MB a frame
+  EXPECT_THAT(kept_of(40, 8, width_px), testing::SizeIs(testing::Lt(3)));
+  FrameSample sample(camera_of(width_px), 8, 40);
+  add(sample, up_to(40));
+  EXPECT_THAT(sample.frames(), testing::SizeIs(1));
+}
+
+TEST(FrameSample, IsThinnedOutEvenly) {
+  FrameSample sample(camera_of(4), 9, 9);
+  add(sample, up_to(9));
+  sample.thin_out(3);
+  EXPECT_THAT(indices_of(sample), ElementsAre(1, 4, 7));
+  sample.thin_out(5);
+  EXPECT_THAT(indices_of(sample), ElementsAre(1, 4, 7)) << "there are no more";
+}
+
+}  // namespace
+}  // namespace tofmap
