@@ -212,6 +212,17 @@ PhaseErrorFit fit_samples(const std::vector<RangeSample>& samples, Reference ref
   });
 }
 
+/// Whether a file is a calibration that holds nothing that `calibrate` does not find.
+bool holds_nothing_else(const std::filesystem::path& file) {
+  if (!is_calibration(file)) return false;
+  try {
+    const CameraCalibration calibration = read_calibration(file);
+    return !calibration.camera && calibration.saturation_amplitude == 0;
+  } catch (const InputError&) {
+    return true;  // damaged, and of no use to anybody
+  }
+}
+
 int run_calibrate(const CalibrateArguments& arguments) {
   ProgramOptions options;
   arguments.common.resolve("calibrate", options);
@@ -219,7 +230,7 @@ int run_calibrate(const CalibrateArguments& arguments) {
   const SequenceReader source(arguments.sequence);
   const RecordedTruth truth(source);
   const Reference reference = reference_of(options.calibration, source, truth);
-  OutputFile out(arguments.out, is_calibration);
+  OutputFile out(arguments.out, holds_nothing_else);
   const PhaseErrorFitOptions fit_options{
       .orders = harmonic_orders(options.calibration, reference != Reference::beat),
       .max_error_m = options.calibration.max_error_m};
@@ -230,14 +241,15 @@ int run_calibrate(const CalibrateArguments& arguments) {
   if (reference == Reference::truth) print_remarks(truth);
   refuse_mostly_damaged(collected.damaged, collected.read, collected.first_damage);
   const PhaseErrorFit fit = fit_samples(collected.samples, reference, source, fit_options);
+  if (is_interrupted()) return exit_status::interrupted;
   CameraCalibration calibration;
   const SensorModel& sensor = source.sensor();
   calibration.with =
       CalibratedWith{sensor.camera.width_px, sensor.camera.height_px, sensor.modulation};
   calibration.error_a = fit.error_a;
   calibration.error_b = fit.error_b;
-  print_fit(fit, reference);
-  print_samples(collected, source.sensor());
+  if (!quiet) print_fit(fit, reference);
+  if (!quiet) print_samples(collected, source.sensor());
   write_calibration(out.path(), calibration,
                     "found by " + std::string(name_of(reference)) + " in " +
                         source.folder().string() + ", " + std::to_string(collected.samples.size()) +

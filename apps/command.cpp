@@ -12,7 +12,7 @@ namespace tofmap::app {
 
 void CommonArguments::add_to(CLI::App& command) {
   command.add_option("--config", config, "YAML file with options, see 'tofmap config'");
-  command.add_option("--set", assignments, "one option: group.name=value (repeatable)")
+  command.add_option("--set", assignments, "options as group.name=value, one or more, after SEQ")
       ->expected(1)
       ->take_all();
   command.add_option("--threads", threads, "threads to use, 0: all")->check(CLI::Range(0, 1024));

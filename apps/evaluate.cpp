@@ -67,7 +67,7 @@ void say_what_is_missing(const SequenceReader& source, const RecordedTruth& trut
 std::string what_is_missing(const std::vector<std::string>& methods, std::size_t done) {
   const std::vector<std::string> missing(methods.begin() + static_cast<std::ptrdiff_t>(done),
                                          methods.end());
-  return "the run was interrupted; these methods are missing: " + joined(missing, ", ");
+  return "these methods are missing: " + joined(missing, ", ");
 }
 
 void write_method(const OutputFolder& out, const MethodResult& result) {
@@ -154,8 +154,13 @@ Truth truth_of(const SequenceReader& source, const RecordedTruth& recorded, bool
 /// What the page warns of.
 std::vector<std::string> warnings_of(const SequenceReader& source, const Evaluated& evaluated,
                                      const std::vector<std::string>& methods) {
-  std::vector<std::string> warnings = doubts_about(source);
-  if (evaluated.interrupted) warnings.push_back(what_is_missing(methods, evaluated.done));
+  const CameraErrors* camera = nullptr;
+  if (!evaluated.results.empty() && evaluated.results.back().map) {
+    camera = &evaluated.results.back().map->errors.camera;
+  }
+  std::vector<std::string> warnings = doubts_about(source, camera);
+  if (evaluated.interrupted)
+    warnings.push_back("the run was interrupted; " + what_is_missing(methods, evaluated.done));
   for (const std::string& text : evaluated.failures.texts()) {
     warnings.push_back("it failed and is missing: " + text);
   }
@@ -189,11 +194,15 @@ int run_evaluate(const EvaluateArguments& arguments) {
   });
   write_report(out, evaluated, recorded);
   out.write_text("options.yaml", table.to_yaml(false));
-  out.commit();
+  out.commit(evaluated.interrupted ? Completeness::interrupted : Completeness::whole);
   for (const std::string& text : evaluated.failures.texts()) {
     std::fprintf(stderr, "tofmap: %s; the other methods are there\n", text.c_str());
   }
   if (!evaluated.results.empty()) print_table(evaluated.report);
+  if (evaluated.interrupted && !evaluated.results.empty()) {
+    std::fprintf(stderr, "tofmap: interrupted; %s\n",
+                 what_is_missing(methods, evaluated.done).c_str());
+  }
   const int status = evaluated.interrupted ? exit_status::interrupted
                                            : evaluated.failures.status_or(exit_status::done);
   if (evaluated.results.empty()) {

@@ -7,7 +7,6 @@
 #include "input/recording.hpp"
 #include "options/options.hpp"
 
-#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -61,11 +60,8 @@ void print_frames(const SequenceReader& source, const RecordingSurvey& survey) {
                 survey.without_amplitude);
   }
   if (survey.beat) {
-    const double offset_mm = 1000 * survey.beat->offset_m;
-    std::printf(
-        "both frequencies: in the median pixel A measures %.1f mm %s than B, single pixels within "
-        "%.0f mm\n",
-        std::abs(offset_mm), offset_mm < 0 ? "less" : "more", 1000 * survey.beat->spread_m);
+    std::printf("both frequencies: single pixels agree within %.0f mm\n",
+                1000 * survey.beat->spread_m);
   } else {
     std::printf("both frequencies: too few pixels with returns at both to compare\n");
   }

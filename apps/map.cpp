@@ -153,9 +153,12 @@ FinishedMap finish_map(MapRun& run, OutputFolder& out, MapOutput& output) {
   check_result(finished.map);
   write_map_and_path(out, finished.map);
   if (const auto doubt = repetition_doubt(finished.map.repeated())) output.doubts.push_back(*doubt);
+  std::ranges::move(tofmap::doubts_about(finished.map.errors), std::back_inserter(output.doubts));
   add_what_follows(out, finished, output);
   keeping_map(out, [&] { write_report(out, finished, output); });
-  out.commit();
+  const auto interrupted =
+      output.arguments.resume ? Completeness::resumable : Completeness::interrupted;
+  out.commit(finished.map.interrupted ? interrupted : Completeness::whole);
   for (const std::string& text : output.failures.texts()) {
     std::fprintf(stderr, "tofmap: %s holds the map, but without %s\n", out.final_path().c_str(),
                  text.c_str());
@@ -302,7 +305,7 @@ int run_map(const MapArguments& arguments) {
   FinishedMap finished;
   accompany(view.get(), [&] {
     map_frames(run, input, output.sample, quiet, view.get());
-    output.doubts = input.doubts();
+    output.doubts = input.doubts(run.errors().camera);
     input.close();
     output.acquisition = input.acquisition();
     if (run.is_interrupted() && input.is_recording()) {

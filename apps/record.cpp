@@ -115,7 +115,7 @@ int run_record(const RecordArguments& arguments) {
                                          {"acquisition", input->report()}};
   out.write_text("report.json", json_text(report));
   out.write_text("options.yaml", table.to_yaml(false));
-  out.commit();
+  out.commit(is_interrupted() ? Completeness::interrupted : Completeness::whole);
   const std::string losses = input->losses();
   if (!frames.left_out.empty()) {
     std::fprintf(stderr, "tofmap: %s left out; the first: %s\n",

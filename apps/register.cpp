@@ -203,14 +203,18 @@ int run_register(const RegisterArguments& arguments) {
   if (registration.placed() > 0) {
     write_labelled_points(out.path() / "merged.ply", merged(input, registration));
   }
-  out.commit();
+  out.commit(registration.interrupted ? Completeness::interrupted : Completeness::whole);
   if (!arguments.common.quiet) {
     std::printf("%d of %zu clouds placed\n", registration.placed(), input.files.size());
     if (registration.placed() > 0) {
       std::printf("merged: %s, transforms beside it\n", (out.final_path() / "merged.ply").c_str());
     }
   }
-  if (registration.interrupted) return exit_status::interrupted;
+  if (registration.interrupted) {
+    std::fprintf(stderr, "tofmap: interrupted after %zu pairs of clouds\n",
+                 registration.pairs.size());
+    return exit_status::interrupted;
+  }
   if (registration.placed() == 0) {
     throw InputError("no two of the clouds fit; report.json in " + out.final_path().string() +
                      " says how near they came");

@@ -116,7 +116,9 @@ int run_simulate(const SimulateArguments& arguments) {
     throw InputError("no frame could be made: " + written.left_out.front());
   }
   out.write_text("options.yaml", table.to_yaml(false));
-  out.commit();
+  const bool is_whole =
+      written.frames + static_cast<int>(written.left_out.size()) == recording.frame_count;
+  out.commit(is_whole ? Completeness::whole : Completeness::interrupted);
   if (!written.left_out.empty()) {
     std::fprintf(stderr, "tofmap: %s left out; the first: %s\n",
                  counted(written.left_out.size(), "frame").c_str(),
@@ -126,8 +128,6 @@ int run_simulate(const SimulateArguments& arguments) {
     std::printf("%d of %d frames of '%s' simulated: %s\n", written.frames, recording.frame_count,
                 recording.name.c_str(), out.final_path().c_str());
   }
-  const bool is_whole =
-      written.frames + static_cast<int>(written.left_out.size()) == recording.frame_count;
   return is_whole ? exit_status::done : exit_status::interrupted;
 }
 

@@ -240,7 +240,7 @@ int run_unwrap(const UnwrapArguments& arguments) {
                        {"summary", unwrapping_summary(result.frames, result.damaged, interrupted)}};
   out.write_text("report.json", json_text(report));
   out.write_text("options.yaml", table.to_yaml(false));
-  out.commit();
+  out.commit(interrupted ? Completeness::interrupted : Completeness::whole);
   say_what_is_missing(result);
   if (!arguments.common.quiet) {
     std::printf("%d of %d frames unwrapped, %d damaged: %s\n", done - result.damaged, total,

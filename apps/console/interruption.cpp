@@ -20,6 +20,7 @@ extern "C" void note_interruption(int signal) {
 }  // namespace
 
 void watch_for_interruption() {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is a failure to write it
   std::signal(SIGINT, note_interruption);
   std::signal(SIGTERM, note_interruption);
 }

@@ -39,7 +39,9 @@ class LiveInput {
   nlohmann::ordered_json report();
 
   /// What its first frames are doubted for: whether A and B belong together (docs/cameras.md).
-  std::vector<std::string> doubts() { return watched_.doubts(); }
+  std::vector<std::string> doubts(const CameraErrors* camera = nullptr) {
+    return watched_.doubts(camera);
+  }
 
   /// If the device fell silent, a message that says so; else empty.
   std::string silence() const;

@@ -33,8 +33,9 @@ class MapInput {
   /// Frames that came too late or incomplete, as a phrase. Empty if there are none.
   std::string losses() const { return live_ ? live_->losses() : losses_; }
 
-  /// What is suspicious about the frames so far.
-  std::vector<std::string> doubts();
+  /// What is suspicious about the frames so far. `camera` is what unwrapping found of the camera's
+  /// errors.
+  std::vector<std::string> doubts(const CameraErrors& camera);
 
   /// Ends a device, whose thread watches for Ctrl-C. What it told is kept.
   void close();

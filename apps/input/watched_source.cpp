@@ -8,7 +8,6 @@
 #include <tofmap/core/median.hpp>
 #include <tofmap/core/text.hpp>
 #include <tofmap/diagnostics/axial_depth.hpp>
-#include <tofmap/diagnostics/beat_survey.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -16,11 +15,27 @@ namespace {
 /// As many of the first frames tell.
 constexpr std::size_t enough = 12;
 
-std::vector<std::string> doubts_about_first(const std::vector<DualFrequencyFrame>& frames,
-                                            const SensorModel& sensor) {
-  if (const auto doubt = axial_depth_doubt(frames, sensor)) return {*doubt};
+FirstFrames judge_first(const std::vector<DualFrequencyFrame>& frames, const SensorModel& sensor) {
+  for (const auto& doubt :
+       {frequency_pair_doubt(sensor.modulation), axial_depth_doubt(frames, sensor)}) {
+    if (doubt) return {{*doubt}, {}};
+  }
   const std::optional<BeatSurvey> beat = survey_beat(frames, sensor);
-  return beat ? tofmap::doubts_about(*beat) : std::vector<std::string>{};
+  const auto mixed_up = beat ? pairing_doubt(*beat) : std::nullopt;
+  if (mixed_up) return {{*mixed_up}, {}};
+  return {{}, beat};
+}
+
+/// All doubts about a source: of its first frames, of the offset between the frequencies, and of
+/// gaps in time.
+std::vector<std::string> all_doubts(const FirstFrames& first, const CameraErrors* camera,
+                                    const std::optional<std::string>& gap) {
+  std::vector<std::string> doubts = first.doubts;
+  const auto offset = first.beat ? offset_doubt(*first.beat, camera) : std::nullopt;
+  for (const auto& doubt : {offset, gap}) {
+    if (doubt) doubts.push_back(*doubt);
+  }
+  return doubts;
 }
 
 /// Where more than three periods passed from one frame to the next.
@@ -47,7 +62,7 @@ std::optional<std::string> gap_doubt(const std::vector<double>& times_s) {
 std::optional<SourcedFrame> WatchedSource::next() {
   std::optional<SourcedFrame> sourced = source_.next();
   if (sourced && sourced->frame) times_s_.push_back(sourced->timestamp_s);
-  if (!doubts_ && sourced && sourced->frame) {
+  if (!judged_ && sourced && sourced->frame) {
     first_.push_back(*sourced->frame);
     if (first_.size() == enough) judge();
   }
@@ -55,18 +70,16 @@ std::optional<SourcedFrame> WatchedSource::next() {
 }
 
 void WatchedSource::judge() {
-  doubts_ = doubts_about_first(first_, sensor());
+  judged_ = judge_first(first_, sensor());
   first_.clear();
 }
 
-std::vector<std::string> WatchedSource::doubts() {
-  if (!doubts_) judge();
-  std::vector<std::string> all = *doubts_;
-  if (const auto gap = gap_doubt(times_s_)) all.push_back(*gap);
-  return all;
+std::vector<std::string> WatchedSource::doubts(const CameraErrors* camera) {
+  if (!judged_) judge();
+  return all_doubts(*judged_, camera, gap_doubt(times_s_));
 }
 
-std::vector<std::string> doubts_about(const SequenceReader& recording) {
+std::vector<std::string> doubts_about(const SequenceReader& recording, const CameraErrors* camera) {
   std::vector<DualFrequencyFrame> first;
   std::vector<double> times_s;
   for (int i = 0; i < *recording.frame_count(); ++i) {
@@ -76,9 +89,7 @@ std::vector<std::string> doubts_about(const SequenceReader& recording) {
     SourcedFrame sourced = recording.read(i);
     if (sourced.frame) first.push_back(*std::move(sourced.frame));
   }
-  std::vector<std::string> doubts = doubts_about_first(first, recording.sensor());
-  if (const auto gap = gap_doubt(times_s)) doubts.push_back(*gap);
-  return doubts;
+  return all_doubts(judge_first(first, recording.sensor()), camera, gap_doubt(times_s));
 }
 
 }  // namespace tofmap::app

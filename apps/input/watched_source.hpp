@@ -7,8 +7,15 @@
 #include <vector>
 
 #include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/diagnostics/beat_survey.hpp>
 
 namespace tofmap::app {
+
+/// What the first frames of a source show.
+struct FirstFrames {
+  std::vector<std::string> doubts;
+  std::optional<BeatSurvey> beat;  ///< if nothing is wrong with the images themselves
+};
 
 /// Passes the frames of another source on, and looks at them: at the first whether A and B belong
 /// together, and are ranges along rays, and at all for gaps in time (docs/cameras.md).
@@ -20,19 +27,21 @@ class WatchedSource final : public FrameSource {
   std::optional<SourcedFrame> next() override;
   std::optional<int> frame_count() const override { return source_.frame_count(); }
 
-  /// What the frames so far are doubted for.
-  std::vector<std::string> doubts();
+  /// What is suspicious about the frames so far. `camera` is what unwrapping found of the camera's
+  /// errors, if it is known.
+  std::vector<std::string> doubts(const CameraErrors* camera = nullptr);
 
  private:
   void judge();
 
   FrameSource& source_;
   std::vector<DualFrequencyFrame> first_;
-  std::optional<std::vector<std::string>> doubts_;  ///< of the first; none before they have come
+  std::optional<FirstFrames> judged_;  ///< empty before the first frames have come
   std::vector<double> times_s_;
 };
 
-/// What a recording is doubted for in the same way.
-std::vector<std::string> doubts_about(const SequenceReader& recording);
+/// What is suspicious about a recording, in the same way.
+std::vector<std::string> doubts_about(const SequenceReader& recording,
+                                      const CameraErrors* camera = nullptr);
 
 }  // namespace tofmap::app

@@ -13,9 +13,21 @@
 namespace tofmap::app {
 namespace fs = std::filesystem;
 
+namespace {
+
+/// The file that a link leads to, which is replaced instead of the link.
+fs::path behind_links(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_symlink(file, error)) return file;
+  const fs::path target = fs::weakly_canonical(file, error);
+  return error ? file : target;
+}
+
+}  // namespace
+
 OutputFile::OutputFile(const fs::path& file,
                        const std::function<bool(const fs::path& existing)>& may_replace)
-    : file_(file), partial_(file.string() + ".partial-" + std::to_string(getpid())) {
+    : file_(behind_links(file)), partial_(file_.string() + ".partial-" + std::to_string(getpid())) {
   if (file.empty()) throw UsageError("the file to write has no name");
   if (fs::is_directory(file)) {
     throw InputError(file.string() + ": is a folder; name a file in it");

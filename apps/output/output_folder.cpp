@@ -189,18 +189,33 @@ void OutputFolder::write_text(const std::string& name, const std::string& text) 
   if (!out) throw InputError(path.string() + ": cannot be written; is the disk full?");
 }
 
-/// Chooses another name if that of the folder was taken meanwhile, by another run for example.
-void OutputFolder::make_way() {
-  if (identity(folder_) == earlier_ && may_be_replaced(folder_, replaces_)) return;
+/// Numbers the name of the folder until nothing has that name.
+void OutputFolder::choose_free_name() {
   const fs::path wanted = folder_;
   for (int i = 2; !identity(folder_).empty(); ++i) {
     folder_ = wanted.parent_path() / (wanted.filename().string() + "-" + std::to_string(i));
   }
 }
 
-void OutputFolder::commit() {
+void OutputFolder::tell_other_name(const fs::path& wanted, bool keeps_earlier) const {
+  if (folder_ == wanted) return;
+  if (keeps_earlier) {
+    std::fprintf(
+        stderr, "tofmap: interrupted; the earlier result in %s stays, what was finished is in %s\n",
+        wanted.c_str(), folder_.c_str());
+  } else {
+    std::fprintf(stderr, "tofmap: something else came to %s meanwhile; the result is in %s\n",
+                 wanted.c_str(), folder_.c_str());
+  }
+}
+
+void OutputFolder::commit(Completeness completeness) {
   const fs::path wanted = folder_;
-  make_way();
+  std::error_code ignored;
+  const bool keeps_earlier = completeness == Completeness::interrupted && !earlier_.empty() &&
+                             !fs::is_empty(folder_, ignored);
+  const bool is_taken = identity(folder_) != earlier_ || !may_be_replaced(folder_, replaces_);
+  if (keeps_earlier || is_taken) choose_free_name();
   is_committed_ = true;  // from here on what was made is kept at any rate
   const fs::path replaced = free_sibling(folder_, ".replaced-");
   std::error_code error;
@@ -210,8 +225,11 @@ void OutputFolder::commit() {
          [&] { FileList::of(partial_).write(partial_ / FileList::file_name); });
   if (replaces) fs::rename(folder_, replaced, error);
   if (!error) fs::rename(partial_, folder_, error);
+  if (error == std::errc::directory_not_empty || error == std::errc::file_exists) {
+    choose_free_name();  // another run was faster
+    fs::rename(partial_, folder_, error);
+  }
   if (error) {
-    std::error_code ignored;
     if (replaces && !fs::exists(folder_, ignored)) fs::rename(replaced, folder_, ignored);
     throw InputError(folder_.string() + ": the result cannot be moved there (" + error.message() +
                      "); it is in " + partial_.string());
@@ -220,9 +238,7 @@ void OutputFolder::commit() {
     std::fprintf(stderr, "tofmap: %s held files that tofmap did not write; they are in %s\n",
                  folder_.c_str(), replaced.c_str());
   }
-  if (folder_ == wanted) return;
-  std::fprintf(stderr, "tofmap: something else came to %s meanwhile; the result is in %s\n",
-               wanted.c_str(), folder_.c_str());
+  tell_other_name(wanted, keeps_earlier);
 }
 
 void OutputFolder::keep() { is_committed_ = true; }

@@ -13,6 +13,13 @@ enum class Replaces {
   recordings,  ///< an earlier result or simulated recording
 };
 
+/// Whether a run came to its end.
+enum class Completeness {
+  whole,
+  interrupted,  ///< an earlier result is not replaced by what was finished until then
+  resumable,    ///< interrupted as well, but it goes on from the earlier result and replaces it
+};
+
 /// A result folder that appears only when it is whole: files are written into a folder beside
 /// it, which `commit` moves into place. Without commit nothing is left.
 ///
@@ -40,17 +47,19 @@ class OutputFolder {
   /// Writes a text file inside. Throws InputError if it cannot be written whole.
   void write_text(const std::string& name, const std::string& text) const;
 
-  /// Moves everything into place. If something has come there meanwhile, the result goes beside it
-  /// instead, and a message says so: nothing of either is lost. If it cannot be moved it stays
-  /// where it was written, and the InputError names that.
-  /// Files that came into the earlier result at the last moment are kept beside it, and named.
-  void commit();
+  /// Moves everything into place. What an interrupted run finished goes beside an earlier result,
+  /// which may be whole, and a message says so. If something has come there meanwhile, the result
+  /// goes beside it instead, and a message says so: nothing of either is lost. If it cannot be
+  /// moved it stays where it was written, and the InputError names that. Files that came into the
+  /// earlier result at the last moment are kept beside it, and named.
+  void commit(Completeness completeness = Completeness::whole);
 
   /// Leaves what was written so far where it is if there is no commit.
   void keep();
 
  private:
-  void make_way();
+  void choose_free_name();
+  void tell_other_name(const std::filesystem::path& wanted, bool keeps_earlier) const;
 
   std::string earlier_;  ///< what stood in the folder's place at the beginning
   std::filesystem::path folder_;

@@ -91,6 +91,7 @@ std::vector<std::string> warnings_of(const EvaluationPageSubject& subject) {
   const MethodResult& with = with_unwrapping(subject);
   if (with.map) {
     if (const auto doubt = repetition_doubt(with.map->repeated())) warnings.push_back(*doubt);
+    std::ranges::move(doubts_about(with.map->errors), std::back_inserter(warnings));
   }
   if (with.consistency) {
     std::ranges::move(doubts_about(*with.consistency), std::back_inserter(warnings));

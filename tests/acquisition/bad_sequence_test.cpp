@@ -214,6 +214,23 @@ TEST_F(BadSequence, TimestampThatStandsStillDamagesTheLaterFrame) {
   EXPECT_TRUE(reader.read(3).frame);
 }
 
+TEST_F(BadSequence, TimestampFarAheadDamagesThatFrameAlone) {
+  std::ofstream(folder_ / "frames.txt") << "0 phase_a/000000.png phase_b/000000.png\n"
+                                        << "999 phase_a/000001.png phase_b/000001.png\n"
+                                        << "1 phase_a/000001.png phase_b/000001.png\n"
+                                        << "2 phase_a/000001.png phase_b/000001.png\n"
+                                        << "3 phase_a/000001.png phase_b/000001.png\n";
+  const SequenceReader reader(folder_);
+  EXPECT_NE(reader.read(1).damage.find("999"), std::string::npos);
+  for (const int i : {0, 2, 3, 4}) EXPECT_TRUE(reader.read(i).frame) << i;
+}
+
+TEST_F(BadSequence, ByteOrderMarkBeforeTheListIsPassedOver) {
+  std::ofstream(folder_ / "frames.txt") << "\xEF\xBB\xBF# timestamp phase_a phase_b\n"
+                                        << "0 phase_a/000000.png phase_b/000000.png\n";
+  EXPECT_EQ(SequenceReader(folder_).frame_count(), 1);
+}
+
 TEST_F(BadSequence, MissingImageDamagesOneFrame) {
   std::filesystem::remove(folder_ / "phase_b/000000.png");
   expect_damage("phase_b/000000.png");

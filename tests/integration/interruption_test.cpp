@@ -64,8 +64,25 @@ class Interruption : public WithRecording {
   }
 };
 
+TEST_F(Interruption, LeavesAnEarlierResultWhereItIs) {
+  RunningProgram first(unwrap_arguments());
+  ASSERT_TRUE(has_begun(first));
+  first.send(SIGINT);
+  first.wait();
+  const std::size_t earlier = names_in(out_ / "range").size();
+  RunningProgram program(unwrap_arguments());
+  ASSERT_TRUE(has_begun(program));
+  program.send(SIGINT);
+  const Finished finished = program.wait();
+  EXPECT_EQ(finished.status, 130);
+  EXPECT_THAT(finished.err, HasSubstr("the earlier result in " + out_.string() + " stays"));
+  EXPECT_EQ(names_in(out_ / "range").size(), earlier);
+  EXPECT_GT(names_in(fs::path(out_.string() + "-2") / "range").size(), 0U);
+}
+
 TEST_F(Interruption, KeepsTheFramesThatAreFinished) {
   for (const int signal : {SIGINT, SIGTERM}) {
+    fs::remove_all(out_);
     RunningProgram program(unwrap_arguments());
     ASSERT_TRUE(has_begun(program));
     program.send(signal);

@@ -5,6 +5,7 @@
 
 #include "yaml_section.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -166,6 +167,15 @@ void check_camera(const CalibratedWith& with, const SensorModel& sensor) {
   refuse_other_camera(frequencies_text(with.modulation), frequencies_text(modulation));
 }
 
+/// A comment must not end at a line break in the name of a file, nor hold bytes that no YAML file
+/// may.
+std::string one_line(const std::string& comment) {
+  std::string line = valid_utf8(comment);
+  std::ranges::replace_if(
+      line, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+  return line;
+}
+
 SensorModel with_calibration(SensorModel sensor, const CameraCalibration& calibration) {
   if (calibration.saturation_amplitude > 0) {
     sensor.saturation_amplitude = calibration.saturation_amplitude;
@@ -237,7 +247,7 @@ bool is_calibration(const std::filesystem::path& file) {
 void write_calibration(const std::filesystem::path& file, const CameraCalibration& calibration,
                        const std::string& comment) {
   std::ofstream out(file);
-  if (!comment.empty()) out << "# " << comment << '\n';
+  if (!comment.empty()) out << "# " << one_line(comment) << '\n';
   out << "format: " << format_name << "\nversion: " << format_version << '\n';
   if (calibration.with) {
     const CalibratedWith& with = *calibration.with;

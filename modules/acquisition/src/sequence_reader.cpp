@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <sstream>
+#include <string_view>
 
 #include <tofmap/acquisition/png_image.hpp>
 #include <tofmap/acquisition/sequence.hpp>
@@ -58,20 +60,32 @@ SequenceFrameFiles parse_line(const std::vector<std::string>& words, const std::
   return files;
 }
 
-/// A frame that is not later than those before it cannot be placed in time: the first one
-/// stands, the later line is damaged.
-void mark_times_that_stand_still(std::vector<SequenceFrameFiles>& frames,
-                                 const std::filesystem::path& file) {
-  double latest_s = -std::numeric_limits<double>::infinity();
+/// Marks frames whose time cannot be right. Of two frames in the wrong order the later line is
+/// damaged, unless it fits in with the two lines after it: then the earlier one has the wrong time,
+/// as where a single timestamp is far ahead of all others.
+void mark_times_out_of_order(std::vector<SequenceFrameFiles>& frames,
+                             const std::filesystem::path& file) {
+  std::vector<SequenceFrameFiles*> whole;
   for (SequenceFrameFiles& frame : frames) {
-    if (!frame.damage.empty()) continue;
-    if (frame.timestamp_s > latest_s) {
-      latest_s = frame.timestamp_s;
+    if (frame.damage.empty()) whole.push_back(&frame);
+  }
+  const auto time_s = [&](std::size_t i) { return whole[i]->timestamp_s; };
+  const auto mark = [&](SequenceFrameFiles& frame, const char* relation, double other_s) {
+    std::ostringstream text;
+    text << std::setprecision(16) << file.string() << ": the timestamp " << frame.timestamp_s
+         << " of " << frame.phase_a.string() << " is not " << relation << ' ' << other_s;
+    frame.damage = text.str();
+  };
+  double latest_s = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const bool is_ahead = i + 2 < whole.size() && time_s(i + 1) > latest_s &&
+                          time_s(i + 2) > time_s(i + 1) && time_s(i) >= time_s(i + 2);
+    if (time_s(i) <= latest_s) {
+      mark(*whole[i], "later than that before it,", latest_s);
+    } else if (is_ahead) {
+      mark(*whole[i], "earlier than that after it,", time_s(i + 1));
     } else {
-      std::ostringstream text;
-      text << file.string() << ": the timestamp " << std::fixed << frame.timestamp_s << " of "
-           << frame.phase_a.string() << " is not later than " << latest_s << " before it";
-      frame.damage = text.str();
+      latest_s = time_s(i);
     }
   }
 }
@@ -110,7 +124,9 @@ std::vector<SequenceFrameFiles> read_frame_list(const std::filesystem::path& fil
   }
   std::vector<SequenceFrameFiles> frames;
   std::string line;
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   for (int number = 1; std::getline(in, line); ++number) {
+    if (number == 1 && line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
     const std::vector<std::string> words = words_of(line);
     if (words.empty() || words.front().starts_with('#')) continue;
     try {
@@ -125,7 +141,7 @@ std::vector<SequenceFrameFiles> read_frame_list(const std::filesystem::path& fil
   if (frames.empty()) throw InputError(file.string() + ": lists no frames; record at least one");
   refuse_mostly_damaged(frames);
   fill_times(frames);
-  mark_times_that_stand_still(frames, file);
+  mark_times_out_of_order(frames, file);
   return frames;
 }
 

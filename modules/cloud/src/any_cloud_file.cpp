@@ -7,6 +7,8 @@
 #include <array>
 #include <cstring>
 #include <fstream>
+#include <new>
+#include <stdexcept>
 
 #include <pcl/console/print.h>
 #include <pcl/io/pcd_io.h>
@@ -120,6 +122,36 @@ bool has_pcd_header(const std::filesystem::path& file) {
   return false;
 }
 
+/// Reads a file by the kind that its ending names. Returns false if that fails, also where the
+/// header promises more points than memory holds. Throws InputError for other endings.
+bool read_by_ending(const std::filesystem::path& file, AnyCloud& cloud) try {
+  const QuietPcl quiet;
+  const std::string kind = file.extension().string();
+  Eigen::Vector4f origin = Eigen::Vector4f::Zero();
+  Eigen::Quaternionf orientation = Eigen::Quaternionf::Identity();
+  int version = 0;
+  int status = 0;
+  if (kind == ".ply") {
+    status = pcl::PLYReader().read(file.string(), cloud.data, origin, orientation, version);
+  } else if (kind == ".pcd") {
+    status = has_pcd_header(file)
+                 ? pcl::PCDReader().read(file.string(), cloud.data, origin, orientation, version)
+                 : -1;
+  } else if (kind == ".vtk") {
+    cloud.data = read_with<vtkDataSetReader>(file);
+  } else if (kind == ".vtp") {
+    cloud.data = read_with<vtkXMLPolyDataReader>(file);
+  } else {
+    throw InputError("none of .ply, .pcd, .vtk and .vtp; convert it to one of them");
+  }
+  cloud.viewpoint = origin.head<3>().cast<double>();
+  return status >= 0;
+} catch (const std::bad_alloc&) {
+  return false;
+} catch (const std::length_error&) {
+  return false;
+}
+
 constexpr bool with_camera = false;
 
 bool is_pcd(const std::filesystem::path& file) { return file.extension() == ".pcd"; }
@@ -187,34 +219,14 @@ AnyCloud read_any_cloud(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) {
     throw InputError(file.string() + ": no such file");
   }
-  const QuietPcl quiet;
-  const std::string kind = file.extension().string();
   AnyCloud cloud;
-  Eigen::Vector4f origin = Eigen::Vector4f::Zero();
-  Eigen::Quaternionf orientation = Eigen::Quaternionf::Identity();
-  int version = 0;
-  int status = 0;
-  if (kind == ".ply") {
-    status = pcl::PLYReader().read(file.string(), cloud.data, origin, orientation, version);
-  } else if (kind == ".pcd") {
-    status = has_pcd_header(file)
-                 ? pcl::PCDReader().read(file.string(), cloud.data, origin, orientation, version)
-                 : -1;
-  } else if (kind == ".vtk") {
-    cloud.data = read_with<vtkDataSetReader>(file);
-  } else if (kind == ".vtp") {
-    cloud.data = read_with<vtkXMLPolyDataReader>(file);
-  } else {
-    throw InputError(file.string() +
-                     ": none of .ply, .pcd, .vtk and .vtp; convert it to one of them");
-  }
+  const bool is_read = naming(file.string(), [&] { return read_by_ending(file, cloud); });
   const bool has_points = find_field(cloud.data, "x") != nullptr &&
                           find_field(cloud.data, "y") != nullptr &&
                           find_field(cloud.data, "z") != nullptr;
-  if (status < 0 || !has_points) {
+  if (!is_read || !has_points) {
     throw InputError(file.string() + ": no point cloud could be read from it; is it whole?");
   }
-  cloud.viewpoint = origin.head<3>().cast<double>();
   return cloud;
 }
 

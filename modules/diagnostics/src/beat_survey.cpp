@@ -229,13 +229,33 @@ std::optional<std::string> pairing_doubt(const BeatSurvey& beat) {
   return std::nullopt;
 }
 
-std::vector<std::string> doubts_about(const BeatSurvey& beat) {
-  if (std::optional<std::string> doubt = pairing_doubt(beat)) return {*std::move(doubt)};
-  constexpr double most_offset_m = 0.02;  // motion between both images makes some millimetres
-  if (std::abs(beat.offset_m) < most_offset_m) return {};
-  return {"in the median pixel A measures " + offset_text(beat) +
-          ": the phase offset of one of them seems wrong; 'tofmap calibrate' against known ranges "
-          "finds both"};
+std::optional<std::string> offset_doubt(const BeatSurvey& beat, const CameraErrors* camera) {
+  constexpr double least_m = 0.02;  // motion between both images makes some millimetres
+  constexpr double same_m = 0.03;   // both estimates have the errors of what they look at
+  const bool is_known = camera != nullptr && camera->frames > 0;
+  const double estimate_m = is_known ? camera->offset_m() : beat.offset_m;
+  const bool agree = std::abs(estimate_m - beat.offset_m) < same_m;
+  if (std::max(std::abs(estimate_m), std::abs(beat.offset_m)) < least_m) return std::nullopt;
+  const std::string remedy =
+      "; 'tofmap calibrate' against known ranges finds the phase offsets of both";
+  if (!agree) {
+    return "the offset between the frequencies is not sure: A measures " +
+           more_or_less(estimate_m) + " than B, or " + offset_text(beat) + remedy;
+  }
+  // The next offsets that fit are about `ambiguity_m` away: three times as large as this one.
+  const bool is_smallest_by_far = std::abs(estimate_m) < beat.ambiguity_m / 4;
+  if (is_known && is_smallest_by_far) return std::nullopt;
+  return "A measures " + offset_text(beat) + remedy;
+}
+
+std::optional<std::string> frequency_pair_doubt(const Modulation& modulation) {
+  constexpr double least_wavelengths = 1.5;
+  const double combined_m = combined_range_m(modulation);
+  if (combined_m >= least_wavelengths * modulation.wavelength_a_m()) return std::nullopt;
+  return formatted(
+      "this pair of frequencies tells no wrap counts apart: it is unambiguous up to %.2f m, one "
+      "frequency alone up to %.2f m; are frequency_a_hz and frequency_b_hz right?",
+      combined_m, modulation.wavelength_a_m());
 }
 
 }  // namespace tofmap

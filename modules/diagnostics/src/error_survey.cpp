@@ -28,6 +28,7 @@ void ErrorTally::add(const MeasuredFrame& frame) {
   camera_ = frame.errors.camera;
   if (frame.errors.pixels > 0) flows_px_.push_back(static_cast<float>(frame.errors.flow_px));
   pixels_ += static_cast<double>((frame.valid != 0).count());
+  has_amplitudes_ = frame.returns.has_amplitude();
   constexpr float raised = 1.4F;
   for (Eigen::Index i = 0; i < frame.ambient.size(); ++i) {
     if (frame.valid.data()[i] == 0 || frame.ambient.data()[i] < raised) continue;
@@ -39,6 +40,7 @@ void ErrorTally::add(const MeasuredFrame& frame) {
 ErrorSurvey ErrorTally::survey() const {
   ErrorSurvey survey;
   survey.camera = camera_;
+  survey.has_amplitudes = has_amplitudes_;
   survey.frames = static_cast<int>(flows_px_.size());
   std::vector<float> flows_px = flows_px_;
   if (!flows_px.empty()) survey.flow_px = median(flows_px);
@@ -62,24 +64,23 @@ std::vector<std::string> remarks_about(const ErrorSurvey& survey) {
     const double periodic_m = survey.camera.periodic_rms_m;
     const double per_decade_m = survey.camera.per_decade_m();
     if (std::abs(offset_m) >= least_offset_m) {
-      remarks.push_back(formatted(
-          "offset between the frequencies: A measures %.0f mm %s than B; allowed for in "
-          "unwrapping, "
-          "but one of them is off by it: 'tofmap calibrate' against known ranges tells which",
-          millimetres(std::abs(offset_m)), offset_m < 0 ? "less" : "more"));
+      remarks.push_back(
+          formatted("offset between the frequencies: A measures %.0f mm %s than B; allowed for in "
+                    "unwrapping, "
+                    "but ranges keep the error of A or B: 'tofmap calibrate' against known ranges "
+                    "tells which",
+                    millimetres(std::abs(offset_m)), offset_m < 0 ? "less" : "more"));
     }
     if (periodic_m >= least_periodic_m) {
-      remarks.push_back(
-          formatted("the frequencies disagree periodically, by %.0f mm (RMS); allowed for in "
-                    "unwrapping, while "
-                    "ranges keep a periodic error until 'tofmap calibrate' finds it",
-                    millimetres(periodic_m)));
+      remarks.push_back(formatted(
+          "the frequencies disagree periodically, by %.0f mm (RMS); allowed for in unwrapping",
+          millimetres(periodic_m)));
     }
     if (std::abs(per_decade_m) >= least_per_decade_m) {
-      remarks.push_back(formatted(
-          "the frequencies disagree by %.0f mm more for every factor of ten in amplitude; "
-          "allowed for in unwrapping",
-          millimetres(per_decade_m)));
+      remarks.push_back(
+          formatted("A measures %.0f mm %s than B for every factor of ten in amplitude; allowed "
+                    "for in unwrapping",
+                    millimetres(std::abs(per_decade_m)), per_decade_m < 0 ? "less" : "more"));
     }
     if (survey.camera.systematic_m >= least_systematic_m) {
       remarks.push_back(formatted(
@@ -95,12 +96,26 @@ std::vector<std::string> remarks_about(const ErrorSurvey& survey) {
         survey.flow_px));
   }
   if (survey.ambient_share >= least_ambient_share) {
+    const char* compared =
+        survey.has_amplitudes ? "as their amplitudes say, as under ambient light" : "as the others";
     remarks.push_back(formatted(
-        "%.0f %% of the pixels are %.1f times as noisy as their amplitudes say, as under ambient "
-        "light; taken into account where they are",
-        100 * survey.ambient_share, survey.ambient_factor));
+        "%.0f %% of the pixels are at least %.1f times as noisy %s; taken into account where they "
+        "are",
+        100 * survey.ambient_share, survey.ambient_factor, compared));
   }
   return remarks;
+}
+
+std::vector<std::string> doubts_about(const ErrorSurvey& survey) {
+  // A periodic error of 1 cm made trajectories ten times worse (docs/mapping.md).
+  constexpr double most_periodic_m = 0.01;
+  const double periodic_m = survey.camera.periodic_rms_m;
+  if (survey.camera.frames == 0 || periodic_m < most_periodic_m) return {};
+  return {
+      formatted("ranges have a periodic error of about %.0f mm, and the map is wrong by as much "
+                "or more; 'tofmap calibrate' finds it. If a calibration is in use, it does not "
+                "fit this recording",
+                millimetres(periodic_m))};
 }
 
 }  // namespace tofmap

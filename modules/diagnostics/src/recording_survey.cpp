@@ -36,6 +36,20 @@ bool is_constant(const ImageF& phase) {
   return returns >= least_returns && most - least < no_difference;
 }
 
+/// Whether phases are the same in all pixels that have a return in both images. An amplitude of
+/// zero makes a return missing in one of two copies.
+bool same_returns(const ImageF& phase, const ImageF& other) {
+  if (!same_size(phase, other)) return false;
+  int returns = 0;
+  for (Eigen::Index i = 0; i < phase.size(); ++i) {
+    const float difference = phase.data()[i] - other.data()[i];
+    if (std::isnan(difference)) continue;
+    if (difference != 0) return false;
+    ++returns;
+  }
+  return returns >= least_returns;
+}
+
 bool is_without_return(const DualFrequencyFrame& frame) {
   return (frame.phase_a.isNaN() || frame.phase_b.isNaN()).all();
 }
@@ -101,6 +115,13 @@ void doubt_images(const RecordingSurvey& survey, std::vector<std::string>& doubt
                   survey.constant_images.size(), survey.constant_images.front().c_str()));
   }
   if (const auto doubt = repetition_doubt(survey.repeated)) doubts.push_back(*doubt);
+  if (survey.repeated_single > 0) {
+    doubts.push_back(
+        counted(static_cast<std::size_t>(survey.repeated_single), "frame") +
+        (survey.repeated_single == 1 ? " has" : " have") +
+        " the phases of the one before at one frequency, and new ones at the other; are files of "
+        "one folder copies of each other?");
+  }
 }
 
 void doubt_times(const RecordingSurvey& survey, std::vector<std::string>& doubts) {
@@ -157,7 +178,12 @@ RecordingSurvey survey_recording(const SequenceReader& recording,
     totals.add(frame, sensor.saturation_amplitude);
     survey.without_amplitude += frame.has_amplitude() ? 0 : 1;
     survey.without_return += is_without_return(frame) ? 1 : 0;
-    survey.repeated += repeats(frame, last) ? 1 : 0;
+    const bool is_repeated = repeats(frame, last);
+    survey.repeated += is_repeated ? 1 : 0;
+    survey.repeated_single += !is_repeated && (same_returns(frame.phase_a, last.phase_a) !=
+                                               same_returns(frame.phase_b, last.phase_b))
+                                  ? 1
+                                  : 0;
     const SequenceFrameFiles& files = recording.files()[static_cast<std::size_t>(i)];
     if (is_constant(frame.phase_a)) survey.constant_images.push_back(files.phase_a.string());
     if (is_constant(frame.phase_b)) survey.constant_images.push_back(files.phase_b.string());
@@ -175,6 +201,11 @@ RecordingSurvey survey_recording(const SequenceReader& recording,
 
 std::vector<std::string> doubts_about(const RecordingSurvey& survey, const SensorModel& sensor) {
   std::vector<std::string> doubts;
+  const auto add = [&](std::optional<std::string> doubt) {
+    if (doubt) doubts.push_back(*std::move(doubt));
+  };
+  const std::optional<std::string> pair_doubt = frequency_pair_doubt(sensor.modulation);
+  add(pair_doubt);
   if (sensor.max_range_m > combined_range_m(sensor.modulation)) {
     doubts.emplace_back(
         "the scene reaches farther than this pair of frequencies can tell apart; are they right?");
@@ -182,14 +213,16 @@ std::vector<std::string> doubts_about(const RecordingSurvey& survey, const Senso
   doubt_returns(survey, doubts);
   doubt_images(survey, doubts);
   doubt_times(survey, doubts);
-  if (survey.axial_depth_doubt) {
-    doubts.push_back(*survey.axial_depth_doubt);
-    return doubts;  // A and B cannot agree then
-  }
-  // Constant images have been doubted already, and do not agree with others.
-  if (survey.beat && survey.constant_images.empty()) {
-    for (std::string& doubt : doubts_about(*survey.beat)) doubts.push_back(std::move(doubt));
-  }
+  add(survey.axial_depth_doubt);
+  // Where there is a doubt about the images themselves, A and B cannot agree, and say nothing else.
+  const bool is_comparable = survey.beat && !pair_doubt && !survey.axial_depth_doubt &&
+                             survey.constant_images.empty() && survey.repeated_single == 0;
+  if (!is_comparable) return doubts;
+  const std::optional<std::string> mixed_up = pairing_doubt(*survey.beat);
+  add(mixed_up);
+  if (mixed_up) return doubts;
+  add(offset_doubt(*survey.beat, &survey.errors.camera));
+  for (std::string& doubt : doubts_about(survey.errors)) doubts.push_back(std::move(doubt));
   return doubts;
 }
 

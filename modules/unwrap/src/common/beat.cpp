@@ -155,15 +155,17 @@ BeatLimits beat_limits(const SensorModel& sensor, double max_range_m) {
   BeatLimits limits;
   limits.wavelength_a_m = sensor.modulation.wavelength_a_m();
   limits.wavelength_b_m = sensor.modulation.wavelength_b_m();
-  limits.max_range_m = max_range_m > 0 ? max_range_m
-                       : sensor.max_range_m > 0
-                           ? sensor.max_range_m
-                           : combined_range_m(sensor.modulation, noise_tolerance_cycles);
+  const double most_m = invalid_wrap_count * limits.wavelength_a_m;  // as many counts fit 8 bits
+  limits.max_range_m =
+      max_range_m > 0 ? max_range_m
+      : sensor.max_range_m > 0
+          ? sensor.max_range_m
+          : std::min(most_m, combined_range_m(sensor.modulation, noise_tolerance_cycles));
   limits.count_a = wrap_limits(sensor.modulation, limits.max_range_m).count_a;
   if (limits.count_a > invalid_wrap_count) {
     throw UsageError("max_range_m: " + std::to_string(limits.max_range_m) + " m takes " +
                      std::to_string(limits.count_a) + " wrap counts; allowed: at most 255, i.e. " +
-                     std::to_string(invalid_wrap_count * limits.wavelength_a_m) + " m");
+                     std::to_string(most_m) + " m");
   }
   return limits;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <tofmap/core/frame.hpp>
+#include <tofmap/unwrap/common/frame_errors.hpp>
 
 namespace tofmap {
 
@@ -31,7 +32,13 @@ std::optional<BeatSurvey> survey_beat(const std::vector<DualFrequencyFrame>& fra
 /// If A and B do not belong together, a sentence that says so, with the remedy.
 std::optional<std::string> pairing_doubt(const BeatSurvey& beat);
 
-/// What of it is likely to be a mistake, in sentences with the remedy: their offset, too.
-std::vector<std::string> doubts_about(const BeatSurvey& beat);
+/// A sentence with the remedy if the offset between the frequencies is not sure: unwrapping
+/// estimated another over the frames (`camera`, null if nothing is known), or it is so large that
+/// other offsets that fit the phases are nearly as likely. Empty if there is no offset worth
+/// telling, or if both agree on a small one, which unwrapping allows for.
+std::optional<std::string> offset_doubt(const BeatSurvey& beat, const CameraErrors* camera);
+
+/// A sentence if the pair of frequencies tells no wrap counts apart.
+std::optional<std::string> frequency_pair_doubt(const Modulation& modulation);
 
 }  // namespace tofmap

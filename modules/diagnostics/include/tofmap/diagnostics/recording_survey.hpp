@@ -19,7 +19,8 @@ struct RecordingSurvey {
   std::vector<std::string> damages;  ///< of frames that could not be read
   int without_amplitude = 0;         ///< frames
   int without_return = 0;            ///< frames of which no pixel has one
-  int repeated = 0;                  ///< frames that are those before them
+  int repeated = 0;                  ///< frames with the phases of the frame before them
+  int repeated_single = 0;  ///< frames with the phases of the frame before at one frequency alone
   std::vector<std::string>
       constant_images;         ///< phases that are the same wherever there is a return
   double no_return_share = 0;  ///< of all pixels

@@ -141,6 +141,9 @@ class MapRun {
   const std::vector<FrameRecord>& frames() const { return frames_; }
   bool is_interrupted() const { return is_interrupted_; }
 
+  /// The errors of the camera, by the frames since the run was taken up.
+  ErrorSurvey errors() const { return errors_.survey(); }
+
   /// The map so far.
   const RoomMapper& mapper() const { return mapper_; }
 
