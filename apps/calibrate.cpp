@@ -21,7 +21,7 @@
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/image.hpp>
 #include <tofmap/core/text.hpp>
-#include <tofmap/diagnostics/beat_survey.hpp>
+#include <tofmap/diagnostics/residual_survey.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap::app {
@@ -34,7 +34,7 @@ struct CalibrateArguments {
 };
 
 /// Where the ranges come from that measured ones are compared with.
-enum class Reference : std::uint8_t { truth, wall, beat };
+enum class Reference : std::uint8_t { truth, wall, residual };
 
 Reference reference_of(const CalibrationOptions& options, const SequenceReader& source,
                        const RecordedTruth& truth) {
@@ -46,10 +46,10 @@ Reference reference_of(const CalibrationOptions& options, const SequenceReader& 
   const bool has_truth = truth.has_ranges();
   if (wanted == "truth" && !has_truth) {
     throw InputError(source.folder().string() +
-                     ": has no range_truth; calibration.reference=beat needs none");
+                     ": has no range_truth; calibration.reference=residual needs none");
   }
   if (wanted == "truth" || (wanted == "auto" && has_truth)) return Reference::truth;
-  return Reference::beat;
+  return Reference::residual;
 }
 
 const char* name_of(Reference reference) {
@@ -58,8 +58,8 @@ const char* name_of(Reference reference) {
       return "truth";
     case Reference::wall:
       return "wall";
-    case Reference::beat:
-      return "beat";
+    case Reference::residual:
+      return "residual";
   }
   return "";
 }
@@ -98,7 +98,7 @@ class ReferenceRanges {
   /// Nothing if there is none for the frame.
   std::optional<ImageF> of(const DualFrequencyFrame& frame) {
     if (reference_ == Reference::truth) return truth_.range_m(frame.index);
-    if (reference_ == Reference::beat) return unwrapper_.unwrap(frame).image.range_m;
+    if (reference_ == Reference::residual) return unwrapper_.unwrap(frame).image.range_m;
     const auto distance = wall_distances_m_.find(frame.index);
     if (distance == wall_distances_m_.end()) return std::nullopt;
     auto range_m = wall_range(frame, source_.sensor(), distance->second);
@@ -178,19 +178,20 @@ void print_samples(const CollectedSamples& collected, const SensorModel& sensor)
   std::printf("from %zu pixels of %s\n", collected.samples.size(),
               counted(collected.frames, "frame").c_str());
   if (collected.damaged > 0) {
-    std::printf("doubtful: %d of %s were damaged, the first: %s\n", collected.damaged,
+    std::printf("warning: %d of %s were damaged, the first: %s\n", collected.damaged,
                 counted(static_cast<std::size_t>(collected.read), "frame").c_str(),
                 collected.first_damage.c_str());
   }
   if (collected.repeated > 0) {
-    std::printf("doubtful: %s repeated the one before, and told nothing\n",
+    std::printf("warning: %s repeated the one before, and told nothing\n",
                 counted(collected.repeated, "frame").c_str());
   }
-  const std::optional<BeatSurvey> beat = survey_beat(collected.first, sensor);
-  if (const auto doubt = beat ? pairing_doubt(*beat) : std::nullopt) print_doubts({*doubt});
+  const std::optional<ResidualSurvey> residual = survey_residual(collected.first, sensor);
+  if (const auto warning = residual ? pairing_warning(*residual) : std::nullopt)
+    print_warnings({*warning});
   constexpr std::size_t some = 5;
   if (collected.frames < some) {
-    std::printf("doubtful: in so few frames errors of single surfaces do not average out\n");
+    std::printf("warning: in so few frames errors of single surfaces do not average out\n");
   }
 }
 
@@ -200,15 +201,15 @@ void print_fit(const PhaseErrorFit& fit, Reference reference) {
   std::printf("A measures %.1f mm %s than B (within %.1f mm)%s\n",
               1000 * std::abs(fit.offset_m.value), fit.offset_m.value < 0 ? "less" : "more",
               1000 * fit.offset_m.sigma,
-              reference == Reference::beat ? "; motion between both images is in it" : "");
+              reference == Reference::residual ? "; motion between both images is in it" : "");
 }
 
 PhaseErrorFit fit_samples(const std::vector<RangeSample>& samples, Reference reference,
                           const SequenceReader& source, const PhaseErrorFitOptions& options) {
   const Modulation& modulation = source.sensor().modulation;
   return naming(source.folder().string(), [&] {
-    return reference == Reference::beat ? fit_to_beat(samples, modulation, options)
-                                        : fit_to_references(samples, modulation, options);
+    return reference == Reference::residual ? fit_to_residual(samples, modulation, options)
+                                            : fit_to_references(samples, modulation, options);
   });
 }
 
@@ -232,7 +233,7 @@ int run_calibrate(const CalibrateArguments& arguments) {
   const Reference reference = reference_of(options.calibration, source, truth);
   OutputFile out(arguments.out, holds_nothing_else);
   const PhaseErrorFitOptions fit_options{
-      .orders = harmonic_orders(options.calibration, reference != Reference::beat),
+      .orders = harmonic_orders(options.calibration, reference != Reference::residual),
       .max_error_m = options.calibration.max_error_m};
   ReferenceRanges ranges(reference, source, truth, options);
   const CollectedSamples collected =

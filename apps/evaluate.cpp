@@ -44,7 +44,7 @@ struct EvaluateArguments {
 void write_comparison(const std::filesystem::path& folder, const std::vector<MethodResult>& results,
                       const PictureOptions& options) {
   const RoomMap& last = *results.back().map;
-  const LevelFrame frame = level_frame(last.surface, last.trajectory);
+  const GravityAlignedFrame frame = gravity_aligned_frame(last.surface, last.trajectory);
   for (const MethodResult& result : results) {
     write_picture(
         folder / ("map_" + result.name + ".png"),
@@ -158,7 +158,7 @@ std::vector<std::string> warnings_of(const SequenceReader& source, const Evaluat
   if (!evaluated.results.empty() && evaluated.results.back().map) {
     camera = &evaluated.results.back().map->errors.camera;
   }
-  std::vector<std::string> warnings = doubts_about(source, camera);
+  std::vector<std::string> warnings = warnings_about(source, camera);
   if (evaluated.interrupted)
     warnings.push_back("the run was interrupted; " + what_is_missing(methods, evaluated.done));
   for (const std::string& text : evaluated.failures.texts()) {

@@ -59,9 +59,9 @@ void print_frames(const SequenceReader& source, const RecordingSurvey& survey) {
     std::printf("frames without amplitudes: %d (noise is taken as uniform)\n",
                 survey.without_amplitude);
   }
-  if (survey.beat) {
+  if (survey.residual) {
     std::printf("both frequencies: single pixels agree within %.0f mm\n",
-                1000 * survey.beat->spread_m);
+                1000 * survey.residual->spread_m);
   } else {
     std::printf("both frequencies: too few pixels with returns at both to compare\n");
   }
@@ -88,7 +88,7 @@ int run_info(const InfoArguments& arguments) {
   const RecordingSurvey survey = read_all(source, arguments.common.quiet);
   print_sensor(source.sensor());
   print_frames(source, survey);
-  print_doubts(doubts_about(survey, source.sensor()));
+  print_warnings(warnings_about(survey, source.sensor()));
   return is_interrupted() ? exit_status::interrupted : exit_status::done;
 }
 

@@ -57,11 +57,11 @@ void check_result(const RoomMap& map) {
         "the phase images mislabelled? 'tofmap info' tells more");
   }
   if (map.surface.empty() && !map.interrupted) {
-    const auto doubt = repetition_doubt(map.repeated());
+    const auto warning = repetition_warning(map.repeated());
     throw InputError(
         "no point was seen often and surely enough to enter the map; lower "
         "map.min_observations or raise map.max_sigma_m" +
-        (doubt ? ". " + *doubt : ""));
+        (warning ? ". " + *warning : ""));
   }
 }
 
@@ -72,7 +72,7 @@ struct MapOutput {
   std::string options_yaml;
   SensorModel sensor;
   FrameSample sample;
-  std::vector<std::string> doubts = {};     ///< about what was recorded, and then about the map
+  std::vector<std::string> warnings = {};   ///< about what was recorded, and then about the map
   nlohmann::ordered_json acquisition = {};  ///< of a device; else null
   Failures failures = {};                   ///< of what the map can do without
 };
@@ -96,7 +96,7 @@ void write_report(const OutputFolder& out, const FinishedMap& finished, const Ma
   report["summary"] = summary_json(finished.map);
   report["camera_errors"] = errors_json(finished.map.errors);
   report["consistency"] = consistency_json(finished.consistency);
-  report["doubts"] = output.doubts;
+  report["warnings"] = output.warnings;
   if (!output.failures.empty()) report["failed"] = output.failures.texts();
   if (!output.acquisition.is_null()) report["acquisition"] = output.acquisition;
   for (const FrameRecord& record : finished.map.frames) {
@@ -130,7 +130,7 @@ void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput&
   output.failures.attempt("consistency", [&] {
     finished.consistency = consistency_of(finished.map, output.sample, output.sensor,
                                           unwrap_method(output.options.pipeline.unwrap));
-    std::ranges::move(doubts_about(finished.consistency), std::back_inserter(output.doubts));
+    std::ranges::move(warnings_about(finished.consistency), std::back_inserter(output.warnings));
   });
   const auto add_file = [&](const char* name, const auto& write) {
     const std::filesystem::path file = out.path() / name;
@@ -147,13 +147,15 @@ void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput&
   }
 }
 
-/// Puts the map in place; what it is doubted for comes to the doubts.
+/// Puts the map in place; what it is doubted for comes to the warnings.
 FinishedMap finish_map(MapRun& run, OutputFolder& out, MapOutput& output) {
   FinishedMap finished{run.finish(), unknown_consistency()};
   check_result(finished.map);
   write_map_and_path(out, finished.map);
-  if (const auto doubt = repetition_doubt(finished.map.repeated())) output.doubts.push_back(*doubt);
-  std::ranges::move(tofmap::doubts_about(finished.map.errors), std::back_inserter(output.doubts));
+  if (const auto warning = repetition_warning(finished.map.repeated()))
+    output.warnings.push_back(*warning);
+  std::ranges::move(tofmap::warnings_about(finished.map.errors),
+                    std::back_inserter(output.warnings));
   add_what_follows(out, finished, output);
   keeping_map(out, [&] { write_report(out, finished, output); });
   const auto interrupted =
@@ -165,7 +167,7 @@ FinishedMap finish_map(MapRun& run, OutputFolder& out, MapOutput& output) {
   }
   if (!output.arguments.common.quiet) {
     print_summary(finished.map, out.final_path());
-    print_doubts(output.doubts);
+    print_warnings(output.warnings);
   }
   return finished;
 }
@@ -173,7 +175,7 @@ FinishedMap finish_map(MapRun& run, OutputFolder& out, MapOutput& output) {
 /// Adds report.html to a map that is in place. Of a whole recording it shows the truth, if known.
 void add_page(const OutputFolder& out, const FinishedMap& finished, const MapOutput& output,
               const MapInput& input, const SequenceReader* recording) {
-  std::vector<std::string> warnings = output.doubts;
+  std::vector<std::string> warnings = output.warnings;
   if (!input.losses().empty()) warnings.push_back("not mapped: " + input.losses());
   std::optional<RecordedTruth> truth;
   if (recording) truth.emplace(*recording);
@@ -305,7 +307,7 @@ int run_map(const MapArguments& arguments) {
   FinishedMap finished;
   accompany(view.get(), [&] {
     map_frames(run, input, output.sample, quiet, view.get());
-    output.doubts = input.doubts(run.errors().camera);
+    output.warnings = input.warnings(run.errors().camera);
     input.close();
     output.acquisition = input.acquisition();
     if (run.is_interrupted() && input.is_recording()) {

@@ -111,7 +111,7 @@ int run_record(const RecordArguments& arguments) {
   const nlohmann::ordered_json report = {{"frames", written},
                                          {"interrupted", is_interrupted()},
                                          {"left_out", frames.left_out},
-                                         {"doubts", input->doubts()},
+                                         {"warnings", input->warnings()},
                                          {"acquisition", input->report()}};
   out.write_text("report.json", json_text(report));
   out.write_text("options.yaml", table.to_yaml(false));
@@ -126,7 +126,7 @@ int run_record(const RecordArguments& arguments) {
                 counted(static_cast<std::size_t>(written), "frame").c_str(), arguments.uri.c_str(),
                 out.final_path().c_str());
     if (!losses.empty()) std::printf("not recorded: %s; see report.json\n", losses.c_str());
-    print_doubts(input->doubts());
+    print_warnings(input->warnings());
   }
   const std::string silence = input->silence();
   input.reset();  // ends the .oni file

@@ -84,19 +84,20 @@ ordered_json matrix_json(const Eigen::Matrix4d& matrix) {
 }
 
 /// With the scale of the cloud's unit.
-Eigen::Matrix4d scaled_transform(const PlacedCloud& cloud) {
+Eigen::Matrix4d scaled_transform(const RegisteredCloud& cloud) {
   Eigen::Matrix4d matrix = cloud.common_from_cloud.matrix();
   matrix.topLeftCorner<3, 3>() *= cloud.unit_m;
   return matrix;
 }
 
-ordered_json placed_json(const Input& input, std::size_t i, const PlacedCloud& cloud) {
+ordered_json registered_json(const Input& input, std::size_t i, const RegisteredCloud& cloud) {
   ordered_json one;
   one["path"] = input.names[i];
-  one["transform"] = cloud.is_placed ? matrix_json(scaled_transform(cloud)) : ordered_json(nullptr);
-  one["inlier_share"] = cloud.inlier_share;
-  one["rmse_m"] = cloud.is_placed ? ordered_json(cloud.rmse_m) : ordered_json(nullptr);
-  one["converged"] = cloud.is_placed;
+  one["transform"] =
+      cloud.is_registered ? matrix_json(scaled_transform(cloud)) : ordered_json(nullptr);
+  one["inlier_share"] = cloud.inlier_ratio;
+  one["rmse_m"] = cloud.is_registered ? ordered_json(cloud.rmse_m) : ordered_json(nullptr);
+  one["converged"] = cloud.is_registered;
   one["tied_to"] = ordered_json::array();
   for (const int other : cloud.tied_to) {
     one["tied_to"].push_back(input.names[static_cast<std::size_t>(other)]);
@@ -106,7 +107,7 @@ ordered_json placed_json(const Input& input, std::size_t i, const PlacedCloud& c
   return one;
 }
 
-/// Of a file that could not be read, in the form of one that could not be placed.
+/// Of a file that could not be read, in the form of one that could not be registered.
 ordered_json damaged_json(const std::string& file, const std::string& damage) {
   return {{"path", file},      {"transform", nullptr}, {"inlier_share", 0.0},
           {"rmse_m", nullptr}, {"converged", false},   {"tied_to", ordered_json::array()},
@@ -117,7 +118,7 @@ ordered_json damaged_json(const std::string& file, const std::string& damage) {
 ordered_json transforms_json(const Input& input, const CloudRegistration& registration) {
   std::vector<ordered_json> by_place(input.files.size());
   for (std::size_t i = 0; i < input.names.size(); ++i) {
-    by_place[input.places[i]] = placed_json(input, i, registration.clouds[i]);
+    by_place[input.places[i]] = registered_json(input, i, registration.clouds[i]);
   }
   for (const auto& [place, damage] : input.damages) {
     by_place[place] = damaged_json(input.files[place], damage);
@@ -133,10 +134,10 @@ ordered_json pair_json(const Input& input, const CloudPair& pair) {
   json["matches"] = pair.matches;
   json["support"] = pair.support;
   json["overlap"] = pair.fit.overlap;
-  json["inlier_share"] = pair.fit.inlier_share;
+  json["inlier_ratio"] = pair.fit.inlier_ratio;
   json["rmse_m"] = pair.fit.rmse_m;
-  json["seen_through"] = pair.seen_through;
-  json["rival"] = pair.rival;
+  json["free_space_violation"] = pair.free_space_violation;
+  json["runner_up"] = pair.runner_up;
   json["direction_share"] = pair.direction_share;
   json["deviations"] = pair.deviations;
   json["target_from_source"] = matrix_json(pair.target_from_source.matrix());
@@ -145,10 +146,12 @@ ordered_json pair_json(const Input& input, const CloudPair& pair) {
 
 ordered_json report_json(const Input& input, const CloudRegistration& registration) {
   ordered_json report;
-  report["summary"] = {
-      {"clouds", input.files.size()},    {"damaged", input.damages.size()},
-      {"placed", registration.placed()}, {"pairs", registration.pairs.size()},
-      {"voxel_m", registration.voxel_m}, {"interrupted", registration.interrupted}};
+  report["summary"] = {{"clouds", input.files.size()},
+                       {"damaged", input.damages.size()},
+                       {"registered", registration.registered()},
+                       {"pairs", registration.pairs.size()},
+                       {"voxel_m", registration.voxel_m},
+                       {"interrupted", registration.interrupted}};
   report["pairs"] = ordered_json::array();
   for (const CloudPair& pair : registration.pairs) {
     report["pairs"].push_back(pair_json(input, pair));
@@ -156,14 +159,14 @@ ordered_json report_json(const Input& input, const CloudRegistration& registrati
   return report;
 }
 
-/// The points of placed clouds in the common frame, by their place among all files; none of the
+/// The points of registered clouds in the common frame, by their place among all files; none of the
 /// others.
 std::vector<std::vector<Eigen::Vector3d>> merged(const Input& input,
                                                  const CloudRegistration& registration) {
   std::vector<std::vector<Eigen::Vector3d>> out(input.files.size());
   for (std::size_t i = 0; i < input.clouds.size(); ++i) {
-    const PlacedCloud& cloud = registration.clouds[i];
-    if (!cloud.is_placed) continue;
+    const RegisteredCloud& cloud = registration.clouds[i];
+    if (!cloud.is_registered) continue;
     for (const Eigen::Vector3d& point : input.clouds[i].points) {
       out[input.places[i]].push_back(cloud.common_from_cloud * (cloud.unit_m * point));
     }
@@ -174,10 +177,10 @@ std::vector<std::vector<Eigen::Vector3d>> merged(const Input& input,
 /// On stderr, so that they are seen when the output goes elsewhere.
 void print_remarks(const Input& input, const CloudRegistration& registration) {
   for (std::size_t i = 0; i < input.names.size(); ++i) {
-    const PlacedCloud& cloud = registration.clouds[i];
+    const RegisteredCloud& cloud = registration.clouds[i];
     if (cloud.remark.empty()) continue;
     std::fprintf(stderr, "tofmap: %s: %s%s\n", input.names[i].c_str(),
-                 cloud.is_placed ? "" : "not placed: ", cloud.remark.c_str());
+                 cloud.is_registered ? "" : "not registered: ", cloud.remark.c_str());
   }
 }
 
@@ -200,13 +203,13 @@ int run_register(const RegisterArguments& arguments) {
   out.write_text("transforms.json", json_text(transforms_json(input, registration)));
   out.write_text("report.json", json_text(report_json(input, registration)));
   out.write_text("options.yaml", table.to_yaml(false));
-  if (registration.placed() > 0) {
+  if (registration.registered() > 0) {
     write_labelled_points(out.path() / "merged.ply", merged(input, registration));
   }
   out.commit(registration.interrupted ? Completeness::interrupted : Completeness::whole);
   if (!arguments.common.quiet) {
-    std::printf("%d of %zu clouds placed\n", registration.placed(), input.files.size());
-    if (registration.placed() > 0) {
+    std::printf("%d of %zu clouds registered\n", registration.registered(), input.files.size());
+    if (registration.registered() > 0) {
       std::printf("merged: %s, transforms beside it\n", (out.final_path() / "merged.ply").c_str());
     }
   }
@@ -215,7 +218,7 @@ int run_register(const RegisterArguments& arguments) {
                  registration.pairs.size());
     return exit_status::interrupted;
   }
-  if (registration.placed() == 0) {
+  if (registration.registered() == 0) {
     throw InputError("no two of the clouds fit; report.json in " + out.final_path().string() +
                      " says how near they came");
   }

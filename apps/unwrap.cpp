@@ -28,7 +28,7 @@
 #include <tofmap/filters/sliding_fusion.hpp>
 #include <tofmap/pipeline/frame_sample.hpp>
 #include <tofmap/pipeline/measured_recording.hpp>
-#include <tofmap/unwrap/common/beat.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -50,7 +50,7 @@ struct UnwrapArguments {
 void limit_to_image_format(UnwrapOptions& options, const SensorModel& sensor) {
   constexpr double reach_m = 65;
   const bool is_told = options.max_range_m > 0 || sensor.max_range_m > 0;
-  if (!is_told && beat_limits(sensor, 0).max_range_m > reach_m) options.max_range_m = reach_m;
+  if (!is_told && unwrap_limits(sensor, 0).max_range_m > reach_m) options.max_range_m = reach_m;
 }
 
 /// Reads a trajectory; throws InputError if it has no pose for any frame of the recording.

@@ -68,7 +68,7 @@ def with_and_without_loops(tofmap, folder):
 def calibrated(tofmap, folder):
     """As it is, and calibrated by the recording itself: by the beat, and by truth."""
     found = [errors_mm(tofmap, f"{folder}/seq", f"{folder}/out")]
-    for reference in ("beat", "truth"):
+    for reference in ("residual", "truth"):
         file = f"{folder}/{reference}.yaml"
         subprocess.run([tofmap, "calibrate", f"{folder}/seq", "--out", file, "--quiet",
                         "--set", f"calibration.reference={reference}",

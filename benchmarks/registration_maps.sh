@@ -13,7 +13,7 @@ for scene in room hall; do simulate "$scene" "$scene"; done
 recordings+=("$@")
 
 # Every frame is a keyframe, and only the last one is registered against.
-chain=(odometry.keyframes_around=1 odometry.keyframe_step_m=0.01 odometry.keyframe_turn_rad=0.01
+chain=(odometry.keyframes_around=1 odometry.keyframe_translation_m=0.01 odometry.keyframe_rotation_rad=0.01
        loops.close=false)
 
 errors() {  # SEQ [SETTING…]: those of unwrapped and of wrapped ranges, metres

@@ -13,7 +13,7 @@
 #include <omp.h>
 
 #include <tofmap/simulation/simulator.hpp>
-#include <tofmap/unwrap/joint/count_propagation.hpp>
+#include <tofmap/unwrap/joint/wrap_count_propagation.hpp>
 #include <tofmap/unwrap/jump/jump_estimate.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
@@ -66,10 +66,10 @@ void count_pixel_iterations(benchmark::State& state, const Size& size, int itera
 void pass_count_messages(benchmark::State& state, const Size& size) {
   constexpr int iterations = 3;
   const Example& e = example(size);
-  CountModel model;
-  model.assign(e.frame, beat_limits(e.sensor, 0),
+  WrapCountModel model;
+  model.assign(e.frame, unwrap_limits(e.sensor, 0),
                PhaseSigma(e.frame, estimate_phase_noise(e.frame)), 0, {});
-  CountPropagation propagation;
+  WrapCountPropagation propagation;
   for (auto _ : state) benchmark::DoNotOptimize(propagation.run(model, iterations));
   count_pixel_iterations(state, size, iterations);
 }
@@ -82,7 +82,7 @@ void pass_jump_messages(benchmark::State& state, const Size& size) {
   JumpEstimator estimator;
   const JumpEstimate& jumps =
       estimator.estimate(e.frame, PhaseSigma(e.frame, estimate_phase_noise(e.frame)),
-                         beat_limits(e.sensor, 0), jump_method(UnwrapMethod::jump), options);
+                         unwrap_limits(e.sensor, 0), jump_method(UnwrapMethod::jump), options);
   JumpPropagation propagation;
   JumpBeliefs beliefs;
   for (auto _ : state) {

@@ -39,8 +39,8 @@ class LiveInput {
   nlohmann::ordered_json report();
 
   /// What its first frames are doubted for: whether A and B belong together (docs/cameras.md).
-  std::vector<std::string> doubts(const CameraErrors* camera = nullptr) {
-    return watched_.doubts(camera);
+  std::vector<std::string> warnings(const CameraErrors* camera = nullptr) {
+    return watched_.warnings(camera);
   }
 
   /// If the device fell silent, a message that says so; else empty.

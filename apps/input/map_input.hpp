@@ -35,7 +35,7 @@ class MapInput {
 
   /// What is suspicious about the frames so far. `camera` is what unwrapping found of the camera's
   /// errors.
-  std::vector<std::string> doubts(const CameraErrors& camera);
+  std::vector<std::string> warnings(const CameraErrors& camera);
 
   /// Ends a device, whose thread watches for Ctrl-C. What it told is kept.
   void close();

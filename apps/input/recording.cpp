@@ -38,8 +38,8 @@ std::vector<std::filesystem::path> image_names(const SequenceReader& recording) 
   return names;
 }
 
-void print_doubts(const std::vector<std::string>& doubts) {
-  for (const std::string& doubt : doubts) std::printf("doubtful: %s\n", doubt.c_str());
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) std::printf("warning: %s\n", warning.c_str());
 }
 
 void print_remarks(const RecordedTruth& truth) {

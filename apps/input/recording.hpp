@@ -38,7 +38,7 @@ CameraCalibration calibration_of(const CameraOptions& options);
 std::vector<std::filesystem::path> image_names(const SequenceReader& recording);
 
 /// On stdout, a line each.
-void print_doubts(const std::vector<std::string>& doubts);
+void print_warnings(const std::vector<std::string>& warnings);
 
 /// Prints what of the truth is damaged on stderr.
 void print_remarks(const RecordedTruth& truth);

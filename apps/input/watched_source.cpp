@@ -16,30 +16,30 @@ namespace {
 constexpr std::size_t enough = 12;
 
 FirstFrames judge_first(const std::vector<DualFrequencyFrame>& frames, const SensorModel& sensor) {
-  for (const auto& doubt :
-       {frequency_pair_doubt(sensor.modulation), axial_depth_doubt(frames, sensor)}) {
-    if (doubt) return {{*doubt}, {}};
+  for (const auto& warning :
+       {frequency_pair_warning(sensor.modulation), axial_depth_warning(frames, sensor)}) {
+    if (warning) return {{*warning}, {}};
   }
-  const std::optional<BeatSurvey> beat = survey_beat(frames, sensor);
-  const auto mixed_up = beat ? pairing_doubt(*beat) : std::nullopt;
+  const std::optional<ResidualSurvey> residual = survey_residual(frames, sensor);
+  const auto mixed_up = residual ? pairing_warning(*residual) : std::nullopt;
   if (mixed_up) return {{*mixed_up}, {}};
-  return {{}, beat};
+  return {{}, residual};
 }
 
-/// All doubts about a source: of its first frames, of the offset between the frequencies, and of
+/// All warnings about a source: of its first frames, of the offset between the frequencies, and of
 /// gaps in time.
-std::vector<std::string> all_doubts(const FirstFrames& first, const CameraErrors* camera,
-                                    const std::optional<std::string>& gap) {
-  std::vector<std::string> doubts = first.doubts;
-  const auto offset = first.beat ? offset_doubt(*first.beat, camera) : std::nullopt;
-  for (const auto& doubt : {offset, gap}) {
-    if (doubt) doubts.push_back(*doubt);
+std::vector<std::string> all_warnings(const FirstFrames& first, const CameraErrors* camera,
+                                      const std::optional<std::string>& gap) {
+  std::vector<std::string> warnings = first.warnings;
+  const auto offset = first.residual ? offset_warning(*first.residual, camera) : std::nullopt;
+  for (const auto& warning : {offset, gap}) {
+    if (warning) warnings.push_back(*warning);
   }
-  return doubts;
+  return warnings;
 }
 
 /// Where more than three periods passed from one frame to the next.
-std::optional<std::string> gap_doubt(const std::vector<double>& times_s) {
+std::optional<std::string> gap_warning(const std::vector<double>& times_s) {
   std::vector<double> periods_s;
   for (std::size_t i = 1; i < times_s.size(); ++i) periods_s.push_back(times_s[i] - times_s[i - 1]);
   if (periods_s.empty()) return std::nullopt;
@@ -74,12 +74,13 @@ void WatchedSource::judge() {
   first_.clear();
 }
 
-std::vector<std::string> WatchedSource::doubts(const CameraErrors* camera) {
+std::vector<std::string> WatchedSource::warnings(const CameraErrors* camera) {
   if (!judged_) judge();
-  return all_doubts(*judged_, camera, gap_doubt(times_s_));
+  return all_warnings(*judged_, camera, gap_warning(times_s_));
 }
 
-std::vector<std::string> doubts_about(const SequenceReader& recording, const CameraErrors* camera) {
+std::vector<std::string> warnings_about(const SequenceReader& recording,
+                                        const CameraErrors* camera) {
   std::vector<DualFrequencyFrame> first;
   std::vector<double> times_s;
   for (int i = 0; i < *recording.frame_count(); ++i) {
@@ -89,7 +90,7 @@ std::vector<std::string> doubts_about(const SequenceReader& recording, const Cam
     SourcedFrame sourced = recording.read(i);
     if (sourced.frame) first.push_back(*std::move(sourced.frame));
   }
-  return all_doubts(judge_first(first, recording.sensor()), camera, gap_doubt(times_s));
+  return all_warnings(judge_first(first, recording.sensor()), camera, gap_warning(times_s));
 }
 
 }  // namespace tofmap::app

@@ -7,14 +7,14 @@
 #include <vector>
 
 #include <tofmap/acquisition/sequence.hpp>
-#include <tofmap/diagnostics/beat_survey.hpp>
+#include <tofmap/diagnostics/residual_survey.hpp>
 
 namespace tofmap::app {
 
 /// What the first frames of a source show.
 struct FirstFrames {
-  std::vector<std::string> doubts;
-  std::optional<BeatSurvey> beat;  ///< if nothing is wrong with the images themselves
+  std::vector<std::string> warnings;
+  std::optional<ResidualSurvey> residual;  ///< if nothing is wrong with the images themselves
 };
 
 /// Passes the frames of another source on, and looks at them: at the first whether A and B belong
@@ -29,7 +29,7 @@ class WatchedSource final : public FrameSource {
 
   /// What is suspicious about the frames so far. `camera` is what unwrapping found of the camera's
   /// errors, if it is known.
-  std::vector<std::string> doubts(const CameraErrors* camera = nullptr);
+  std::vector<std::string> warnings(const CameraErrors* camera = nullptr);
 
  private:
   void judge();
@@ -41,7 +41,7 @@ class WatchedSource final : public FrameSource {
 };
 
 /// What is suspicious about a recording, in the same way.
-std::vector<std::string> doubts_about(const SequenceReader& recording,
-                                      const CameraErrors* camera = nullptr);
+std::vector<std::string> warnings_about(const SequenceReader& recording,
+                                        const CameraErrors* camera = nullptr);
 
 }  // namespace tofmap::app

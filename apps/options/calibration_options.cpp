@@ -19,15 +19,16 @@ std::vector<OptionField<CalibrationOptions>> CalibrationOptions::fields() {
   using O = CalibrationOptions;
   return {
       {"reference", &O::reference, 0, 0, "",
-       "truth: the recording's true ranges; wall: a flat wall at known distances; beat: how both "
+       "truth: the recording's true ranges; wall: a flat wall at known distances; residual: how "
+       "both "
        "frequencies disagree; auto: wall if wall_file is given, else truth where there is any",
-       "auto | truth | wall | beat"},
+       "auto | truth | wall | residual"},
       {"wall_file", &O::wall_file, 0, 0, "",
        "lines 'frame distance', metres from the camera along the wall's normal"},
       {"harmonics", &O::harmonics, 0, 0, "",
        "orders of the periodic error over a wavelength, 1 to 16, with blanks between; empty: 1 2 3 "
        "4 8 against known ranges, 4 8 "
-       "by the beat, in which motion feigns lower ones"},
+       "by the residual, in which motion feigns lower ones"},
       {"every_frame", &O::every_frame, 1, 100000, "", "every how manieth frame is looked at"},
       {"max_error_m", &O::max_error_m, 0.001, 1, "m",
        "pixels farther off than this, from the middle of all, count as wrong, unless noise "

@@ -26,7 +26,7 @@ Json tracking_json(const TrackingResult& tracking) {
           {"registration", status_name(registration.status)},
           {"iterations", registration.iterations},
           {"overlap", registration.overlap},
-          {"inlier_share", registration.inlier_share},
+          {"inlier_ratio", registration.inlier_ratio},
           {"rmse_m", registration.rmse_m},
           {"residual_scale", registration.residual_scale},
           {"degenerate_directions", registration.degenerate_directions}};

@@ -29,7 +29,7 @@ Picture jump_stages_picture(const DualFrequencyFrame& frame, const SensorModel& 
   JumpEstimator estimator;
   const JumpEstimate& jumps =
       estimator.estimate(frame, PhaseSigma(frame, estimate_phase_noise(frame)),
-                         beat_limits(sensor, options.max_range_m), method, options);
+                         unwrap_limits(sensor, options.max_range_m), method, options);
   const JumpInputs& inputs = jumps.inputs;
   const auto evidence = [&](double trust_discontinuity, double trust_frequency) {
     JumpTerms terms = inputs.terms;
@@ -174,7 +174,7 @@ void write_method_pictures(const std::filesystem::path& folder,
 
 void write_map_pictures(const std::filesystem::path& folder, const MapCloud& map,
                         const Trajectory& trajectory, const PictureOptions& options) {
-  const LevelFrame frame = level_frame(map, trajectory);
+  const GravityAlignedFrame frame = gravity_aligned_frame(map, trajectory);
   write_picture(folder / "map_above.png",
                 map_from_above(map, trajectory, frame, options.map_size_px));
   write_picture(folder / "map_inside.png",

@@ -95,7 +95,8 @@ int drop_out_of_range(RangeImage& image) {
 
 void add_fusion_counts(UnwrappedFrame& frame, int views) {
   frame.report["fused_views"] = views;
-  frame.report["seen_through_pixels"] = count_reason(frame.image, InvalidReason::seen_through);
+  frame.report["free_space_violation_pixels"] =
+      count_reason(frame.image, InvalidReason::free_space_violation);
 }
 
 void finish_frame(UnwrappedFrame& frame) {

@@ -10,8 +10,8 @@
 namespace tofmap::app {
 
 nlohmann::ordered_json consistency_json(const Consistency& consistency) {
-  return {{"beat_misfit_percent", json_number(consistency.beat_misfit_percent)},
-          {"beat_residual_cycles", json_number(consistency.beat_residual_cycles)},
+  return {{"residual_misfit_percent", json_number(consistency.residual_misfit_percent)},
+          {"residual_rms_cycles", json_number(consistency.residual_rms_cycles)},
           {"ambiguous_percent", json_number(consistency.ambiguous_percent)},
           {"contradicted_percent", json_number(consistency.contradicted_percent)},
           {"plane_thickness_m", json_number(consistency.plane_thickness_m)},

@@ -62,7 +62,7 @@ std::string told(const MethodResult& result) {
     text = formatted("the path is %.0f mm off", 1000 * result.scores.trajectory->ate_rmse_m);
   } else if (result.map) {
     text = std::to_string(result.map->trajectory.size()) + " of " +
-           counted(result.map->frames.size(), "frame") + " could be placed";
+           counted(result.map->frames.size(), "frame") + " could be registered";
   } else {
     const std::vector<RangeScore> scores = scores_of(result);
     if (scores.empty()) return counted(result.frames.size(), "frame") + " went through";
@@ -90,11 +90,11 @@ std::vector<std::string> warnings_of(const EvaluationPageSubject& subject) {
   std::vector<std::string> warnings = subject.warnings;
   const MethodResult& with = with_unwrapping(subject);
   if (with.map) {
-    if (const auto doubt = repetition_doubt(with.map->repeated())) warnings.push_back(*doubt);
-    std::ranges::move(doubts_about(with.map->errors), std::back_inserter(warnings));
+    if (const auto warning = repetition_warning(with.map->repeated())) warnings.push_back(*warning);
+    std::ranges::move(warnings_about(with.map->errors), std::back_inserter(warnings));
   }
   if (with.consistency) {
-    std::ranges::move(doubts_about(*with.consistency), std::back_inserter(warnings));
+    std::ranges::move(warnings_about(*with.consistency), std::back_inserter(warnings));
   }
   return warnings;
 }

@@ -104,7 +104,7 @@ constexpr std::array columns{
     Column{"unwrapping", "range_rmse_m", "range", "RMSE m", "%.3f"},
     Column{"unwrapping", "milliseconds_per_frame", "unwrap", "ms/frame", "%.1f"},
     Column{"filters", "removed_percent", "filters", "remove %", "%.1f"},
-    Column{"trajectory", "registered_frames", "frames", "placed", "%.0f"},
+    Column{"trajectory", "registered_frames", "frames", "registered", "%.0f"},
     Column{"trajectory", "ate_rmse_m", "ATE", "RMSE m", "%.4f"},
     Column{"trajectory", "rpe_rmse_m_per_m", "RPE", "m per m", "%.4f"},
     Column{"map", "accuracy_m", "map", "error m", "%.4f"},

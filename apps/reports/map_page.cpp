@@ -84,7 +84,7 @@ std::string sentence_of(const MapPageSubject& subject, const MapScores& scores,
                         double moved_percent) {
   const RoomMap& map = subject.map;
   std::string text = std::to_string(map.trajectory.size()) + " of " +
-                     counted(map.frames.size(), "frame") + " could be placed. ";
+                     counted(map.frames.size(), "frame") + " could be registered. ";
   if (map.interrupted) text += "Then the run was interrupted. ";
   if (subject.options.pipeline.unwrap.method == "none") {
     text += "Nothing was unwrapped. ";
@@ -122,7 +122,7 @@ PageTable summary_table(const RoomMap& map, const MapScores& scores) {
   const auto used = std::ranges::count_if(map.loops, [](const Loop& loop) { return loop.is_used; });
   add("frames", std::to_string(map.frames.size()));
   add("damaged", std::to_string(map.damaged()));
-  add("placed", std::to_string(map.trajectory.size()));
+  add("registered", std::to_string(map.trajectory.size()));
   add("degenerate (a direction that no surface held), %",
       formatted("%.1f", percent(map.degenerate(), static_cast<double>(map.frames.size()))));
   add("keyframes", std::to_string(map.keyframes.size()));
@@ -153,7 +153,7 @@ Plot tracking_plot(const RoomMap& map) {
     const double time_s = frame.timestamp_s - map.frames.front().timestamp_s;
     for (PlotLine* line : {&overlap, &inliers, &kept}) line->x.push_back(time_s);
     overlap.y.push_back(frame.tracking.registration.overlap);
-    inliers.y.push_back(frame.tracking.registration.inlier_share);
+    inliers.y.push_back(frame.tracking.registration.inlier_ratio);
     kept.y.push_back(frame.kept_pixels / std::max(1.0, static_cast<double>(frame.valid_pixels)));
   }
   return {"", "time, s", "share", {overlap, inliers, kept}, 0, 1};

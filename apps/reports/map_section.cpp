@@ -31,20 +31,21 @@ MapColoring color_by_error(const ShownMap& map) {
 
 /// The level frame of the first map. Its box holds the others, too, as far as they are not more
 /// than half as large again: a map that went to pieces does not make the first one small.
-LevelFrame frame_of(const std::vector<ShownMap>& maps) {
-  LevelFrame frame = level_frame(*maps.front().surface, *maps.front().trajectory);
+GravityAlignedFrame frame_of(const std::vector<ShownMap>& maps) {
+  GravityAlignedFrame frame =
+      gravity_aligned_frame(*maps.front().surface, *maps.front().trajectory);
   if (frame.box_m.isEmpty()) return frame;
   const Eigen::Vector3d margin_m(frame.box_m.sizes().x() / 4, frame.box_m.sizes().y() / 4, 0);
   const Eigen::AlignedBox3d limit_m(frame.box_m.min() - margin_m, frame.box_m.max() + margin_m);
   for (const ShownMap& map : maps) {
-    const Eigen::AlignedBox3d box_m = level_box(*map.surface, frame.level_from_map);
+    const Eigen::AlignedBox3d box_m = gravity_aligned_box(*map.surface, frame.aligned_from_map);
     if (limit_m.intersects(box_m)) frame.box_m.extend(box_m.intersection(limit_m));
   }
   return frame;
 }
 
-std::vector<PageFigure> maps_from_above(const std::vector<ShownMap>& maps, const LevelFrame& frame,
-                                        bool by_error) {
+std::vector<PageFigure> maps_from_above(const std::vector<ShownMap>& maps,
+                                        const GravityAlignedFrame& frame, bool by_error) {
   std::vector<PageFigure> figures;
   for (const ShownMap& map : maps) {
     const MapColoring coloring =
@@ -85,11 +86,12 @@ std::vector<NamedPath> paths_of(const std::vector<ShownMap>& maps, const Traject
 }
 
 /// A cloud of the scene, of every so many points of a map.
-SceneCloud scene_cloud(const ShownMap& map, const LevelFrame& frame, bool by_error, int most) {
+SceneCloud scene_cloud(const ShownMap& map, const GravityAlignedFrame& frame, bool by_error,
+                       int most) {
   std::vector<MapColoring> colorings;
   if (by_error) colorings.push_back(color_by_error(map));
   colorings.push_back(color_by_height(*map.surface, frame));
-  const Eigen::Matrix3f level_from_map = frame.level_from_map.cast<float>();
+  const Eigen::Matrix3f aligned_from_map = frame.aligned_from_map.cast<float>();
   const std::size_t step =
       std::max<std::size_t>(1, (map.surface->size() + most - 1) / static_cast<std::size_t>(most));
   SceneCloud cloud;
@@ -97,9 +99,9 @@ SceneCloud scene_cloud(const ShownMap& map, const LevelFrame& frame, bool by_err
   cloud.colorings.resize(colorings.size());
   for (std::size_t i = 0; i < map.surface->size(); i += step) {
     const MapPoint& point = (*map.surface)[i];
-    const Eigen::Vector3f place = level_from_map * point.getVector3fMap();
+    const Eigen::Vector3f place = aligned_from_map * point.getVector3fMap();
     if (!place.allFinite()) continue;
-    const Eigen::Vector3f normal = level_from_map * point.getNormalVector3fMap();
+    const Eigen::Vector3f normal = aligned_from_map * point.getNormalVector3fMap();
     cloud.points_m.push_back(place);
     cloud.normals.push_back(normal.allFinite() ? normal : Eigen::Vector3f::Zero());
     for (std::size_t k = 0; k < colorings.size(); ++k) {
@@ -110,7 +112,7 @@ SceneCloud scene_cloud(const ShownMap& map, const LevelFrame& frame, bool by_err
 }
 
 /// How wide a point is drawn: somewhat wider than points of a room's surface are apart.
-float point_size_m(const LevelFrame& frame, std::size_t points) {
+float point_size_m(const GravityAlignedFrame& frame, std::size_t points) {
   if (frame.box_m.isEmpty()) return 0.05F;
   const Eigen::Vector3d size = frame.box_m.sizes();
   const double surface_m2 = 2 * (size.x() * size.y() + size.y() * size.z() + size.x() * size.z());
@@ -118,8 +120,8 @@ float point_size_m(const LevelFrame& frame, std::size_t points) {
       std::clamp(1.3 * std::sqrt(surface_m2 / std::max<double>(1, points)), 0.02, 0.3));
 }
 
-PageScene scene_of(const std::vector<ShownMap>& maps, const LevelFrame& frame, bool by_error,
-                   const std::vector<NamedPath>& paths, int most_points) {
+PageScene scene_of(const std::vector<ShownMap>& maps, const GravityAlignedFrame& frame,
+                   bool by_error, const std::vector<NamedPath>& paths, int most_points) {
   constexpr int legend_height_px = 220;
   PageScene scene;
   for (const ShownMap& map : maps) {
@@ -135,7 +137,7 @@ PageScene scene_of(const std::vector<ShownMap>& maps, const LevelFrame& frame, b
     ScenePath line{path.name, {}, path.color};
     for (const StampedPose& pose : path.trajectory) {
       line.points_m.push_back(
-          (frame.level_from_map * pose.world_from_camera.translation()).cast<float>());
+          (frame.aligned_from_map * pose.world_from_camera.translation()).cast<float>());
     }
     scene.paths.push_back(std::move(line));
   }
@@ -159,7 +161,7 @@ ShownMap shown_map(const std::string& name, const RoomMap& map, const MapScores&
 void add_maps(ReportPage& page, const std::vector<ShownMap>& maps, const Trajectory& truth,
               const ReportOptions& options) {
   const ShownMap& first = maps.front();
-  const LevelFrame frame = frame_of(maps);
+  const GravityAlignedFrame frame = frame_of(maps);
   const bool by_error = std::ranges::any_of(maps, has_errors);
   const std::vector<NamedPath> paths = paths_of(maps, truth);
   page.add_heading("The map from above");

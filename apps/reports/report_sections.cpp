@@ -68,10 +68,10 @@ void add_consistency(ReportPage& page, const std::vector<std::string>& names,
     table.rows.push_back(std::move(row));
   };
   add_row("points that other frames see through, %", "%.2f", &Consistency::contradicted_percent);
-  add_row("pixels that fit the beat better with another count, %", "%.2f",
-          &Consistency::beat_misfit_percent);
+  add_row("pixels that fit the residual better with another count, %", "%.2f",
+          &Consistency::residual_misfit_percent);
   add_row("residual of phase B after A's range, cycles (RMS)", "%.4f",
-          &Consistency::beat_residual_cycles);
+          &Consistency::residual_rms_cycles);
   add_row("pixels whose count the frequencies cannot tell, %", "%.2f",
           &Consistency::ambiguous_percent);
   add_row("thickness of planes in the map, m (median)", "%.4f", &Consistency::plane_thickness_m);

@@ -85,11 +85,11 @@ void LiveView::show_result(const RoomMap& map) {
 /// not while the user looks at something.
 void LiveView::level(const Snapshot& snapshot) {
   if (window_->was_turned() || snapshot.surface.size() < 2 * levelled_points_) {
-    frame_.box_m = level_box(snapshot.surface, frame_.level_from_map);
+    frame_.box_m = gravity_aligned_box(snapshot.surface, frame_.aligned_from_map);
     return;
   }
   levelled_points_ = snapshot.surface.size();
-  frame_ = level_frame(snapshot.surface, snapshot.trajectory);
+  frame_ = gravity_aligned_frame(snapshot.surface, snapshot.trajectory);
 }
 
 void LiveView::show(const Snapshot& snapshot) {
@@ -97,8 +97,8 @@ void LiveView::show(const Snapshot& snapshot) {
   level(snapshot);
   Drawing drawing = map_drawing(snapshot.surface, snapshot.trajectory, frame_);
   if (!snapshot.trajectory.empty()) {
-    drawing.lines.push_back(
-        camera_outline(Pose(frame_.level_from_map) * snapshot.trajectory.back().world_from_camera));
+    drawing.lines.push_back(camera_outline(Pose(frame_.aligned_from_map) *
+                                           snapshot.trajectory.back().world_from_camera));
   }
   window_->show(drawing);
   window_->set_text(snapshot.status, help);

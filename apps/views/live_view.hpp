@@ -45,7 +45,7 @@ class LiveView {
   void handle_events();
 
   std::optional<Window> window_;  ///< until it is closed
-  LevelFrame frame_;
+  GravityAlignedFrame frame_;
   std::size_t levelled_points_ = 0;  ///< of the map for which the frame was found
   std::atomic<bool> is_open_ = true;
 

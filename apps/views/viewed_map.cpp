@@ -56,7 +56,7 @@ class ViewedMaps final : public Viewed {
   ViewedMaps(const std::vector<MapFile>& files, bool with_cameras)
       : Viewed(color_names::map), with_cameras_(with_cameras) {
     for (const MapFile& file : files) add(file);
-    frame_ = level_frame(shown().map, shown().trajectory);
+    frame_ = gravity_aligned_frame(shown().map, shown().trajectory);
   }
 
   Drawing drawing() const override {
@@ -156,7 +156,7 @@ class ViewedMaps final : public Viewed {
     const std::size_t step = std::max<std::size_t>(1, poses.size() / most);
     for (std::size_t i = 0; i < poses.size(); i += step) {
       drawing.lines.push_back(
-          camera_outline(Pose(frame_.level_from_map) * poses[i].world_from_camera));
+          camera_outline(Pose(frame_.aligned_from_map) * poses[i].world_from_camera));
       drawing.lines.back().width_px = 1;  // there are many
     }
   }
@@ -165,7 +165,7 @@ class ViewedMaps final : public Viewed {
   std::size_t shown_ = 0;
   std::string without_points_;   ///< for the status
   float most_observations_ = 0;  ///< of all
-  LevelFrame frame_;             ///< of the first map, and for all
+  GravityAlignedFrame frame_;    ///< of the first map, and for all
   bool with_path_ = true;
   bool with_cameras_;
 };

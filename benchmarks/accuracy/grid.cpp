@@ -42,8 +42,8 @@ IdealRuns cast_runs(const GridPlace& place, const Motion& motion, const RunPlan&
   SimulatorOptions options = place.options;
   options.b_delay_share = motion.delay_share;
   if (motion.is_fast) {
-    options.max_step_m = 0.1;
-    options.max_turn_deg = 6;
+    options.max_translation_m = 0.1;
+    options.max_rotation_deg = 6;
   }
   Scene scene = frozen::make_scene(place.scene, place.seed);
   scene.min_frames = 2;  // the limits of motion alone say how fast the camera is

@@ -28,7 +28,7 @@ UnwrapFrame unwrapper_of(const Variant& variant, const SensorModel& sensor,
   FrameMeasurer informed(sensor, variant.options);
   informed.look_ahead(first_of(frames));
   return [variant, measurer = std::move(informed),
-          limits = beat_limits(sensor, variant.options.max_range_m),
+          limits = unwrap_limits(sensor, variant.options.max_range_m),
           estimator = JumpEstimator()](const auto& frame) mutable {
     return unwrap_by_jumps(estimator, measurer.measure(frame), limits, *variant.jumps,
                            variant.options);

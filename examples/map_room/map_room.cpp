@@ -19,9 +19,10 @@ int main() {
   const tofmap::RoomMap map = tofmap::map_room(camera, {});
   const auto score = tofmap::score_trajectory(map.trajectory, camera.trajectory());
   if (!score) return 1;
-  std::printf("%d frames placed, path error %.4f m, %zu map points\n", score->matched,
+  std::printf("%d frames registered, path error %.4f m, %zu map points\n", score->matched,
               score->ate_rmse_m, map.surface.points.size());
-  const tofmap::LevelFrame frame = tofmap::level_frame(map.surface, map.trajectory);
+  const tofmap::GravityAlignedFrame frame =
+      tofmap::gravity_aligned_frame(map.surface, map.trajectory);
   const tofmap::Picture picture = tofmap::map_from_above(map.surface, map.trajectory, frame, 200);
   tofmap::write_picture("map.png", picture);
   return score->matched == 3 && score->ate_rmse_m < 0.1 ? 0 : 1;

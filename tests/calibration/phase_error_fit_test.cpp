@@ -105,16 +105,16 @@ TEST(FitToReferences, IsNotMisledByDarkSurfaces) {
   EXPECT_NEAR(share_found(fit_to_references(samples, modulation, orders({4})), a), 1, 0.02);
 }
 
-TEST(FitToBeat, IsNotMisledByDarkSurfaces) {
+TEST(FitToResidual, IsNotMisledByDarkSurfaces) {
   const PhaseError a = in_cycles(modulation.wavelength_a_m());
   const PhaseError b = in_cycles(modulation.wavelength_b_m());
   const auto samples =
       samples_of(a, b, {.ranges_are_known = false, .least_noise_m = 0.005, .most_noise_m = 0.3});
-  EXPECT_NEAR(share_found(fit_to_beat(samples, modulation, orders({4})), a), 1, 0.02);
+  EXPECT_NEAR(share_found(fit_to_residual(samples, modulation, orders({4})), a), 1, 0.02);
   // Nor where all are alike, and only how far they spread tells their noise.
   const auto dark =
       samples_of(a, b, {.ranges_are_known = false, .least_noise_m = 0.05, .most_noise_m = 0.05});
-  EXPECT_NEAR(share_found(fit_to_beat(dark, modulation, orders({4})), a), 1, 0.03)
+  EXPECT_NEAR(share_found(fit_to_residual(dark, modulation, orders({4})), a), 1, 0.03)
       << "their spread has the harmonic in it";
 }
 
@@ -131,25 +131,25 @@ TEST(FitToReferences, NeedsPhasesAllOverTheCycle) {
   EXPECT_THROW(fit_to_references(alike, modulation, orders({4})), InputError);
 }
 
-TEST(FitToBeat, FindsHarmonicsWithoutKnownRanges) {
+TEST(FitToResidual, FindsHarmonicsWithoutKnownRanges) {
   const PhaseError a = in_cycles(modulation.wavelength_a_m());
   const PhaseError b = in_cycles(modulation.wavelength_b_m());
   const PhaseErrorFit found =
-      fit_to_beat(samples_of(a, b, unknown_ranges), modulation, orders({4, 8}));
+      fit_to_residual(samples_of(a, b, unknown_ranges), modulation, orders({4, 8}));
   expect_harmonic_4(found.error_a, a);
   expect_harmonic_4(found.error_b, b);
 }
 
-TEST(FitToBeat, FindsByHowMuchOffsetsDiffer) {
+TEST(FitToResidual, FindsByHowMuchOffsetsDiffer) {
   const PhaseErrorFit found =
-      fit_to_beat(samples_of({.offset_m = 0.007}, {}, unknown_ranges), modulation, orders({4}));
+      fit_to_residual(samples_of({.offset_m = 0.007}, {}, unknown_ranges), modulation, orders({4}));
   EXPECT_NEAR(found.offset_m.value, 0.007, 3e-4);
   EXPECT_LT(found.offset_m.sigma, 2e-3);
   EXPECT_EQ(found.error_a.offset_m, 0) << "motion may have feigned it";
 }
 
-TEST(FitToBeat, FindsNothingWhereThereIsNothing) {
-  const PhaseErrorFit found = fit_to_beat(
+TEST(FitToResidual, FindsNothingWhereThereIsNothing) {
+  const PhaseErrorFit found = fit_to_residual(
       samples_of({}, {}, {.ranges_are_known = false, .count = 20000}), modulation, orders({4, 8}));
   EXPECT_TRUE(found.error_a.harmonics.empty());
 }

@@ -128,7 +128,7 @@ TEST(ResidualStep, IsAWholeWavelengthWhereNoCountChangesTheResidual) {
   const Modulation single{29e6, 31e6};
   EXPECT_EQ(residual_step_m(single.wavelength_a_m(), single.wavelength_b_m(), 1),
             single.wavelength_b_m())
-      << "one count has no rival";
+      << "one count has no runner_up";
 }
 
 TEST(FrequencyResidualOfNothing, IsNaN) {

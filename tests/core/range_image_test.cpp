@@ -50,9 +50,18 @@ TEST(RangeImage, IsInvalidInAllPlanesAtOnce) {
 
 TEST(InvalidReason, HasTheNumbersThatFilesHold) {
   // reason/NNNNNN.png is read by others: numbers and names stay.
-  const std::vector<std::string> names{
-      "none",      "no_return", "low_amplitude", "low_confidence", "jump_edge",    "out_of_range",
-      "ambiguous", "saturated", "isolated_wrap", "outlier",        "seen_through", "unknown"};
+  const std::vector<std::string> names{"none",
+                                       "no_return",
+                                       "low_amplitude",
+                                       "low_confidence",
+                                       "jump_edge",
+                                       "out_of_range",
+                                       "ambiguous",
+                                       "saturated",
+                                       "isolated_wrap",
+                                       "outlier",
+                                       "free_space_violation",
+                                       "unknown"};
   for (std::size_t i = 0; i < names.size(); ++i) {
     EXPECT_EQ(reason_name(static_cast<InvalidReason>(i)), names[i]);
   }

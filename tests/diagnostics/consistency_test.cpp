@@ -56,24 +56,25 @@ const RangeImage* kept(RangeImage image) {
   return &images.emplace_back(std::move(image));
 }
 
-TEST(BeatAgreement, IsPerfectWhereTheCountIsRight) {
+TEST(ResidualAgreement, IsPerfectWhereTheCountIsRight) {
   const DualFrequencyFrame frame = frame_at(7);
-  const BeatAgreement beat = beat_agreement({{&frame, kept(image_of(frame, 1)), {}}}, modulation);
-  EXPECT_EQ(beat.misfit_percent, 0);
-  EXPECT_NEAR(beat.residual_cycles, 0, 1e-5);
+  const ResidualAgreement residual =
+      residual_agreement({{&frame, kept(image_of(frame, 1)), {}}}, modulation);
+  EXPECT_EQ(residual.misfit_percent, 0);
+  EXPECT_NEAR(residual.residual_cycles, 0, 1e-5);
 }
 
-TEST(BeatAgreement, TellsWrongCountsByTheirNeighbourhood) {
+TEST(ResidualAgreement, TellsWrongCountsByTheirNeighbourhood) {
   const DualFrequencyFrame frame = frame_at(7);
   RangeImage image = image_of(frame, 1);
   image.wrap_count.leftCols(10).setConstant(0);  // a quarter of the pixels
-  const BeatAgreement beat = beat_agreement({{&frame, &image, {}}}, modulation);
-  EXPECT_NEAR(beat.misfit_percent, 25, 1e-9);
+  const ResidualAgreement residual = residual_agreement({{&frame, &image, {}}}, modulation);
+  EXPECT_NEAR(residual.misfit_percent, 25, 1e-9);
   // A wrap is off by the difference of the frequencies over that of A: 2 / 29 cycles.
-  EXPECT_NEAR(beat.residual_cycles, 2.0 / 29 * std::sqrt(0.25), 1e-4);
+  EXPECT_NEAR(residual.residual_cycles, 2.0 / 29 * std::sqrt(0.25), 1e-4);
 }
 
-TEST(BeatAgreement, TellsWrongCountsOfAnyPairOfFrequencies) {
+TEST(ResidualAgreement, TellsWrongCountsOfAnyPairOfFrequencies) {
   struct Pair {
     Modulation frequencies;
     int wrong_by;  ///< the count away that is the nearest miss
@@ -81,46 +82,47 @@ TEST(BeatAgreement, TellsWrongCountsOfAnyPairOfFrequencies) {
   for (const Pair& pair : {Pair{{80e6, 100e6}, 1}, Pair{{30e6, 72e6}, 2}, Pair{{29e6, 31e6}, 1}}) {
     const DualFrequencyFrame frame = frame_at(1.2, pair.frequencies);
     const int right = static_cast<int>(1.2 / pair.frequencies.wavelength_a_m());
-    EXPECT_EQ(beat_agreement({{&frame, kept(image_of(frame, right)), {}}}, pair.frequencies)
+    EXPECT_EQ(residual_agreement({{&frame, kept(image_of(frame, right)), {}}}, pair.frequencies)
                   .misfit_percent,
               0);
     const RangeImage wrong = image_of(frame, right + pair.wrong_by);
-    EXPECT_EQ(beat_agreement({{&frame, &wrong, {}}}, pair.frequencies).misfit_percent, 100)
+    EXPECT_EQ(residual_agreement({{&frame, &wrong, {}}}, pair.frequencies).misfit_percent, 100)
         << pair.frequencies.frequency_b_hz;
   }
 }
 
-TEST(BeatAgreement, IsNotKnownOfFrequenciesThatTellNoCounts) {
+TEST(ResidualAgreement, IsNotKnownOfFrequenciesThatTellNoCounts) {
   const Modulation doubled{20e6, 40e6};
   const DualFrequencyFrame frame = frame_at(7, doubled);
-  const BeatAgreement beat = beat_agreement({{&frame, kept(image_of(frame, 0)), {}}}, doubled);
-  EXPECT_TRUE(std::isnan(beat.misfit_percent)) << "every count fits as well";
-  EXPECT_NEAR(beat.residual_cycles, 0, 1e-5);
+  const ResidualAgreement residual =
+      residual_agreement({{&frame, kept(image_of(frame, 0)), {}}}, doubled);
+  EXPECT_TRUE(std::isnan(residual.misfit_percent)) << "every count fits as well";
+  EXPECT_NEAR(residual.residual_cycles, 0, 1e-5);
 }
 
-TEST(BeatAgreement, RefusesImagesOfAnotherSize) {
+TEST(ResidualAgreement, RefusesImagesOfAnotherSize) {
   const DualFrequencyFrame frame = frame_at(7);
   RangeImage image(3, 4);
-  EXPECT_THROW(beat_agreement({{&frame, &image, {}}}, modulation), UsageError);
+  EXPECT_THROW(residual_agreement({{&frame, &image, {}}}, modulation), UsageError);
 }
 
-TEST(BeatAgreement, AveragesNoiseOfSinglePixels) {
+TEST(ResidualAgreement, AveragesNoiseOfSinglePixels) {
   DualFrequencyFrame frame = frame_at(7);
   const RangeImage image = image_of(frame, 1);
   for (Eigen::Index i = 0; i < frame.phase_b.size(); ++i) {
     frame.phase_b.data()[i] += i % 2 == 0 ? 0.05F : -0.05F;  // more than half a wrap is off
   }
-  const BeatAgreement beat = beat_agreement({{&frame, &image, {}}}, modulation);
-  EXPECT_EQ(beat.misfit_percent, 0);
-  EXPECT_NEAR(beat.residual_cycles, 0.05, 1e-5);
+  const ResidualAgreement residual = residual_agreement({{&frame, &image, {}}}, modulation);
+  EXPECT_EQ(residual.misfit_percent, 0);
+  EXPECT_NEAR(residual.residual_cycles, 0.05, 1e-5);
 }
 
-TEST(BeatAgreement, IsNotKnownWithoutPhases) {
+TEST(ResidualAgreement, IsNotKnownWithoutPhases) {
   DualFrequencyFrame frame = frame_at(7);
   const RangeImage image = image_of(frame, 1);
   frame.phase_b.setConstant(NAN);
-  EXPECT_TRUE(std::isnan(beat_agreement({{&frame, &image, {}}}, modulation).misfit_percent));
-  EXPECT_TRUE(std::isnan(beat_agreement({}, modulation).residual_cycles));
+  EXPECT_TRUE(std::isnan(residual_agreement({{&frame, &image, {}}}, modulation).misfit_percent));
+  EXPECT_TRUE(std::isnan(residual_agreement({}, modulation).residual_cycles));
 }
 
 TEST(AmbiguousPercent, CountsPixelsWithAReturn) {
@@ -165,13 +167,13 @@ TEST(ContradictedPercent, CountsWhatOtherFramesSeeThrough) {
 
 TEST(ContradictedPercent, NeedsFramesThatOverlap) {
   const DualFrequencyFrame frame = frame_at(7);
-  const RangedFrame placed{&frame, kept(image_of(frame, 1)), Pose::Identity()};
+  const RangedFrame registered{&frame, kept(image_of(frame, 1)), Pose::Identity()};
   const RangedFrame lost{&frame, kept(image_of(frame, 1)), {}};
-  EXPECT_TRUE(std::isnan(contradicted_percent({placed, lost}, camera)));
-  RangedFrame behind = placed;
+  EXPECT_TRUE(std::isnan(contradicted_percent({registered, lost}, camera)));
+  RangedFrame behind = registered;
   behind.world_from_camera->linear() =
       Eigen::AngleAxisd(3.1, Eigen::Vector3d::UnitY()).toRotationMatrix();
-  EXPECT_TRUE(std::isnan(contradicted_percent({placed, behind}, camera)));
+  EXPECT_TRUE(std::isnan(contradicted_percent({registered, behind}, camera)));
 }
 
 /// Walls of 2 x 2 m at these depths, a point every 4 cm.
@@ -210,19 +212,20 @@ TEST(PlaneThickness, PassesOverEdgesAndBacks) {
   EXPECT_TRUE(std::isnan(plane_thickness_m({})));
 }
 
-TEST(ConsistencyDoubts, BeginBeyondTheirLimits) {
+TEST(ConsistencyWarnings, BeginBeyondTheirLimits) {
   Consistency consistency;
   consistency.contradicted_percent = 3;
-  consistency.beat_misfit_percent = 10;
-  EXPECT_THAT(doubts_about(consistency), IsEmpty());
+  consistency.residual_misfit_percent = 10;
+  EXPECT_THAT(warnings_about(consistency), IsEmpty());
   consistency.contradicted_percent = 3.1;
-  EXPECT_THAT(doubts_about(consistency), ElementsAre(HasSubstr("contradict each other in 3.1 %")));
-  consistency.beat_misfit_percent = 11;
-  EXPECT_THAT(doubts_about(consistency), ElementsAre(HasSubstr("contradict"), HasSubstr("11 %")));
+  EXPECT_THAT(warnings_about(consistency),
+              ElementsAre(HasSubstr("contradict each other in 3.1 %")));
+  consistency.residual_misfit_percent = 11;
+  EXPECT_THAT(warnings_about(consistency), ElementsAre(HasSubstr("contradict"), HasSubstr("11 %")));
 }
 
-TEST(ConsistencyDoubts, AreNoneAboutWhatIsNotKnown) {
-  EXPECT_THAT(doubts_about({NAN, NAN, NAN, NAN, NAN, NAN}), IsEmpty());
+TEST(ConsistencyWarnings, AreNoneAboutWhatIsNotKnown) {
+  EXPECT_THAT(warnings_about({NAN, NAN, NAN, NAN, NAN, NAN}), IsEmpty());
 }
 
 TEST(ConsistencyFrames, AreFewerOfLargeImagesButNotTooFew) {

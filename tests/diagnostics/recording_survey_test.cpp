@@ -52,22 +52,22 @@ class Survey : public testing::Test {
   RecordingSurvey survey(const CameraCalibration& calibration = {}) {
     const SequenceReader reader(folder_.path() / "recording", calibration);
     RecordingSurvey found = survey_recording(reader);
-    doubts_ = doubts_about(found, reader.sensor());
+    warnings_ = warnings_about(found, reader.sensor());
     return found;
   }
 
   test::TemporaryFolder folder_;
-  std::vector<std::string> doubts_;
+  std::vector<std::string> warnings_;
 };
 
 TEST_F(Survey, FindsNothingWrongWithAGoodRecording) {
   record({});
   const RecordingSurvey found = survey();
   EXPECT_EQ(found.frames, frame_count);
-  ASSERT_TRUE(found.beat);
-  EXPECT_NEAR(found.beat->offset_m, 0, 0.01);
+  ASSERT_TRUE(found.residual);
+  EXPECT_NEAR(found.residual->offset_m, 0, 0.01);
   EXPECT_NEAR(found.median_period_s, 1 / options().frame_rate_hz, 1e-3);
-  EXPECT_THAT(doubts_, IsEmpty());
+  EXPECT_THAT(warnings_, IsEmpty());
 }
 
 TEST_F(Survey, DoubtsFrequenciesThatAreSwapped) {
@@ -75,7 +75,7 @@ TEST_F(Survey, DoubtsFrequenciesThatAreSwapped) {
     std::swap(sensor.modulation.frequency_a_hz, sensor.modulation.frequency_b_hz);
   });
   survey();
-  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("mixed up")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("mixed up")));
 }
 
 TEST_F(Survey, DoubtsImagesThatDoNotBelongTogether) {
@@ -86,7 +86,7 @@ TEST_F(Survey, DoubtsImagesThatDoNotBelongTogether) {
     frame.phase_a.bottomRows(half).setConstant(std::nanf(""));
   });
   survey();
-  EXPECT_THAT(doubts_, Contains(HasSubstr("different places")));
+  EXPECT_THAT(warnings_, Contains(HasSubstr("different places")));
 }
 
 TEST_F(Survey, DoubtsDepthAlongTheAxis) {
@@ -96,18 +96,18 @@ TEST_F(Survey, DoubtsDepthAlongTheAxis) {
     frame.phase_b *= cosine;
   });
   survey();
-  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("optical axis")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("optical axis")));
 }
 
 TEST_F(Survey, DoubtsNoWallForItsNoise) {
   SimulatorOptions noisy = options();
   noisy.range_noise_m = 0.02;  // 5 cm at 8 m
   const Simulator simulator(test::facing_wall_scene(8, 0.5), noisy);
-  const auto beat = survey_beat({simulator.simulate(0).frame}, simulator.sensor());
-  ASSERT_TRUE(beat);
-  EXPECT_GT(beat->spread_m, 0.06);
-  EXPECT_FALSE(pairing_doubt(*beat));
-  EXPECT_FALSE(offset_doubt(*beat, nullptr));
+  const auto residual = survey_residual({simulator.simulate(0).frame}, simulator.sensor());
+  ASSERT_TRUE(residual);
+  EXPECT_GT(residual->spread_m, 0.06);
+  EXPECT_FALSE(pairing_warning(*residual));
+  EXPECT_FALSE(offset_warning(*residual, nullptr));
 }
 
 TEST_F(Survey, EstimatesByHowMuchThePhaseOffsetsDiffer) {
@@ -118,30 +118,30 @@ TEST_F(Survey, EstimatesByHowMuchThePhaseOffsetsDiffer) {
     CameraCalibration wrong;
     wrong.error_b.offset_m = offset_m;  // taken out of B, which had none
     const RecordingSurvey found = survey(wrong);
-    EXPECT_NEAR(found.beat->offset_m, offset_m, 0.01);
+    EXPECT_NEAR(found.residual->offset_m, offset_m, 0.01);
     const bool is_small = std::abs(offset_m) < ambiguity_m / 4;
     if (is_small) {
-      EXPECT_THAT(doubts_, IsEmpty()) << offset_m;
+      EXPECT_THAT(warnings_, IsEmpty()) << offset_m;
       EXPECT_THAT(remarks_about(found.errors), Contains(HasSubstr("offset between"))) << offset_m;
     } else {
-      EXPECT_THAT(doubts_, Contains(HasSubstr("phase offset"))) << offset_m;
+      EXPECT_THAT(warnings_, Contains(HasSubstr("phase offset"))) << offset_m;
     }
   }
   // One wrap more of both, and A measures more: only known ranges tell that it is less.
   CameraCalibration wrong;
   wrong.error_b.offset_m = -0.2;
   const RecordingSurvey found = survey(wrong);
-  EXPECT_NEAR(found.beat->offset_m, ambiguity_m - 0.2, 0.01);
-  ASSERT_FALSE(found.beat->other_offsets_m.empty());
-  EXPECT_NEAR(found.beat->other_offsets_m.front(), -0.2, 0.01);
+  EXPECT_NEAR(found.residual->offset_m, ambiguity_m - 0.2, 0.01);
+  ASSERT_FALSE(found.residual->other_offsets_m.empty());
+  EXPECT_NEAR(found.residual->other_offsets_m.front(), -0.2, 0.01);
 }
 
-BeatSurvey beat_of(double offset_m) {
-  BeatSurvey beat;
-  beat.offset_m = offset_m;
-  beat.other_offsets_m = {offset_m + 0.33};
-  beat.ambiguity_m = 0.33;
-  return beat;
+ResidualSurvey residual_of(double offset_m) {
+  ResidualSurvey residual;
+  residual.offset_m = offset_m;
+  residual.other_offsets_m = {offset_m + 0.33};
+  residual.ambiguity_m = 0.33;
+  return residual;
 }
 
 CameraErrors camera_of(double offset_m) {
@@ -151,35 +151,35 @@ CameraErrors camera_of(double offset_m) {
   return camera;
 }
 
-TEST(OffsetDoubt, IsThereWhereUnwrappingDidNotFindTheSameSmallOffset) {
+TEST(OffsetWarning, IsThereWhereUnwrappingDidNotFindTheSameSmallOffset) {
   const CameraErrors small = camera_of(0.05);
-  EXPECT_FALSE(offset_doubt(beat_of(0.06), &small)) << "both agree";
-  EXPECT_THAT(offset_doubt(beat_of(0.06), nullptr).value_or(""), HasSubstr("60 mm more"));
-  EXPECT_FALSE(offset_doubt(beat_of(0.01), nullptr)) << "motion makes as much";
+  EXPECT_FALSE(offset_warning(residual_of(0.06), &small)) << "both agree";
+  EXPECT_THAT(offset_warning(residual_of(0.06), nullptr).value_or(""), HasSubstr("60 mm more"));
+  EXPECT_FALSE(offset_warning(residual_of(0.01), nullptr)) << "motion makes as much";
   const CameraErrors other = camera_of(-0.05);
-  EXPECT_THAT(offset_doubt(beat_of(0.06), &other).value_or(""),
+  EXPECT_THAT(offset_warning(residual_of(0.06), &other).value_or(""),
               AllOf(HasSubstr("50 mm less"), HasSubstr("60 mm more")));
   const CameraErrors large = camera_of(0.15);
-  EXPECT_THAT(offset_doubt(beat_of(0.15), &large).value_or(""), HasSubstr("or 480 mm more"))
+  EXPECT_THAT(offset_warning(residual_of(0.15), &large).value_or(""), HasSubstr("or 480 mm more"))
       << "an alias is nearly as likely";
 }
 
-TEST(FrequencyPairDoubt, IsThereWhereOneWavelengthIsAllThatThePairTells) {
-  EXPECT_FALSE(frequency_pair_doubt({29e6, 31e6}));
-  EXPECT_FALSE(frequency_pair_doubt({80e6, 100e6}));
-  EXPECT_THAT(frequency_pair_doubt({29e6, 29.001e6}).value_or(""),
+TEST(FrequencyPairWarning, IsThereWhereOneWavelengthIsAllThatThePairTells) {
+  EXPECT_FALSE(frequency_pair_warning({29e6, 31e6}));
+  EXPECT_FALSE(frequency_pair_warning({80e6, 100e6}));
+  EXPECT_THAT(frequency_pair_warning({29e6, 29.001e6}).value_or(""),
               HasSubstr("tells no wrap counts apart"));
 }
 
-TEST(ErrorDoubts, BeginAtACentimetreOfPeriodicError) {
+TEST(ErrorWarnings, BeginAtACentimetreOfPeriodicError) {
   ErrorSurvey survey;
   survey.camera.frames = 10;
   survey.camera.periodic_rms_m = 0.009;
-  EXPECT_THAT(doubts_about(survey), IsEmpty());
+  EXPECT_THAT(warnings_about(survey), IsEmpty());
   survey.camera.periodic_rms_m = 0.011;
-  EXPECT_THAT(doubts_about(survey), ElementsAre(HasSubstr("about 11 mm")));
+  EXPECT_THAT(warnings_about(survey), ElementsAre(HasSubstr("about 11 mm")));
   survey.camera.frames = 0;
-  EXPECT_THAT(doubts_about(survey), IsEmpty()) << "nothing is known";
+  EXPECT_THAT(warnings_about(survey), IsEmpty()) << "nothing is known";
 }
 
 TEST_F(Survey, DoubtsImagesOfOneFrequencyThatRepeat) {
@@ -191,7 +191,7 @@ TEST_F(Survey, DoubtsImagesOfOneFrequencyThatRepeat) {
   const RecordingSurvey found = survey();
   EXPECT_EQ(found.repeated, 0);
   EXPECT_EQ(found.repeated_single, found.frames - 1);
-  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("at one frequency, and new ones at the other")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("at one frequency, and new ones at the other")));
 }
 
 TEST_F(Survey, NamesImagesOfOnePhase) {
@@ -199,7 +199,7 @@ TEST_F(Survey, NamesImagesOfOnePhase) {
     if (frame.index == 2) frame.phase_b.setConstant(0.25F);
   });
   EXPECT_THAT(survey().constant_images, ElementsAre(HasSubstr("phase_b/000002.png")));
-  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("phase_b/000002.png")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("phase_b/000002.png")));
 }
 
 TEST_F(Survey, CountsFramesThatRepeat) {
@@ -211,8 +211,8 @@ TEST_F(Survey, CountsFramesThatRepeat) {
     frame.phase_b = frame.index == 1 ? first.phase_b : frame.phase_b;
   });
   EXPECT_EQ(survey().repeated, 1);
-  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("1 frame repeats"),
-                                   HasSubstr("1 frame has the phases of the one before at one")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("1 frame repeats"),
+                                     HasSubstr("1 frame has the phases of the one before at one")));
 }
 
 TEST_F(Survey, CountsFramesWithoutAnyReturn) {
@@ -220,25 +220,25 @@ TEST_F(Survey, CountsFramesWithoutAnyReturn) {
     if (frame.index == 3) frame.phase_a.setConstant(NAN);
   });
   EXPECT_EQ(survey().without_return, 1);
-  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("camera covered")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("camera covered")));
 }
 
 TEST_F(Survey, TellsHowMuchIsSaturated) {
   record([](DualFrequencyFrame& frame) { frame.amplitude_a.topRows(18).setConstant(65535); });
   EXPECT_NEAR(survey().saturated_share, 0.25, 1e-9);
-  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("25 % of the pixels are saturated")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("25 % of the pixels are saturated")));
 }
 
 TEST_F(Survey, DoubtsTimesInMilliseconds) {
   record([](DualFrequencyFrame& frame) { frame.timestamp_s *= 1000; });
   survey();
-  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("seconds?")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("seconds?")));
 }
 
 TEST_F(Survey, NamesAGapInTime) {
   record([](DualFrequencyFrame& frame) { frame.timestamp_s += frame.index > 3 ? 2 : 0; });
   EXPECT_EQ(survey().frame_before_gap, 3);
-  EXPECT_THAT(doubts_, ElementsAre(HasSubstr("after frame 3")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("after frame 3")));
 }
 
 }  // namespace

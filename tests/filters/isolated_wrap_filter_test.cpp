@@ -66,7 +66,7 @@ TEST(IsolatedWrapFilter, CorrectsAtTheBorderOfTheImage) {
 TEST(IsolatedWrapFilter, LeavesAnObjectThatIsAWavelengthBefore) {
   Wall wall;
   wall.miscount(5, 7, 3, 4, -1);
-  // It does stand there: the beat agrees.
+  // It does stand there: the residual agrees.
   const RangeImage before = wall.image;
   wall.frame = frame_of(wall.image.range_m);
   EXPECT_TRUE((wall.mended().wrap_count == before.wrap_count).all());
@@ -76,7 +76,7 @@ TEST(IsolatedWrapFilter, LeavesAnObjectThatIsAWavelengthBefore) {
 TEST(IsolatedWrapFilter, DropsARegionThatFitsNothing) {
   Wall wall;
   wall.miscount(5, 7, 3, 4, 2);
-  wall.frame = frame_of(wall.image.range_m);  // the beat says two more,
+  wall.frame = frame_of(wall.image.range_m);  // the residual says two more,
   wall.miscount(5, 7, 3, 4, -1);              // the image one, and the surroundings none
   const RangeImage out = wall.mended();
   EXPECT_EQ(out.count_valid(), 20 * 16 - 12);

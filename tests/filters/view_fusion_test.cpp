@@ -97,7 +97,7 @@ TEST_F(ViewFusion, LessensNoise) {
 TEST_F(ViewFusion, DropsWhatOtherViewsSeeThrough) {
   images_[middle].range_m(36, 44) -= 1;
   const RangeImage out = fused();
-  EXPECT_EQ(out.reason(36, 44), static_cast<int>(InvalidReason::seen_through));
+  EXPECT_EQ(out.reason(36, 44), static_cast<int>(InvalidReason::free_space_violation));
   EXPECT_EQ(out.count_valid(), 72 * 88 - 1);
 }
 

@@ -130,7 +130,7 @@ TEST_F(BadRecording, WithoutAnyReturnIsUnwrappedButNotMapped) {
     write_png(phase_a(i), ImageU16(ImageU16::Constant(36, 44, no_return)));
   EXPECT_EQ(run("unwrap").status, 0);
   expect_refusal_of("map", "is the camera covered");
-  EXPECT_THAT(run("info").out, HasSubstr("doubtful: no pixel has a return"));
+  EXPECT_THAT(run("info").out, HasSubstr("warning: no pixel has a return"));
 
   const Finished evaluated = run("evaluate");
   ASSERT_EQ(evaluated.status, 0) << evaluated.err;
@@ -158,7 +158,7 @@ TEST_F(BadRecording, OfIdenticalFramesCountsAsOneFrame) {
   }
   const Finished finished = run("map");
   ASSERT_EQ(finished.status, 0) << finished.err;
-  EXPECT_THAT(finished.out, HasSubstr("doubtful: 3 frames repeat the one before"));
+  EXPECT_THAT(finished.out, HasSubstr("warning: 3 frames repeat the one before"));
   EXPECT_EQ(read_trajectory(out_ / "trajectory.txt").size(), 1U);
 }
 
@@ -169,7 +169,7 @@ TEST_F(BadRecording, ThatStandsStillForAWhileIsDoubted) {
   }
   const Finished finished = run("map");
   EXPECT_EQ(finished.status, 0) << finished.err;
-  EXPECT_THAT(finished.out, HasSubstr("doubtful: 1 frame repeats the one before"));
+  EXPECT_THAT(finished.out, HasSubstr("warning: 1 frame repeats the one before"));
   EXPECT_THAT(read_text(out_ / "report.html"), HasSubstr("1 frame repeats the one before"));
   const auto report = read_json(out_ / "report.json");
   EXPECT_EQ(report["summary"]["repeated"], 1);
@@ -180,7 +180,7 @@ TEST_F(BadRecording, ThatStandsStillForAWhileIsDoubted) {
 TEST_F(BadRecording, WhoseFrequenciesCannotTellTheSceneApartIsDoubted) {
   edit("sequence.yaml", "version: 1", "version: 1\nmax_range_m: 15.5");
   edit("sequence.yaml", "frequency_a_hz: 2.9e+07", "frequency_a_hz: 3.1e+08");
-  EXPECT_THAT(run("info").out, HasSubstr("doubtful: the scene reaches farther"));
+  EXPECT_THAT(run("info").out, HasSubstr("warning: the scene reaches farther"));
 }
 
 TEST_F(BadRecording, WithNothingSeenOftenEnoughSaysWhichOptionsToChange) {

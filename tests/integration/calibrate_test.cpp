@@ -28,7 +28,7 @@ class Calibrate : public testing::Test {
   Calibrate() {
     const fs::path perfect = folder_.path() / "perfect";
     EXPECT_EQ(run_program({"simulate", "room", "--frames", "12", "--out", perfect.string(), "--set",
-                           "simulator.max_step_m=0.3", "simulator.max_turn_deg=20",
+                           "simulator.max_translation_m=0.3", "simulator.max_rotation_deg=20",
                            "simulator.range_noise_m=0.005"})
                   .status,
               0);
@@ -92,7 +92,7 @@ TEST_F(Calibrate, FindsThePeriodicErrorWithoutKnownRanges) {
 TEST_F(Calibrate, MakesRangesBetter) {
   const double before_m = median_error_m({});
   EXPECT_GT(before_m, 0.5 * swing_m);
-  EXPECT_LT(median_error_m(calibrate("beat")), 0.5 * before_m);
+  EXPECT_LT(median_error_m(calibrate("residual")), 0.5 * before_m);
 }
 
 TEST_F(Calibrate, IsWrittenIntoTheOptionsOfWhatUsesIt) {
@@ -167,7 +167,7 @@ TEST_F(Calibrate, RefusesRecordingsThatAreMostlyDamaged) {
     return run_program(
         {"calibrate", sequence_.string(), "--out", (folder_.path() / "camera.yaml").string()});
   };
-  EXPECT_THAT(run_after_damage_to(1).out, testing::HasSubstr("doubtful: 1 of"));
+  EXPECT_THAT(run_after_damage_to(1).out, testing::HasSubstr("warning: 1 of"));
   const Finished finished = run_after_damage_to(1000);
   EXPECT_EQ(finished.status, 3);
   EXPECT_THAT(finished.err, testing::HasSubstr("damaged"));

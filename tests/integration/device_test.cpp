@@ -266,7 +266,7 @@ TEST_F(Device, WhoseImagesDoNotBelongTogetherIsDoubted) {
   // Each image is of one frequency: its upper half is no A to the B of its lower half.
   const Finished finished = record(uri("layout=alternating"), {"--set", "device.layout=stacked"});
   EXPECT_EQ(finished.status, 0) << finished.err;
-  EXPECT_THAT(finished.out, HasSubstr("doubtful: "));
+  EXPECT_THAT(finished.out, HasSubstr("warning: "));
   EXPECT_THAT(finished.out, HasSubstr("device.layout"));
   EXPECT_THAT(read_text(out_ / "report.json"), HasSubstr("device.layout"));
 }

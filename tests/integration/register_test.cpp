@@ -52,8 +52,8 @@ class Register : public testing::Test {
 TEST_F(Register, PlacesWhatBelongsTogetherAndNamesWhatDoesNot) {
   const Finished finished = run({"a.ply", "elsewhere.ply", "b.ply"});
   EXPECT_EQ(finished.status, 0) << finished.err;
-  EXPECT_THAT(finished.out, HasSubstr("2 of 3 clouds placed"));
-  EXPECT_THAT(finished.err, HasSubstr("elsewhere.ply: not placed: fits no other cloud"));
+  EXPECT_THAT(finished.out, HasSubstr("2 of 3 clouds registered"));
+  EXPECT_THAT(finished.err, HasSubstr("elsewhere.ply: not registered: fits no other cloud"));
   EXPECT_EQ(names_in(out_), (std::vector<std::string>{".tofmap-files", "merged.ply", "options.yaml",
                                                       "report.json", "transforms.json"}));
   const nlohmann::json clouds = read_json(out_ / "transforms.json")["clouds"];
@@ -97,7 +97,7 @@ TEST_F(Register, LeavesOutAFileThatIsNoCloudAndPlacesTheOthers) {
   const Finished finished = run({"a.ply", "text.ply", "b.ply"});
   EXPECT_EQ(finished.status, 0) << finished.err;
   EXPECT_THAT(finished.err, HasSubstr("left out: " + path("text.ply").string()));
-  EXPECT_THAT(finished.out, HasSubstr("2 of 3 clouds placed"));
+  EXPECT_THAT(finished.out, HasSubstr("2 of 3 clouds registered"));
   const nlohmann::json clouds = read_json(out_ / "transforms.json")["clouds"];
   ASSERT_EQ(clouds.size(), 3U);
   EXPECT_EQ(clouds[1]["path"], path("text.ply").string());

@@ -33,7 +33,7 @@ TEST_F(ReportPage, OfAMapTellsVerdictFiguresAndOptions) {
   ASSERT_EQ(run("map").status, 0);
   EXPECT_THAT(
       page(),
-      AllOf(HasSubstr("4 of 4 frames could be placed"),
+      AllOf(HasSubstr("4 of 4 frames could be registered"),
             HasSubstr("with unwrapping (joint), coloured by height"),
             HasSubstr("the same path, ranges as measured (of 4 frames), coloured by height"),
             HasSubstr("ATE, m (RMSE)"), HasSubstr("map error, m"),
@@ -48,17 +48,18 @@ TEST_F(ReportPage, OfWrappedRangesIsNotToBeTrusted) {
                             Not(HasSubstr("the same path, ranges as measured"))));
   EXPECT_EQ(frames_in(page()), 2);
   const auto report = read_json(out_ / "report.json");
-  EXPECT_GT(report["consistency"]["beat_misfit_percent"], 10);
-  EXPECT_THAT(report["doubts"].dump(), HasSubstr("better with another wrap count"));
+  EXPECT_GT(report["consistency"]["residual_misfit_percent"], 10);
+  EXPECT_THAT(report["warnings"].dump(), HasSubstr("better with another wrap count"));
 }
 
 TEST_F(ReportPage, OfARightMapDoubtsNothing) {
   const Finished finished = run("map");
   ASSERT_EQ(finished.status, 0);
-  EXPECT_THAT(finished.out, Not(HasSubstr("doubtful")));
+  EXPECT_THAT(finished.out, Not(HasSubstr("warning")));
   const auto report = read_json(out_ / "report.json");
-  EXPECT_TRUE(report["doubts"].empty()) << report["doubts"];
-  for (const char* measure : {"contradicted_percent", "beat_misfit_percent", "plane_thickness_m"}) {
+  EXPECT_TRUE(report["warnings"].empty()) << report["warnings"];
+  for (const char* measure :
+       {"contradicted_percent", "residual_misfit_percent", "plane_thickness_m"}) {
     EXPECT_TRUE(report["consistency"].contains(measure)) << measure;
   }
   EXPECT_THAT(page(), HasSubstr("Does it agree with itself?"));
@@ -80,7 +81,7 @@ TEST_F(ReportPage, OfADeviceShowsItsFrames) {
   const Finished finished = run_program({"map", "tofmap://" + sequence_.string() + "?speed=-1",
                                          "--out", out_.string(), "--set", "report.frames=3"});
   ASSERT_EQ(finished.status, 0) << finished.err;
-  EXPECT_THAT(page(), AllOf(HasSubstr("of 4 frames could be placed"),
+  EXPECT_THAT(page(), AllOf(HasSubstr("of 4 frames could be registered"),
                             HasSubstr("the same path, ranges as measured")));
   EXPECT_EQ(frames_in(page()), 3);
 }

@@ -165,7 +165,7 @@ class Turning : public testing::Test {
     for (int i = 0; i < end; ++i) {
       const auto cloud = std::make_shared<const SurfaceCloud>(
           test::box_cloud(wide_camera(), box_min_, box_max_, camera_at(i)));
-      ASSERT_TRUE(mapper.add_frame({i, i / 15.0, cloud}).tracking.placed()) << i;
+      ASSERT_TRUE(mapper.add_frame({i, i / 15.0, cloud}).tracking.registered()) << i;
     }
     mapper.finish();
   }

@@ -13,8 +13,8 @@ namespace {
 
 using Covariance = MotionUncertainty::Covariance;
 
-constexpr double turn_sigma = 0.02;
-constexpr double step_sigma = 0.03;
+constexpr double rotation_sigma = 0.02;
+constexpr double translation_sigma = 0.03;
 
 /// Information of a pose that is known within a tenth of a millimetre and of a milliradian.
 const Covariance precise = 1e8 * Covariance::Identity();
@@ -25,48 +25,48 @@ MotionUncertainty after_blind(int frames, MotionUncertainty uncertainty) {
 }
 
 TEST(MotionUncertainty, IsThatOfTheChangeAfterAKnownPose) {
-  MotionUncertainty uncertainty(turn_sigma, step_sigma);
+  MotionUncertainty uncertainty(rotation_sigma, translation_sigma);
   EXPECT_TRUE(uncertainty.of_pose().isZero(0));
   // As much unknown motion in each of the frames that were missed.
   uncertainty.learn(3, Covariance::Zero());
-  EXPECT_NEAR(uncertainty.of_pose()(0, 0), 9 * turn_sigma * turn_sigma, 1e-12);
-  EXPECT_NEAR(uncertainty.of_pose()(5, 5), 9 * step_sigma * step_sigma, 1e-12);
+  EXPECT_NEAR(uncertainty.of_pose()(0, 0), 9 * rotation_sigma * rotation_sigma, 1e-12);
+  EXPECT_NEAR(uncertainty.of_pose()(5, 5), 9 * translation_sigma * translation_sigma, 1e-12);
   EXPECT_TRUE(uncertainty.of_pose().isDiagonal(1e-15));
 }
 
 TEST(MotionUncertainty, GrowsAsIfChangesOfVelocityAddUp) {
   // After n frames: the position is off by the sum of k a_k, its variance the sum of k².
-  const MotionUncertainty uncertainty = after_blind(10, {turn_sigma, step_sigma});
-  EXPECT_NEAR(uncertainty.of_pose()(3, 3), 385 * step_sigma * step_sigma, 1e-9);
+  const MotionUncertainty uncertainty = after_blind(10, {rotation_sigma, translation_sigma});
+  EXPECT_NEAR(uncertainty.of_pose()(3, 3), 385 * translation_sigma * translation_sigma, 1e-9);
 }
 
 TEST(MotionUncertainty, IsThatOfBothWhereSurfacesTellAsMuchAsMotion) {
-  MotionUncertainty uncertainty(turn_sigma, step_sigma);
+  MotionUncertainty uncertainty(rotation_sigma, translation_sigma);
   Covariance information = Covariance::Zero();
-  information(3, 3) = 1 / (step_sigma * step_sigma);
+  information(3, 3) = 1 / (translation_sigma * translation_sigma);
   uncertainty.learn(1, information);
-  EXPECT_NEAR(uncertainty.of_pose()(3, 3), step_sigma * step_sigma / 2, 1e-12);
+  EXPECT_NEAR(uncertainty.of_pose()(3, 3), translation_sigma * translation_sigma / 2, 1e-12);
 }
 
 TEST(MotionUncertainty, GrowsOnlyWhereNothingIsLearnt) {
-  MotionUncertainty uncertainty(turn_sigma, step_sigma);
+  MotionUncertainty uncertainty(rotation_sigma, translation_sigma);
   Covariance information = Covariance::Zero();
   information(4, 4) = 1e6;
   for (int i = 0; i < 10; ++i) uncertainty.learn(1, information);
   EXPECT_LT(std::sqrt(uncertainty.of_pose()(4, 4)), 0.001);
-  EXPECT_GT(std::sqrt(uncertainty.of_pose()(3, 3)), 10 * step_sigma);
+  EXPECT_GT(std::sqrt(uncertainty.of_pose()(3, 3)), 10 * translation_sigma);
 }
 
 TEST(MotionUncertainty, OfVelocityEndsWithASecondKnownPose) {
-  MotionUncertainty uncertainty = after_blind(10, {turn_sigma, step_sigma});
+  MotionUncertainty uncertainty = after_blind(10, {rotation_sigma, translation_sigma});
   uncertainty.learn(1, precise);
   uncertainty.learn(1, precise);
   uncertainty.learn(1, Covariance::Zero());
-  EXPECT_LT(std::sqrt(uncertainty.of_pose()(3, 3)), 1.1 * step_sigma);
+  EXPECT_LT(std::sqrt(uncertainty.of_pose()(3, 3)), 1.1 * translation_sigma);
 }
 
 TEST(MotionUncertainty, TurnsWithTheWorld) {
-  MotionUncertainty uncertainty(turn_sigma, step_sigma);
+  MotionUncertainty uncertainty(rotation_sigma, translation_sigma);
   Covariance information = Covariance::Zero();
   information(3, 3) = 1e6;
   uncertainty.learn(1, information);

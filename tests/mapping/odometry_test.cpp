@@ -39,7 +39,7 @@ class FollowedCamera {
     std::vector<const Keyframe*> around;
     for (const Keyframe& keyframe : keyframes_) around.push_back(&keyframe);
     const TrackingResult result = odometry_.track(frame / 15.0, *cloud, around);
-    if (result.placed() && is_far(result.world_from_camera)) {
+    if (result.registered() && is_far(result.world_from_camera)) {
       const int id = static_cast<int>(keyframes_.size());
       keyframes_.push_back({id, frame, frame / 15.0, result.world_from_camera, cloud});
     }
@@ -75,7 +75,7 @@ TEST(Odometry, FollowsASmoothMotion) {
   FollowedCamera camera;
   for (int frame = 0; frame < 30; ++frame) {
     const TrackingResult result = camera.track(frame, view(frame));
-    ASSERT_TRUE(result.placed()) << "frame " << frame;
+    ASSERT_TRUE(result.registered()) << "frame " << frame;
     EXPECT_LT(error_m(result, frame), 2e-3) << "frame " << frame;
   }
   // 2.2 cm and 0.6° a frame: a new keyframe every 0.25 m.
@@ -90,7 +90,7 @@ TEST(Odometry, FollowsWithPclsMethods) {
     FollowedCamera camera(options);
     for (int frame = 0; frame < 5; ++frame) {
       const TrackingResult result = camera.track(frame, view(frame));
-      ASSERT_TRUE(result.placed()) << method << ", frame " << frame;
+      ASSERT_TRUE(result.registered()) << method << ", frame " << frame;
       EXPECT_LT(error_m(result, frame), most_m) << method << ", frame " << frame;
     }
   }
@@ -102,7 +102,7 @@ TEST(Odometry, SkipsAFrameWithoutSurfaceAndGoesOn) {
   const auto empty = std::make_shared<const SurfaceCloud>();
   EXPECT_EQ(camera.track(6, empty).status, TrackingStatus::no_surface);
   const TrackingResult next = camera.track(7, view(7));
-  ASSERT_TRUE(next.placed());
+  ASSERT_TRUE(next.registered());
   EXPECT_LT(error_m(next, 7), 2e-3);
 }
 
@@ -111,7 +111,7 @@ TEST(Odometry, StandsStillOnIdenticalFrames) {
   const auto cloud = view(0);
   for (int frame = 0; frame < 5; ++frame) {
     const TrackingResult result = camera.track(frame, cloud);
-    ASSERT_TRUE(result.placed());
+    ASSERT_TRUE(result.registered());
     EXPECT_LT(result.world_from_camera.translation().norm(), 1e-6);
   }
   EXPECT_EQ(camera.keyframe_count(), 1U);
@@ -123,7 +123,7 @@ TEST(Odometry, MovesWithItsKeyframes) {
   const Pose elsewhere = test::moved_by({0, 0.3, 0}, {1, 2, 3});
   camera.move(elsewhere);
   const TrackingResult next = camera.track(15, view(15));
-  ASSERT_TRUE(next.placed());
+  ASSERT_TRUE(next.registered());
   EXPECT_LT(error_m(next, 15, elsewhere), 2e-3);
 }
 
@@ -133,7 +133,7 @@ TEST(Odometry, DoesNotBelieveALeap) {
   // Another place altogether: a box of another size.
   const auto elsewhere = std::make_shared<const SurfaceCloud>(
       test::box_cloud(test::small_camera(), {-0.4, -0.5, -1}, {0.5, 0.4, 1.2}, Pose::Identity()));
-  EXPECT_FALSE(camera.track(6, elsewhere).placed());
+  EXPECT_FALSE(camera.track(6, elsewhere).registered());
 }
 
 }  // namespace

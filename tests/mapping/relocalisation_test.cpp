@@ -23,11 +23,12 @@ class LostCamera : public testing::Test {
   /// cannot find places long ago by itself.
   LostCamera() : mapper_(room_.camera(), {.keyframes_around = 2}, {}, {}, {}) {
     for (int i = 0; i < frames; ++i) {
-      EXPECT_TRUE(mapper_.add_frame({i, i / 15.0, room_.view(first + i)}).tracking.placed()) << i;
+      EXPECT_TRUE(mapper_.add_frame({i, i / 15.0, room_.view(first + i)}).tracking.registered())
+          << i;
     }
     const auto nothing = std::make_shared<const SurfaceCloud>();
     for (int i = frames; i < frames + 5; ++i) {
-      EXPECT_FALSE(mapper_.add_frame({i, i / 15.0, nothing}).tracking.placed());
+      EXPECT_FALSE(mapper_.add_frame({i, i / 15.0, nothing}).tracking.registered());
     }
   }
 
@@ -50,12 +51,12 @@ TEST_F(LostCamera, IsFoundWhereItWasLongBefore) {
     const TrackingResult next = track(frames + 5 + i, room_.view(there + i));
     ASSERT_EQ(next.status, TrackingStatus::tracked) << i;
   }
-  EXPECT_EQ(mapper_.trajectory().size(), frames + 10U) << "frames in between are not placed";
+  EXPECT_EQ(mapper_.trajectory().size(), frames + 10U) << "frames in between are not registered";
 }
 
 TEST_F(LostCamera, IsNotFoundInAnotherBuilding) {
   const Scenery flat("flat");
-  for (int i = 5; i < 10; ++i) EXPECT_FALSE(track(frames + i, flat.view(50 + i)).placed());
+  for (int i = 5; i < 10; ++i) EXPECT_FALSE(track(frames + i, flat.view(50 + i)).registered());
 }
 
 TEST(CameraAfterAGap, IsFollowedOn) {
@@ -65,7 +66,7 @@ TEST(CameraAfterAGap, IsFollowedOn) {
     RoomMapper mapper(room.camera(), {}, {}, {}, {});
     for (int i = 0; i < 60; ++i) {
       if (i >= 30 && i < 30 + gap) continue;
-      EXPECT_TRUE(mapper.add_frame({i, i / 15.0, room.view(first + i)}).tracking.placed()) << i;
+      EXPECT_TRUE(mapper.add_frame({i, i / 15.0, room.view(first + i)}).tracking.registered()) << i;
     }
     const Pose truth = room.pose(first).inverse() * room.pose(first + 59);
     const Pose found = mapper.trajectory().back().world_from_camera;

@@ -35,14 +35,14 @@ Scans scans_of(const std::string& scene_name, std::vector<double> shares) {
   return scans;
 }
 
-/// The largest distance of a placed cloud's point, three metres before its sensor, from where it
-/// should be.
+/// The largest distance of a registered cloud's point, three metres before its sensor, from where
+/// it should be.
 double largest_error_m(const CloudRegistration& found, const std::vector<Pose>& poses) {
   const auto first = static_cast<std::size_t>(
-      std::ranges::find_if(found.clouds, &PlacedCloud::is_placed) - found.clouds.begin());
+      std::ranges::find_if(found.clouds, &RegisteredCloud::is_registered) - found.clouds.begin());
   double largest = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (!found.clouds[i].is_placed) continue;
+    if (!found.clouds[i].is_registered) continue;
     const Eigen::Vector3d ahead(0, 0, 3);
     const Eigen::Vector3d truth = poses[first].inverse() * poses[i] * ahead;
     largest = std::max(largest, (found.clouds[i].common_from_cloud * ahead - truth).norm());
@@ -53,7 +53,7 @@ double largest_error_m(const CloudRegistration& found, const std::vector<Pose>& 
 TEST(RegisterClouds, PlacesScansOfOneRoomInAnyOrder) {
   const Scans scans = scans_of("room", {0.2, 0, 0.3, 0.1});
   const CloudRegistration found = register_clouds(scans.clouds, scans.names, {});
-  EXPECT_EQ(found.placed(), 4);
+  EXPECT_EQ(found.registered(), 4);
   EXPECT_LT(largest_error_m(found, scans.poses), 0.02);
   EXPECT_TRUE(found.clouds[0].common_from_cloud.isApprox(Pose::Identity()));
   EXPECT_FALSE(found.clouds[0].tied_to.empty());
@@ -66,8 +66,8 @@ TEST(RegisterClouds, NamesACloudOfAnotherPlaceAndLeavesItOut) {
   scans.clouds.push_back(other.clouds[0]);
   scans.names.push_back(other.names[0]);
   const CloudRegistration found = register_clouds(scans.clouds, scans.names, {});
-  EXPECT_EQ(found.placed(), 2);
-  EXPECT_FALSE(found.clouds[2].is_placed);
+  EXPECT_EQ(found.registered(), 2);
+  EXPECT_FALSE(found.clouds[2].is_registered);
   EXPECT_NE(found.clouds[2].remark.find("fits no other cloud"), std::string::npos);
 }
 
@@ -76,11 +76,11 @@ TEST(RegisterClouds, NoticesMillimetresAndConvertsThemOnWish) {
   scans.clouds[0] = test::scaled(scans.clouds[0], 1000);
   CloudRegistrationOptions options;
   const CloudRegistration refused = register_clouds(scans.clouds, scans.names, options);
-  EXPECT_EQ(refused.placed(), 0);
+  EXPECT_EQ(refused.registered(), 0);
   EXPECT_NE(refused.clouds[0].remark.find("millimetres"), std::string::npos);
   options.convert_units = true;
   const CloudRegistration found = register_clouds(scans.clouds, scans.names, options);
-  EXPECT_EQ(found.placed(), 2);
+  EXPECT_EQ(found.registered(), 2);
   EXPECT_EQ(found.clouds[0].unit_m, 0.001);
   EXPECT_LT(largest_error_m(found, scans.poses), 0.02);
 }
@@ -94,7 +94,7 @@ TEST(RegisterClouds, DoesNotBelieveAPoseThatAWallLeavesOpen) {
     }
   }
   const std::vector<std::string> names{"a", "b"};
-  EXPECT_EQ(register_clouds(walls, names, {}).placed(), 0);
+  EXPECT_EQ(register_clouds(walls, names, {}).registered(), 0);
 }
 
 TEST(RegisterClouds, GivesTheSameBitsForAnyNumberOfThreads) {
@@ -117,7 +117,7 @@ TEST(RegisterClouds, EndsWhenAskedTo) {
   const auto stop = [](int, int) { return false; };
   const CloudRegistration found = register_clouds(scans.clouds, scans.names, {}, stop);
   EXPECT_TRUE(found.interrupted);
-  EXPECT_EQ(found.placed(), 0);
+  EXPECT_EQ(found.registered(), 0);
 }
 
 TEST(RegisterClouds, WantsTwoClouds) {
@@ -131,7 +131,7 @@ TEST(RegisterClouds, NamesACloudWithTooFewPoints) {
   clouds.push_back({{{1, 2, 3}, {1, 2, 4}}, {}});
   const std::vector<std::string> names{"room", "crumbs"};
   const CloudRegistration found = register_clouds(clouds, names, {});
-  EXPECT_EQ(found.placed(), 0);
+  EXPECT_EQ(found.registered(), 0);
   EXPECT_NE(found.clouds[1].remark.find("too few points"), std::string::npos);
 }
 

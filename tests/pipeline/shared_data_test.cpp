@@ -90,7 +90,7 @@ TEST(SharedClouds, OutdoorScansComeToTheReferenceTransform) {
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
   const std::vector<std::string> names{"target.ply", "source.ply"};
   const CloudRegistration found = register_clouds(clouds_in(folder, names), names, {});
-  ASSERT_EQ(found.placed(), 2);
+  ASSERT_EQ(found.registered(), 2);
   std::ifstream file(folder / "T_target_source.txt");
   Pose reference;
   for (int i = 0; i < 16; ++i) file >> reference.matrix()(i / 4, i % 4);
@@ -105,7 +105,7 @@ TEST(SharedClouds, CapturesOfADepthCameraAreAllPlaced) {
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
   const std::vector<std::string> names{"capture0004.pcd", "capture0001.pcd", "capture0003.pcd"};
   const CloudRegistration found = register_clouds(clouds_in(folder, names), names, {});
-  EXPECT_EQ(found.placed(), 3);
+  EXPECT_EQ(found.registered(), 3);
   for (const CloudPair& pair : found.pairs) EXPECT_EQ(pair.verdict, PairVerdict::registered);
 }
 

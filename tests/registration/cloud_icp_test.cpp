@@ -66,10 +66,10 @@ TEST_F(TwoScans, AreAlignedByEveryMethodFromNearBy) {
 TEST_F(TwoScans, FitWhereTheyBelongAndNotElsewhere) {
   const CloudFit right = measure_fit(*source_, *target_, target_from_source_);
   EXPECT_GT(right.overlap, 0.7);
-  EXPECT_GT(right.inlier_share, 0.8);
+  EXPECT_GT(right.inlier_ratio, 0.8);
   EXPECT_LT(right.rmse_m, 0.02);
   const Pose wrong = test::moved_by({0, 0.4, 0}, {0.5, 0, 0}) * target_from_source_;
-  EXPECT_LT(measure_fit(*source_, *target_, wrong).inlier_share, right.inlier_share - 0.15);
+  EXPECT_LT(measure_fit(*source_, *target_, wrong).inlier_ratio, right.inlier_ratio - 0.15);
   const Pose far = test::moved_by({0, 0, 0}, {100, 0, 0});
   EXPECT_EQ(measure_fit(*source_, *target_, far).overlap, 0);
 }

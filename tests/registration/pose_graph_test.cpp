@@ -34,7 +34,7 @@ TEST(PoseGraph, SharesTheErrorOfALoopAmongEqualEdges) {
   EXPECT_NEAR(result.poses[1].translation().x(), 0.925, 1e-6);
   EXPECT_NEAR(result.poses[2].translation().x(), 1.85, 1e-6);
   EXPECT_NEAR(result.poses[3].translation().x(), 2.775, 1e-6);
-  for (const double deviations : result.edge_deviations) EXPECT_NEAR(deviations, 7.5, 1e-4);
+  for (const double deviations : result.edge_mahalanobis) EXPECT_NEAR(deviations, 7.5, 1e-4);
 }
 
 TEST(PoseGraph, BelievesWhatIsSurer) {
@@ -67,7 +67,7 @@ TEST(PoseGraph, MendsDriftByALoopThatIsManyDeviationsOff) {
   const PoseGraphResult result = optimise_pose_graph(start, edges, kernel_width);
   const double gap_m = (result.poses[0].inverse() * result.poses[24]).translation().norm();
   EXPECT_LT(gap_m, 0.01);
-  EXPECT_LT(result.edge_deviations[24], kernel_width) << "a right loop keeps its say";
+  EXPECT_LT(result.edge_mahalanobis[24], kernel_width) << "a right loop keeps its say";
 }
 
 TEST(PoseGraph, IsNotBentByWrongLoops) {
@@ -83,7 +83,7 @@ TEST(PoseGraph, IsNotBentByWrongLoops) {
   const PoseGraphResult result = optimise_pose_graph(truth, edges, kernel_width);
   EXPECT_LT(largest_error_m(result.poses, truth), 2e-3);
   for (std::size_t i = first_wrong; i < edges.size(); ++i) {
-    EXPECT_GT(result.edge_deviations[i], 10 * kernel_width);
+    EXPECT_GT(result.edge_mahalanobis[i], 10 * kernel_width);
   }
 }
 

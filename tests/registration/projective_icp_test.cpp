@@ -41,7 +41,7 @@ TEST(Registration, FindsAKnownMotionWhereThreeWallsAreInView) {
   // Exact planes: what is left is the prior's pull and the rounding of float clouds.
   EXPECT_LT((result.world_from_camera.translation() - truth.translation()).norm(), 5e-4);
   EXPECT_LT(rotation_angle_rad(result.world_from_camera, truth), 2e-4);
-  EXPECT_GT(result.inlier_share, 0.9);
+  EXPECT_GT(result.inlier_ratio, 0.9);
 }
 
 TEST(Registration, LeavesDirectionsThatABareWallDoesNotHoldToThePrior) {

@@ -29,15 +29,15 @@ TEST(SphericalView, KnowsTheNearestRangeInADirection) {
   EXPECT_FALSE(view.nearest_range_around_m({5, 0, 1}));
 }
 
-TEST(SeenThroughShare, IsOfWhatStandsBeforeWhatWasSeen) {
+TEST(FreeSpaceViolationShare, IsOfWhatStandsBeforeWhatWasSeen) {
   const OrientedCloud far = wall_at(4);
   const SphericalView view(far.points_m, Eigen::Vector3d::Zero());
   const OrientedCloud near = wall_at(2);
-  EXPECT_EQ(seen_through_share(view, far, Pose::Identity(), 0.1), 0);
+  EXPECT_EQ(free_space_violation_share(view, far, Pose::Identity(), 0.1), 0);
   // The near wall fills a wider angle: what is off the far one was never looked at.
-  EXPECT_EQ(seen_through_share(view, near, Pose::Identity(), 0.1), 1);
+  EXPECT_EQ(free_space_violation_share(view, near, Pose::Identity(), 0.1), 1);
   // Behind it nothing contradicts.
-  EXPECT_EQ(seen_through_share(view, wall_at(6), Pose::Identity(), 0.1), 0);
+  EXPECT_EQ(free_space_violation_share(view, wall_at(6), Pose::Identity(), 0.1), 0);
 }
 
 TEST(MayBeViewpoint, IsAPlaceThatSeesEverything) {

@@ -28,7 +28,7 @@ CameraPath straight_path(double length_m) {
   return {{{{0, 0, 1}, {1, 0, 0}}, {{length_m, 0, 1}, {1, 0, 0}}}, false};
 }
 
-double largest_step_m(const Trajectory& poses) {
+double largest_translation_m(const Trajectory& poses) {
   double largest = 0;
   for (std::size_t i = 1; i < poses.size(); ++i) {
     largest = std::max(largest, (poses[i].world_from_camera.translation() -
@@ -87,13 +87,13 @@ TEST(CameraPath, NeedsEnoughWaypoints) {
 
 TEST(PlanMotion, KeepsWithinBothLimits) {
   const CameraMotion motion = plan_motion(square_path(), limits, 0, 2, 15, 0.1);
-  EXPECT_LE(largest_step_m(motion.at_a), limits.max_step_m);
+  EXPECT_LE(largest_translation_m(motion.at_a), limits.max_translation_m);
   double turned_rad = 0;
   for (std::size_t i = 1; i < motion.at_a.size(); ++i) {
-    const double turn_rad =
+    const double rotation_rad =
         rotation_angle_rad(motion.at_a[i - 1].world_from_camera, motion.at_a[i].world_from_camera);
-    EXPECT_LE(turn_rad, limits.max_turn_rad);
-    turned_rad += turn_rad;
+    EXPECT_LE(rotation_rad, limits.max_rotation_rad);
+    turned_rad += rotation_rad;
   }
   EXPECT_NEAR(turned_rad, 2 * std::numbers::pi, 0.01) << "once round";
 }
@@ -109,7 +109,7 @@ TEST(PlanMotion, TakesTheFramesThatTheWholePathNeeds) {
 TEST(PlanMotion, SlowsDownForMoreFramesAndStopsEarlyForFewer) {
   const CameraMotion slow = plan_motion(straight_path(1), limits, 101, 2, 15, 0);
   ASSERT_EQ(slow.at_a.size(), 101U);
-  EXPECT_NEAR(largest_step_m(slow.at_a), 0.01, 1e-4);
+  EXPECT_NEAR(largest_translation_m(slow.at_a), 0.01, 1e-4);
   EXPECT_NEAR(slow.at_a.back().world_from_camera.translation().x(), 1, 1e-6);
   const CameraMotion part = plan_motion(straight_path(10), limits, 11, 2, 15, 0);
   ASSERT_EQ(part.at_a.size(), 11U);

@@ -155,7 +155,7 @@ Scene two_tone_scene() {
 
 TEST(Exposure, MovesRangesWhereTheSurfaceChangesBetweenSamples) {
   SimulatorOptions options = ideal();
-  options.max_step_m = 0.3;  // three pixels of the wall
+  options.max_translation_m = 0.3;  // three pixels of the wall
   const auto worst_m = [&](double exposure_share) {
     options.exposure_share = exposure_share;
     const Simulator simulator(two_tone_scene(), options);

@@ -359,7 +359,7 @@ TEST(Simulator, RefusesOptionsThatAreNotAllowed) {
   refused("subpixels", [](SimulatorOptions& o) { o.subpixels = 0; });
   refused("b_delay_share", [](SimulatorOptions& o) { o.b_delay_share = 1.5; });
   refused("range_noise_m", [](SimulatorOptions& o) { o.range_noise_m = std::nan(""); });
-  refused("max_step_m", [](SimulatorOptions& o) { o.max_step_m = 0; });
+  refused("max_translation_m", [](SimulatorOptions& o) { o.max_translation_m = 0; });
   refused("width_px", [](SimulatorOptions& o) { o.width_px = -1; });
 }
 

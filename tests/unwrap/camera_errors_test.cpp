@@ -19,7 +19,7 @@
 #include <tofmap/core/frequency_residual.hpp>
 #include <tofmap/core/median.hpp>
 #include <tofmap/simulation/simulator.hpp>
-#include <tofmap/unwrap/common/beat.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap {
@@ -156,7 +156,7 @@ TEST_P(JointUnderCameraErrors, IsNoWorseThanTheBetterOfPixelAndJump) {
     const Recording recording = record(GetParam(), camera);
     // Where all residuals are off by half a step, other counts explain them as well: no method
     // knows (docs/unwrapping.md, 'What does not hold').
-    const double step_m = residual_step_m(beat_limits(recording.sensor, 0));
+    const double step_m = residual_step_m(unwrap_limits(recording.sensor, 0));
     if (std::abs(median_residual_m(recording)) > step_m / 2) continue;
     ++compared;
     const std::vector<double> joint = count_wrong(recording, "joint");

@@ -52,7 +52,7 @@ ErrorTracker::Tracked track(ErrorTracker& tracker, const DualFrequencyFrame& fra
 }
 
 ErrorTracker tracker_of(const Simulator& simulator) {
-  return {beat_limits(simulator.sensor(), 0), simulator.sensor().camera};
+  return {unwrap_limits(simulator.sensor(), 0), simulator.sensor().camera};
 }
 
 /// Frames spread over the path through the scene.
@@ -83,7 +83,7 @@ bool is_smooth(const ImageF& range_m, Eigen::Index v, Eigen::Index u) {
 
 /// The residuals at the true count of pixels on smooth surfaces.
 std::vector<double> residuals_m(const SimulatedFrame& truth, const ImageF& phase_b,
-                                const BeatLimits& limits) {
+                                const UnwrapLimits& limits) {
   std::vector<double> residuals_m;
   for (Eigen::Index v = 0; v < phase_b.rows(); ++v) {
     for (Eigen::Index u = 0; u < phase_b.cols(); ++u) {
@@ -128,7 +128,7 @@ double offset_after_m(double first_offset_b_m, double offset_b_m, double& step_m
   simulation.offset_b_m = offset_b_m;
   const Simulator others(make_scene("room"), simulation);
   ErrorTracker tracker = tracker_of(first);
-  step_m = residual_step_m(beat_limits(first.sensor(), 0));
+  step_m = residual_step_m(unwrap_limits(first.sensor(), 0));
   track(tracker, returns_of(first.simulate(0)));
   for (int i = 1; i < 20; ++i) track(tracker, returns_of(others.simulate(i)));
   return tracker.camera_errors().offset_m();
@@ -156,7 +156,7 @@ TEST(ErrorTracker, CorrectsNothingWhereThereIsNoError) {
     SimulatorOptions simulation = small_camera();
     simulation.b_delay_share = 0;
     const Simulator simulator(make_scene(scene), simulation);
-    const double wavelength_b_m = beat_limits(simulator.sensor(), 0).wavelength_b_m;
+    const double wavelength_b_m = unwrap_limits(simulator.sensor(), 0).wavelength_b_m;
     ErrorTracker tracker = tracker_of(simulator);
     std::vector<double> corrections_m;
     for (const SimulatedFrame& simulated : frames_of(simulator, 12)) {
@@ -184,7 +184,7 @@ TEST(ErrorTracker, PredictsAPeriodicErrorAfterSomeFrames) {
     simulation.errors_seed = seed;
     simulation.range_noise_m = 0.003;  // so that what is left of the residual is not noise
     const Simulator simulator(make_scene("hall"), simulation);
-    const BeatLimits limits = beat_limits(simulator.sensor(), 0);
+    const UnwrapLimits limits = unwrap_limits(simulator.sensor(), 0);
     ErrorTracker tracker = tracker_of(simulator);
     std::vector<double> before_m;
     std::vector<double> after_m;
@@ -207,7 +207,7 @@ TEST(ErrorTracker, PredictsAnErrorThatGrowsWithDarkness) {
   simulation.amplitude_error_b_m = 0.09;  // 3 cm a decade, and of B: A's excess falls with darkness
   simulation.range_noise_m = 0.005;
   const Simulator simulator(make_scene("hall"), simulation);
-  const BeatLimits limits = beat_limits(simulator.sensor(), 0);
+  const UnwrapLimits limits = unwrap_limits(simulator.sensor(), 0);
   ErrorTracker tracker = tracker_of(simulator);
   std::vector<double> before_m;
   std::vector<double> after_m;
@@ -278,7 +278,7 @@ class Corner {
     return frame;
   }
 
-  const BeatLimits limits = beat_limits({camera, {29e6, 31e6}}, 20);
+  const UnwrapLimits limits = unwrap_limits({camera, {29e6, 31e6}}, 20);
 
  private:
   template <class Value>
@@ -341,10 +341,10 @@ TEST(ErrorTracker, FindsTheMotionBetweenTheExposures) {
 
 TEST(ErrorTracker, BringsBBackToWhereAWasExposed) {
   const Corner corner;
-  for (const double turn_rad : {0.004, 0.06}) {
+  for (const double rotation_rad : {0.004, 0.06}) {
     ErrorTracker tracker = acquainted(corner);
     const DualFrequencyFrame frame =
-        corner.frame_of(pose_of({0.01, 0, 0.03 + turn_rad}, {0, turn_rad, 0}));
+        corner.frame_of(pose_of({0.01, 0, 0.03 + rotation_rad}, {0, rotation_rad, 0}));
     const ErrorTracker::Tracked tracked = tracker.track(frame, said_sigma(frame));
     SimulatedFrame truth;
     truth.frame = frame;
@@ -353,7 +353,7 @@ TEST(ErrorTracker, BringsBBackToWhereAWasExposed) {
     seen_b = (tracked.b.sigma_b_cycles < 1).select(seen_b, NAN);
     std::vector<double> left_m = residuals_m(truth, seen_b, corner.limits);
     std::vector<double> without_m = residuals_m(truth, frame.phase_b, corner.limits);
-    EXPECT_LT(rms(left_m), 0.2 * rms(without_m)) << turn_rad;
+    EXPECT_LT(rms(left_m), 0.2 * rms(without_m)) << rotation_rad;
     // Going 9 cm ahead and turning takes a fifth of the surface out of B's image.
     EXPECT_GT(static_cast<double>(left_m.size()), 0.75 * static_cast<double>(without_m.size()));
   }
@@ -364,17 +364,17 @@ TEST(ErrorTracker, FindsTheWholeMotionWhereSlopesAreNoisy) {
   SimulatorOptions simulation;
   simulation.range_noise_m = 0.05;
   simulation.b_delay_share = 0.5;
-  simulation.max_turn_deg = 3;
+  simulation.max_rotation_deg = 3;
   const Simulator simulator(make_scene("room"), simulation);
   ErrorTracker tracker = tracker_of(simulator);
   double found_rad = 0;
   double true_rad = 0;
   for (int i = 20; i < 28; ++i) {
     const SimulatedFrame frame = simulator.simulate(i);
-    const Eigen::Vector3d turn_rad = test::turn_between(frame, simulator.simulate(i + 1));
-    true_rad += 0.5 * turn_rad.norm();
+    const Eigen::Vector3d rotation_rad = test::turn_between(frame, simulator.simulate(i + 1));
+    true_rad += 0.5 * rotation_rad.norm();
     found_rad +=
-        track(tracker, returns_of(frame)).errors.motion.rotation_rad.dot(turn_rad.normalized());
+        track(tracker, returns_of(frame)).errors.motion.rotation_rad.dot(rotation_rad.normalized());
   }
   ASSERT_GT(true_rad / 8, 0.005);
   EXPECT_NEAR(found_rad / true_rad, 1, 0.15);
@@ -417,8 +417,8 @@ TEST(ErrorTracker, KnowsNothingOfBWhereItsImageEnds) {
 SimulatorOptions switching_camera() {
   SimulatorOptions simulation = small_camera();
   simulation.b_delay_share = 1;
-  simulation.max_step_m = 0.1;
-  simulation.max_turn_deg = 6;
+  simulation.max_translation_m = 0.1;
+  simulation.max_rotation_deg = 6;
   return simulation;
 }
 
@@ -557,7 +557,7 @@ TEST(ErrorTracker, TakesMotionForAnOffsetWhereTheCameraIsUnknown) {
   SimulatorOptions simulation = small_camera();
   simulation.offset_b_m = -0.08;
   const Simulator simulator(make_scene("hall"), simulation);
-  ErrorTracker tracker(beat_limits(simulator.sensor(), 0), CameraModel());
+  ErrorTracker tracker(unwrap_limits(simulator.sensor(), 0), CameraModel());
   const FrameErrors errors = track(tracker, returns_of(simulator.simulate(20))).errors;
   EXPECT_NEAR(errors.camera.offset_m(), 0.08, 0.015);
   EXPECT_EQ(errors.motion.translation_m.norm(), 0);

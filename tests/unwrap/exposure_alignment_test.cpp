@@ -22,7 +22,7 @@ TEST(ExposureAlignment, FindsTheRotationToItsCovariance) {
   SimulatorOptions options;
   options.width_px = 88;
   options.height_px = 72;
-  options.max_turn_deg = 4;
+  options.max_rotation_deg = 4;
   const Simulator simulator(make_scene("flat"), options);
   for (const int index : {3, 12, 21, 30}) {
     const SimulatedFrame one = simulator.simulate(index);

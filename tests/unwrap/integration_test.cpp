@@ -135,7 +135,7 @@ UnwrapOptions jump_options() {
 }
 
 TEST(JumpMethod, IsRightAcrossAStepOfExactlyOneWavelength) {
-  // The wrapped image shows no edge at all: only the beat can tell.
+  // The wrapped image shows no edge at all: only the residual can tell.
   TwoWalls walls = two_walls(3, 3 + 5.1688);
   const UnwrapResult result = unwrap(walls.frame, walls.sensor, jump_options());
   EXPECT_LT(largest_error_m(walls, result.image), 0.1);

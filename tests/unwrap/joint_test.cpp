@@ -270,7 +270,7 @@ std::vector<double> mean_errors_m(const UnwrapOptions& options) {
   SimulatorOptions simulation;
   simulation.subpixels = 1;
   simulation.b_delay_share = 1;
-  simulation.max_step_m = 0.07;
+  simulation.max_translation_m = 0.07;
   const Simulator simulator(make_scene("corridor"), simulation);
   std::vector<SimulatedFrame> run;
   std::vector<DualFrequencyFrame> ahead;
@@ -316,7 +316,7 @@ TEST(Fusion, AllowsForTheMotionBetweenTheExposures) {
 TEST(Fusion, LeavesAPixelAloneWhoseFrequenciesDisagree) {
   SensorModel sensor;
   sensor.modulation = {29e6, 31e6};
-  const BeatLimits limits = beat_limits(sensor, 20);
+  const UnwrapLimits limits = unwrap_limits(sensor, 20);
   DualFrequencyFrame frame;
   frame.phase_a = ImageF::Constant(1, 1, 0.5F);
   frame.phase_b = ImageF::Constant(1, 1, 0.9F);

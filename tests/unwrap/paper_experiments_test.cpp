@@ -137,7 +137,7 @@ JumpShares jump_shares(const char* method) {
   const DualFrequencyFrame& frame = simulated.frame;
   JumpEstimator estimator;
   const JumpEstimate& jumps = estimator.estimate(
-      frame, PhaseSigma(frame, estimate_phase_noise(frame)), beat_limits(simulator.sensor(), 0),
+      frame, PhaseSigma(frame, estimate_phase_noise(frame)), unwrap_limits(simulator.sensor(), 0),
       jump_method(unwrap_method(options)), options);
   const auto configurations = most_likely_configurations(jumps.beliefs.marginals);
   const auto wavelength_m = static_cast<float>(simulator.sensor().modulation.wavelength_a_m());

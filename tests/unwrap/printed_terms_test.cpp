@@ -40,7 +40,7 @@ constexpr double shorter_m = 4.83536223;  // of 31 MHz
 /// One pixel with these wrapped ranges, by equation 2 with τ halfway.
 int count_of(double a_m, double b_m, double wavelength_a_m = longer_m,
              double wavelength_b_m = shorter_m) {
-  const BeatLimits limits{.wavelength_a_m = wavelength_a_m, .wavelength_b_m = wavelength_b_m};
+  const UnwrapLimits limits{.wavelength_a_m = wavelength_a_m, .wavelength_b_m = wavelength_b_m};
   DualFrequencyFrame frame;
   frame.phase_a = ImageF::Constant(1, 1, static_cast<float>(a_m / wavelength_a_m));
   frame.phase_b = ImageF::Constant(1, 1, static_cast<float>(b_m / wavelength_b_m));

@@ -15,9 +15,9 @@
 namespace tofmap {
 namespace {
 
-/// Pixels of one surface, 7 wavelengths away, whose beat is noisy: most of them have the right
+/// Pixels of one surface, 7 wavelengths away, whose residual is noisy: most of them have the right
 /// count, some any other.
-DualFrequencyFrame noisy_surface(const BeatLimits& limits, int pixels, double noise_cycles,
+DualFrequencyFrame noisy_surface(const UnwrapLimits& limits, int pixels, double noise_cycles,
                                  std::mt19937& random) {
   std::uniform_real_distribution<double> range_m(7.1 * limits.wavelength_a_m,
                                                  7.9 * limits.wavelength_a_m);
@@ -38,7 +38,7 @@ DualFrequencyFrame noisy_surface(const BeatLimits& limits, int pixels, double no
 /// Costs of counts of a region's root, of all pixels added up.
 class PlainFits {
  public:
-  PlainFits(const BeatCost& cost, OffsetUnion& forest) : cost_(cost), forest_(forest) {}
+  PlainFits(const ResidualCost& cost, OffsetUnion& forest) : cost_(cost), forest_(forest) {}
 
   double of(int root, int count) const {
     double sum = 0;
@@ -68,14 +68,14 @@ class PlainFits {
     return least;
   }
 
-  const BeatCost& cost_;
+  const ResidualCost& cost_;
   OffsetUnion& forest_;
 };
 
-BeatLimits all_ranges() {
+UnwrapLimits all_ranges() {
   SensorModel sensor;
   sensor.modulation = {29e6, 31e6};
-  return beat_limits(sensor, 0);
+  return unwrap_limits(sensor, 0);
 }
 
 /// Regions of the pixels of a noisy surface, each by itself at first.
@@ -88,9 +88,9 @@ struct Pixels {
         fits(cost, nearest_pair_counts(frame, limits), forest),
         plain(cost, forest) {}
 
-  BeatLimits limits;
+  UnwrapLimits limits;
   DualFrequencyFrame frame;
-  BeatCost cost;
+  ResidualCost cost;
   OffsetUnion forest;
   RegionFits fits;
   PlainFits plain;

@@ -58,32 +58,34 @@ Pose box_from_first_camera() {
 
 const Trajectory one_camera{{0, Pose::Identity()}};
 
-TEST(LevelFrame, SetsATiltedMapUpright) {
+TEST(GravityAlignedFrame, SetsATiltedMapUpright) {
   const Pose map_from_box = box_from_first_camera().inverse();
-  const LevelFrame frame = level_frame(box_map(map_from_box), one_camera);
-  const Eigen::Vector3d up = frame.level_from_map * map_from_box.linear().col(2);
+  const GravityAlignedFrame frame = gravity_aligned_frame(box_map(map_from_box), one_camera);
+  const Eigen::Vector3d up = frame.aligned_from_map * map_from_box.linear().col(2);
   EXPECT_NEAR((up - Eigen::Vector3d::UnitZ()).norm(), 0, 0.02);
   EXPECT_NEAR(frame.box_m.sizes().x(), 6, 0.1) << "the longer way lies along x";
   EXPECT_NEAR(frame.box_m.sizes().y(), 4, 0.1);
   EXPECT_NEAR(frame.box_m.sizes().z(), 3, 0.1);
-  EXPECT_NEAR(frame.level_from_map.determinant(), 1, 1e-9);
+  EXPECT_NEAR(frame.aligned_from_map.determinant(), 1, 1e-9);
 }
 
-TEST(LevelFrame, IsNotLedAstrayByAFewStrays) {
+TEST(GravityAlignedFrame, IsNotLedAstrayByAFewStrays) {
   const Pose map_from_box = box_from_first_camera().inverse();
   MapCloud map = box_map(map_from_box);
   for (int i = 0; i < 10; ++i) {
     map.push_back(map.front());
     map.back().getVector3fMap() *= 20;
   }
-  EXPECT_NEAR(level_frame(map, one_camera).box_m.sizes().x(), 6, 0.1);
+  EXPECT_NEAR(gravity_aligned_frame(map, one_camera).box_m.sizes().x(), 6, 0.1);
 }
 
-TEST(LevelFrame, OfAnEmptyMapIsEmpty) { EXPECT_TRUE(level_frame({}, {}).box_m.isEmpty()); }
+TEST(GravityAlignedFrame, OfAnEmptyMapIsEmpty) {
+  EXPECT_TRUE(gravity_aligned_frame({}, {}).box_m.isEmpty());
+}
 
 TEST(MapFromAbove, LooksThroughTheCeiling) {
   const MapCloud map = box_map(box_from_first_camera().inverse());
-  const LevelFrame frame = level_frame(map, one_camera);
+  const GravityAlignedFrame frame = gravity_aligned_frame(map, one_camera);
   const Picture picture = map_from_above(map, one_camera, frame, 600);
   const ColorScale scale(0, frame.box_m.sizes().z(), "");
   const auto like = [](Rgb a, Rgb b) {
@@ -101,7 +103,7 @@ TEST(MapPictures, OfAnEmptyMapAreDrawnAllTheSame) {
 
 TEST(ViewpointInside, HasTheRoomAllAround) {
   const MapCloud map = box_map(box_from_first_camera().inverse());
-  const LevelFrame frame = level_frame(map, one_camera);
+  const GravityAlignedFrame frame = gravity_aligned_frame(map, one_camera);
   const Drawing drawing = map_drawing(map, one_camera, frame);
   const Viewpoint viewpoint = viewpoint_inside(drawing, one_camera, frame, 1.6);
   const Picture picture = draw(drawing, viewpoint, 320, 200);
@@ -128,7 +130,7 @@ TEST(ViewpointOutside, HoldsAllOfTheBox) {
 TEST(MapDrawing, OfPointsWithoutNormalsHasDots) {
   MapCloud map = box_map(Pose::Identity());
   for (MapPoint& point : map) point.normal_x = point.normal_y = point.normal_z = NAN;
-  const Drawing drawing = map_drawing(map, {}, level_frame(map, {}));
+  const Drawing drawing = map_drawing(map, {}, gravity_aligned_frame(map, {}));
   EXPECT_EQ(drawing.points.front().points_m.size(), map.size());
   EXPECT_TRUE(drawing.points.front().normals.empty());
 }
@@ -140,7 +142,7 @@ std::ptrdiff_t count_color(const Picture& picture, Rgb color) {
 
 TEST(MapDrawing, TakesTheColoursOfAnyQuantity) {
   const MapCloud map = box_map(Pose::Identity());
-  const LevelFrame frame = level_frame(map, {});
+  const GravityAlignedFrame frame = gravity_aligned_frame(map, {});
   const ColorScale scale(0, 1, "error, m", ColorRamp::error);
   const MapColoring wrong{std::vector<float>(map.size(), 2.0F), scale};
   const Drawing drawing = map_drawing(map, {}, frame, wrong);
@@ -159,14 +161,14 @@ TEST(PathsFromAbove, ShowsEveryPathOverTheMapAndBeyondIt) {
     path[1].world_from_camera.translation() = box_from_camera.linear().transpose() * way;
     return path;
   };
-  const LevelFrame frame = level_frame(map, path_to(1));
+  const GravityAlignedFrame frame = gravity_aligned_frame(map, path_to(1));
   const Rgb inside{1, 2, 200};
   const Rgb outside{200, 2, 1};
   const Picture picture = paths_from_above(
       map, {{"inside", path_to(1), inside}, {"outside", path_to(20), outside}}, frame, 600);
   EXPECT_GT(count_color(picture, inside), 20);
   EXPECT_GT(count_color(picture, outside), 1000) << "it is long, and all of it is there";
-  EXPECT_GT(paths_from_above({}, {}, LevelFrame(), 600).width_px, 0) << "nothing at all";
+  EXPECT_GT(paths_from_above({}, {}, GravityAlignedFrame(), 600).width_px, 0) << "nothing at all";
 }
 
 }  // namespace

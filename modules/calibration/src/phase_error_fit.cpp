@@ -24,8 +24,9 @@ constexpr double least_significance = 4;
 /// one that is independent.
 constexpr double correlated_samples = 30;
 
-/// Motion between both images and pixels that mix surfaces feign about a millimetre in the beat.
-constexpr double least_by_beat_m = 0.002;
+/// Motion between both images and pixels that mix surfaces feign about a millimetre in the
+/// residual.
+constexpr double least_by_residual_m = 0.002;
 
 /// Errors are functions of the phase that is measured, which has them in it: each pass knows them
 /// better. After three, an error of a hundredth of a cycle changes by less than its hundredth part.
@@ -244,8 +245,8 @@ PhaseErrorFit fit_to_references(std::span<const RangeSample> samples, const Modu
           .residual_rms_m = std::hypot(a.residual_rms_m, b.residual_rms_m) / std::numbers::sqrt2};
 }
 
-PhaseErrorFit fit_to_beat(std::span<const RangeSample> all, const Modulation& modulation,
-                          const PhaseErrorFitOptions& options) {
+PhaseErrorFit fit_to_residual(std::span<const RangeSample> all, const Modulation& modulation,
+                              const PhaseErrorFitOptions& options) {
   const double a_m = modulation.wavelength_a_m();
   const double b_m = modulation.wavelength_b_m();
   const SampleValue difference{
@@ -273,8 +274,8 @@ PhaseErrorFit fit_to_beat(std::span<const RangeSample> all, const Modulation& mo
       equations.add(row, difference.value_m(sample), one.weight);
     }
     const auto [unknowns, residual_rms] = equations.solve();
-    fit.error_a.harmonics = series_a.significant(unknowns, a_m, least_by_beat_m);
-    fit.error_b.harmonics = series_b.significant(unknowns, b_m, least_by_beat_m);
+    fit.error_a.harmonics = series_a.significant(unknowns, a_m, least_by_residual_m);
+    fit.error_b.harmonics = series_b.significant(unknowns, b_m, least_by_residual_m);
     fit.offset_m = unknowns[0];
     fit.residual_rms_m = residual_rms;
   }

@@ -100,7 +100,7 @@ struct Side {
 };
 
 /// Slopes along an axis: of both sides where they agree, else of the side that is straighter (the
-/// other one crosses an edge), in case of doubt the flatter.
+/// other one crosses an edge), in case of warning the flatter.
 TOFMAP_VECTOR_CLONES void choose_slopes(int pixels, const LineSums& back_, const LineSums& front_,
                                         const Slopes& out_) {
   const LineSums back_sums = back_;

@@ -34,8 +34,8 @@ const char* reason_name(InvalidReason reason) {
       return "isolated_wrap";
     case InvalidReason::outlier:
       return "outlier";
-    case InvalidReason::seen_through:
-      return "seen_through";
+    case InvalidReason::free_space_violation:
+      return "free_space_violation";
   }
   return "unknown";
 }

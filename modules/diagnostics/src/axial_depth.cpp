@@ -52,8 +52,8 @@ bool looks_like_axial_depth(const std::vector<DualFrequencyFrame>& frames,
   return end_a.is_there() && end_b.is_there();
 }
 
-std::optional<std::string> axial_depth_doubt(const std::vector<DualFrequencyFrame>& frames,
-                                             const SensorModel& sensor) {
+std::optional<std::string> axial_depth_warning(const std::vector<DualFrequencyFrame>& frames,
+                                               const SensorModel& sensor) {
   if (!looks_like_axial_depth(frames, sensor)) return std::nullopt;
   return "towards the border of the image ranges end where depth along the optical axis does; was "
          "it taken for ranges along rays? device.depth=z turns it into them when it is recorded";

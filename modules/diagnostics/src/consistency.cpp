@@ -29,7 +29,7 @@ double nearest_cycle(double cycles) { return cycles - std::round(cycles); }
 
 /// By how much phase B differs from what wrap count and phase of A say, in cycles; NaN where one of
 /// them is missing.
-ImageF beat_residuals(const RangedFrame& ranged, const Modulation& modulation) {
+ImageF phase_b_residuals(const RangedFrame& ranged, const Modulation& modulation) {
   const double ratio = modulation.wavelength_a_m() / modulation.wavelength_b_m();
   const RangeImage& image = *ranged.image;
   if (!same_size(image.range_m, ranged.frame->phase_a) ||
@@ -80,7 +80,7 @@ double smallest_step_cycles(const Modulation& modulation) {
 /// Points of one frame in another: how many fall on a range, and how many of these it sees through.
 struct Overlap {
   int points = 0;
-  int seen_through = 0;
+  int free_space_violation = 0;
 };
 
 Overlap overlap(const RangedFrame& from, const RangedFrame& to, const CameraModel& camera,
@@ -107,7 +107,7 @@ Overlap overlap(const RangedFrame& from, const RangedFrame& to, const CameraMode
       const double tolerance_m = std::max(least_tolerance_m, sigmas * std::sqrt(variance_m2));
       if (behind_m < -tolerance_m) continue;  // hidden: neither for nor against
       ++result.points;
-      result.seen_through += behind_m > tolerance_m ? 1 : 0;
+      result.free_space_violation += behind_m > tolerance_m ? 1 : 0;
     }
   }
   return result;
@@ -146,13 +146,14 @@ std::optional<double> thickness_at(const MapCloud& map, const Tree& tree, int in
 
 }  // namespace
 
-BeatAgreement beat_agreement(const std::vector<RangedFrame>& frames, const Modulation& modulation) {
+ResidualAgreement residual_agreement(const std::vector<RangedFrame>& frames,
+                                     const Modulation& modulation) {
   const double step_cycles = smallest_step_cycles(modulation);
   double square_sum = 0;
   double misfits = 0;
   double pixels = 0;
   for (const RangedFrame& ranged : frames) {
-    const ImageF residuals = beat_residuals(ranged, modulation);
+    const ImageF residuals = phase_b_residuals(ranged, modulation);
     for (Eigen::Index row = 0; row < residuals.rows(); ++row) {
       for (Eigen::Index col = 0; col < residuals.cols(); ++col) {
         const double residual = residuals(row, col);
@@ -183,8 +184,8 @@ double contradicted_percent(const std::vector<RangedFrame>& frames, const Camera
   constexpr int least_points = 50;  // fewer is chance
   const PixelRays rays = pixel_rays(camera);
   std::int64_t points = 0;
-  std::int64_t seen_through = 0;
-#pragma omp parallel for schedule(dynamic, 1) reduction(+ : points, seen_through)
+  std::int64_t free_space_violation = 0;
+#pragma omp parallel for schedule(dynamic, 1) reduction(+ : points, free_space_violation)
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const RangedFrame& from = frames[i];
     for (const RangedFrame& to : frames) {
@@ -192,10 +193,10 @@ double contradicted_percent(const std::vector<RangedFrame>& frames, const Camera
       const Overlap pair = overlap(from, to, camera, rays);
       if (pair.points < least_points) continue;
       points += pair.points;
-      seen_through += pair.seen_through;
+      free_space_violation += pair.free_space_violation;
     }
   }
-  return percent(static_cast<double>(seen_through), static_cast<double>(points));
+  return percent(static_cast<double>(free_space_violation), static_cast<double>(points));
 }
 
 double plane_thickness_m(const MapCloud& map) {
@@ -224,33 +225,33 @@ int consistency_frames(const CameraModel& camera) {
 Consistency consistency_of(const std::vector<RangedFrame>& unwrapped,
                            const std::vector<RangedFrame>& filtered, const MapCloud& map,
                            const SensorModel& sensor) {
-  const BeatAgreement beat = beat_agreement(unwrapped, sensor.modulation);
-  return {.beat_misfit_percent = beat.misfit_percent,
-          .beat_residual_cycles = beat.residual_cycles,
+  const ResidualAgreement residual = residual_agreement(unwrapped, sensor.modulation);
+  return {.residual_misfit_percent = residual.misfit_percent,
+          .residual_rms_cycles = residual.residual_cycles,
           .ambiguous_percent = ambiguous_percent(unwrapped),
           .contradicted_percent = contradicted_percent(filtered, sensor.camera),
           .plane_thickness_m = plane_thickness_m(map),
           .curl_violations_per_frame = nan};
 }
 
-std::vector<std::string> doubts_about(const Consistency& consistency) {
+std::vector<std::string> warnings_about(const Consistency& consistency) {
   // Measured: docs/evaluation.md. NaN exceeds no limit.
   constexpr double most_contradicted_percent = 3;
   constexpr double most_misfit_percent = 10;
-  std::vector<std::string> doubts;
+  std::vector<std::string> warnings;
   if (consistency.contradicted_percent > most_contradicted_percent) {
-    doubts.push_back(formatted(
+    warnings.push_back(formatted(
         "frames contradict each other in %.1f %% of what they both see: ranges or path are wrong",
         consistency.contradicted_percent));
   }
-  if (consistency.beat_misfit_percent > most_misfit_percent) {
-    doubts.push_back(
+  if (consistency.residual_misfit_percent > most_misfit_percent) {
+    warnings.push_back(
         formatted("%.0f %% of the pixels would fit both frequencies better with another "
                   "wrap count: wraps are wrong, or the frequencies' offsets differ "
                   "('tofmap info' tells)",
-                  consistency.beat_misfit_percent));
+                  consistency.residual_misfit_percent));
   }
-  return doubts;
+  return warnings;
 }
 
 }  // namespace tofmap

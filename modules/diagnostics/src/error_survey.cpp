@@ -106,7 +106,7 @@ std::vector<std::string> remarks_about(const ErrorSurvey& survey) {
   return remarks;
 }
 
-std::vector<std::string> doubts_about(const ErrorSurvey& survey) {
+std::vector<std::string> warnings_about(const ErrorSurvey& survey) {
   // A periodic error of 1 cm made trajectories ten times worse (docs/mapping.md).
   constexpr double most_periodic_m = 0.01;
   const double periodic_m = survey.camera.periodic_rms_m;

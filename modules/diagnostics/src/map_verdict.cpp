@@ -22,8 +22,9 @@ Judgement judge(const MapEvidence& evidence) {
   if (!evidence.is_unwrapped) hold_against(Verdict::bad, "nothing was unwrapped");
   const double registered_percent = percent_of_frames(evidence, evidence.registered);
   if (registered_percent < nearly_all_percent) {
-    hold_against(registered_percent < half_percent ? Verdict::bad : Verdict::doubtful,
-                 formatted("%.0f %% of the frames could not be placed", 100 - registered_percent));
+    hold_against(
+        registered_percent < half_percent ? Verdict::bad : Verdict::doubtful,
+        formatted("%.0f %% of the frames could not be registered", 100 - registered_percent));
   }
   const Verdict of_surface = evidence.accuracy_m
                                  ? verdict_on_accuracy(*evidence.accuracy_m, evidence.voxel_m)

@@ -15,7 +15,7 @@ namespace tofmap {
 namespace {
 
 /// Frames whose frequencies are compared, spread evenly.
-constexpr int beat_frames = 12;
+constexpr int compared_frames = 12;
 
 /// Images with fewer returns may be of one range.
 constexpr int least_returns = 100;
@@ -84,39 +84,39 @@ void survey_times(const std::vector<SequenceFrameFiles>& files, RecordingSurvey&
   if (!periods_s.empty()) survey.median_period_s = median(periods_s);
 }
 
-void doubt_returns(const RecordingSurvey& survey, std::vector<std::string>& doubts) {
+void warn_of_returns(const RecordingSurvey& survey, std::vector<std::string>& warnings) {
   constexpr double most_without_return = 0.5;
   const int whole = survey.frames - static_cast<int>(survey.damages.size());
   if (whole > 0 && survey.without_return == whole) {
-    doubts.emplace_back("no pixel has a return; are the phase images mislabelled?");
+    warnings.emplace_back("no pixel has a return; are the phase images mislabelled?");
   } else if (survey.without_return > 0) {
-    doubts.push_back(counted(static_cast<std::size_t>(survey.without_return), "frame") +
-                     " without any return; was the camera covered?");
+    warnings.push_back(counted(static_cast<std::size_t>(survey.without_return), "frame") +
+                       " without any return; was the camera covered?");
   } else if (survey.no_return_share > most_without_return) {
-    doubts.push_back(
+    warnings.push_back(
         formatted("%.0f %% of the pixels have no return; is the exposure too short, or the "
                   "scene out of reach?",
                   100 * survey.no_return_share));
   }
   constexpr double most_saturated = 0.05;
   if (survey.saturated_share > most_saturated) {
-    doubts.push_back(
+    warnings.push_back(
         formatted("%.0f %% of the pixels are saturated, and left out; a shorter exposure "
                   "would keep them",
                   100 * survey.saturated_share));
   }
 }
 
-void doubt_images(const RecordingSurvey& survey, std::vector<std::string>& doubts) {
+void warn_of_images(const RecordingSurvey& survey, std::vector<std::string>& warnings) {
   if (!survey.constant_images.empty()) {
-    doubts.push_back(
+    warnings.push_back(
         formatted("%zu images hold one phase everywhere, %s the first; they are no "
                   "measurement",
                   survey.constant_images.size(), survey.constant_images.front().c_str()));
   }
-  if (const auto doubt = repetition_doubt(survey.repeated)) doubts.push_back(*doubt);
+  if (const auto warning = repetition_warning(survey.repeated)) warnings.push_back(*warning);
   if (survey.repeated_single > 0) {
-    doubts.push_back(
+    warnings.push_back(
         counted(static_cast<std::size_t>(survey.repeated_single), "frame") +
         (survey.repeated_single == 1 ? " has" : " have") +
         " the phases of the one before at one frequency, and new ones at the other; are files of "
@@ -124,19 +124,19 @@ void doubt_images(const RecordingSurvey& survey, std::vector<std::string>& doubt
   }
 }
 
-void doubt_times(const RecordingSurvey& survey, std::vector<std::string>& doubts) {
+void warn_of_times(const RecordingSurvey& survey, std::vector<std::string>& warnings) {
   constexpr double longest_period_s = 10;
   constexpr double shortest_period_s = 1e-3;
   const bool is_none_of_a_camera =
       survey.median_period_s > longest_period_s ||
       (survey.median_period_s > 0 && survey.median_period_s < shortest_period_s);
   if (is_none_of_a_camera) {
-    doubts.push_back(formatted("%.3g s from frame to frame; are the times in frames.txt seconds?",
-                               survey.median_period_s));
+    warnings.push_back(formatted("%.3g s from frame to frame; are the times in frames.txt seconds?",
+                                 survey.median_period_s));
   }
   constexpr double most_periods = 5;
   if (survey.longest_gap_s > most_periods * survey.median_period_s) {
-    doubts.push_back(
+    warnings.push_back(
         formatted("after frame %d nothing was recorded for %.2f s, %.0f frame periods; the "
                   "camera may be lost there",
                   survey.frame_before_gap, survey.longest_gap_s,
@@ -150,7 +150,7 @@ bool repeats(const DualFrequencyFrame& frame, const DualFrequencyFrame& last) {
   return same_values(frame.phase_a, last.phase_a) && same_values(frame.phase_b, last.phase_b);
 }
 
-std::optional<std::string> repetition_doubt(int repeated) {
+std::optional<std::string> repetition_warning(int repeated) {
   if (repeated == 0) return std::nullopt;
   return counted(static_cast<std::size_t>(repeated), "frame") +
          (repeated == 1 ? " repeats" : " repeat") +
@@ -161,7 +161,7 @@ RecordingSurvey survey_recording(const SequenceReader& recording,
                                  const std::function<bool(int)>& keep_going) {
   const SensorModel& sensor = recording.sensor();
   const int count = *recording.frame_count();
-  const int every = 1 + (count - 1) / beat_frames;
+  const int every = 1 + (count - 1) / compared_frames;
   RecordingSurvey survey;
   PixelTotals totals;
   std::vector<DualFrequencyFrame> some;
@@ -193,37 +193,38 @@ RecordingSurvey survey_recording(const SequenceReader& recording,
   survey.no_return_share = totals.share(totals.without_return);
   survey.saturated_share = totals.share(totals.saturated);
   survey_times(recording.files(), survey);
-  survey.axial_depth_doubt = axial_depth_doubt(some, sensor);
-  survey.beat = survey_beat(some, sensor);
+  survey.axial_depth_warning = axial_depth_warning(some, sensor);
+  survey.residual = survey_residual(some, sensor);
   survey.errors = survey_errors(some, sensor);
   return survey;
 }
 
-std::vector<std::string> doubts_about(const RecordingSurvey& survey, const SensorModel& sensor) {
-  std::vector<std::string> doubts;
-  const auto add = [&](std::optional<std::string> doubt) {
-    if (doubt) doubts.push_back(*std::move(doubt));
+std::vector<std::string> warnings_about(const RecordingSurvey& survey, const SensorModel& sensor) {
+  std::vector<std::string> warnings;
+  const auto add = [&](std::optional<std::string> warning) {
+    if (warning) warnings.push_back(*std::move(warning));
   };
-  const std::optional<std::string> pair_doubt = frequency_pair_doubt(sensor.modulation);
-  add(pair_doubt);
+  const std::optional<std::string> pair_warning = frequency_pair_warning(sensor.modulation);
+  add(pair_warning);
   if (sensor.max_range_m > combined_range_m(sensor.modulation)) {
-    doubts.emplace_back(
+    warnings.emplace_back(
         "the scene reaches farther than this pair of frequencies can tell apart; are they right?");
   }
-  doubt_returns(survey, doubts);
-  doubt_images(survey, doubts);
-  doubt_times(survey, doubts);
-  add(survey.axial_depth_doubt);
-  // Where there is a doubt about the images themselves, A and B cannot agree, and say nothing else.
-  const bool is_comparable = survey.beat && !pair_doubt && !survey.axial_depth_doubt &&
+  warn_of_returns(survey, warnings);
+  warn_of_images(survey, warnings);
+  warn_of_times(survey, warnings);
+  add(survey.axial_depth_warning);
+  // Where there is a warning about the images themselves, A and B cannot agree, and say nothing
+  // else.
+  const bool is_comparable = survey.residual && !pair_warning && !survey.axial_depth_warning &&
                              survey.constant_images.empty() && survey.repeated_single == 0;
-  if (!is_comparable) return doubts;
-  const std::optional<std::string> mixed_up = pairing_doubt(*survey.beat);
+  if (!is_comparable) return warnings;
+  const std::optional<std::string> mixed_up = pairing_warning(*survey.residual);
   add(mixed_up);
-  if (mixed_up) return doubts;
-  add(offset_doubt(*survey.beat, &survey.errors.camera));
-  for (std::string& doubt : doubts_about(survey.errors)) doubts.push_back(std::move(doubt));
-  return doubts;
+  if (mixed_up) return warnings;
+  add(offset_warning(*survey.residual, &survey.errors.camera));
+  for (std::string& warning : warnings_about(survey.errors)) warnings.push_back(std::move(warning));
+  return warnings;
 }
 
 }  // namespace tofmap

@@ -84,21 +84,21 @@ struct Clouds {
     for (const MapPoint& point : map.points) {
       const Eigen::Vector3f p =
           (origin_from_map * point.getVector3fMap().cast<double>()).cast<float>();
-      placed->push_back({p.x(), p.y(), p.z()});
+      registered->push_back({p.x(), p.y(), p.z()});
     }
   }
 
   Cloud::Ptr truth = std::make_shared<Cloud>();
-  Cloud::Ptr placed = std::make_shared<Cloud>();
+  Cloud::Ptr registered = std::make_shared<Cloud>();
 };
 
 std::vector<float> errors_m(const Clouds& clouds, double most_m) {
   const Cloud& truth = *clouds.truth;
   const Tree truth_tree = make_tree(clouds.truth);
-  std::vector<float> errors(clouds.placed->size());
+  std::vector<float> errors(clouds.registered->size());
 #pragma omp parallel for schedule(dynamic, 256)
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    const pcl::PointXYZ& point = (*clouds.placed)[i];
+    const pcl::PointXYZ& point = (*clouds.registered)[i];
     const Nearest found = nearest(truth_tree, point, most_m);
     double gap_m = found.gap_m;
     if (found.index >= 0 && gap_m < near_m) {
@@ -166,7 +166,7 @@ MapScore score_map(const MapCloud& map, const Pose& truth_from_map,
   score.accuracy_m = sum / count;
   score.far_percent = 100.0 * far / count;
 
-  const Tree map_tree = make_tree(clouds.placed);
+  const Tree map_tree = make_tree(clouds.registered);
   const Cloud& truth = *clouds.truth;
   int covered = 0;
 #pragma omp parallel for schedule(dynamic, 256) reduction(+ : covered)

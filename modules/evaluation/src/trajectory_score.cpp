@@ -52,8 +52,9 @@ Pose align(const Matched& matched) {
 std::vector<PoseError> errors_of(const Matched& matched, const Pose& truth_from_estimate) {
   std::vector<PoseError> errors;
   for (std::size_t i = 0; i < matched.estimate.size(); ++i) {
-    const Eigen::Vector3d placed = truth_from_estimate * matched.estimate[i].translation();
-    errors.push_back({matched.timestamps_s[i], (placed - matched.truth[i].translation()).norm()});
+    const Eigen::Vector3d registered = truth_from_estimate * matched.estimate[i].translation();
+    errors.push_back(
+        {matched.timestamps_s[i], (registered - matched.truth[i].translation()).norm()});
   }
   return errors;
 }

@@ -120,13 +120,13 @@ std::optional<Vote> vote(const Region& region, const RangeImage& image, double w
 }
 
 /// Differences of costs below that say nothing: three standard deviations of one pixel, in nats.
-/// What the beat of a pixel costs is bounded by the same, so that none outvotes a region.
+/// What the residual of a pixel costs is bounded by the same, so that none outvotes a region.
 constexpr double sure_nats = 4.5;
 
-/// How badly the beat fits a region whose counts are all changed alike: the sum of half the squared
-/// residuals over their variances.
-double beat_cost(const Region& region, int change, const RangeImage& image,
-                 const DualFrequencyFrame& frame, const Modulation& modulation) {
+/// How badly the residual fits a region whose counts are all changed alike: the sum of half the
+/// squared residuals over their variances.
+double residual_cost(const Region& region, int change, const RangeImage& image,
+                     const DualFrequencyFrame& frame, const Modulation& modulation) {
   const double b_per_a = modulation.frequency_b_hz / modulation.frequency_a_hz;
   double sum = 0;
   for (const Pixel at : region.pixels) {
@@ -167,7 +167,9 @@ void mend(const Region& region, const DualFrequencyFrame& frame, const Modulatio
   const double wavelength_m = modulation.wavelength_a_m();
   const std::optional<Vote> surroundings = vote(region, image, wavelength_m);
   if (!surroundings) return;
-  const auto cost = [&](int change) { return beat_cost(region, change, image, frame, modulation); };
+  const auto cost = [&](int change) {
+    return residual_cost(region, change, image, frame, modulation);
+  };
   const int change = surroundings->wraps;
   const double own = cost(0);
   const double theirs =

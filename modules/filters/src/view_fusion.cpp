@@ -113,7 +113,7 @@ struct Meeting {
 /// What another view says of a pixel.
 struct Finding {
   std::optional<Meeting> meeting;
-  bool is_seen_through = false;
+  bool violates_free_space = false;
 };
 
 /// Follows a ray from a range on to where it meets the surface of the other view.
@@ -137,7 +137,7 @@ Finding look(const OtherView& other, const Eigen::Vector3d& ray, double range_m,
   const double reach_m =
       2 * (options.max_sigmas * std::sqrt(variance_m2 + first->sample.variance.sum_m2()) +
            options.tolerance_m / std::cos(steepest_rad));
-  finding.is_seen_through = first->behind_m > reach_m;
+  finding.violates_free_space = first->behind_m > reach_m;
 
   double slope = other.point_m(ray).z() - other.point_m(Eigen::Vector3d::Zero()).z();
   double at_m = range_m;
@@ -156,7 +156,7 @@ Finding look(const OtherView& other, const Eigen::Vector3d& ray, double range_m,
     behind_m = gap->behind_m;
   }
   if (!(slope > 0)) return finding;
-  finding.is_seen_through = false;
+  finding.violates_free_space = false;
   const Variance& depth = gap->sample.variance;
   finding.meeting = Meeting{at_m + behind_m / slope,
                             {depth.noise_m2 / square(slope), depth.systematic_m2 / square(slope)},
@@ -189,17 +189,17 @@ double weight_of(double confidence, const Variance& variance) {
 
 void fuse_pixel(Eigen::Index row, Eigen::Index col, const std::vector<OtherView>& others,
                 const PixelRays& rays, const FusionOptions& options, RangeImage& out) {
-  constexpr int least_seen_through = 2;
+  constexpr int least_violations = 2;
   const double range_m = out.range_m(row, col);
   const Variance variance{square(out.sigma_m(row, col)), square(out.systematic_m)};
   const Eigen::Vector3d ray(rays.x(row, col), rays.y(row, col), rays.z(row, col));
   Mean mean;
   mean.add(weight_of(out.confidence(row, col), variance), range_m, variance.noise_m2);
-  int seen_through = 0;
+  int free_space_violation = 0;
   int agreeing = 0;
   for (const OtherView& other : others) {
     const Finding finding = look(other, ray, range_m, variance.sum_m2(), options);
-    seen_through += finding.is_seen_through ? 1 : 0;
+    free_space_violation += finding.violates_free_space ? 1 : 0;
     if (!finding.meeting) continue;
     const Meeting& meeting = *finding.meeting;
     const double tolerated_m2 =
@@ -211,8 +211,8 @@ void fuse_pixel(Eigen::Index row, Eigen::Index col, const std::vector<OtherView>
     mean.add(square(room) * weight_of(meeting.confidence, meeting.variance), meeting.range_m,
              meeting.variance.noise_m2);
   }
-  if (seen_through >= least_seen_through && seen_through > agreeing) {
-    out.invalidate(row, col, InvalidReason::seen_through);
+  if (free_space_violation >= least_violations && free_space_violation > agreeing) {
+    out.invalidate(row, col, InvalidReason::free_space_violation);
     return;
   }
   out.range_m(row, col) = static_cast<float>(mean.value / mean.weight);

@@ -13,9 +13,9 @@ constexpr int max_ties = 5;
 
 }  // namespace
 
-double KeyframeSteps::between(const Pose& a, const Pose& b) const {
+double KeyframeSpacing::between(const Pose& a, const Pose& b) const {
   return std::max((a.translation() - b.translation()).norm() / step_m,
-                  rotation_angle_rad(a, b) / turn_rad);
+                  rotation_angle_rad(a, b) / rotation_rad);
 }
 
 void KeyframeGraph::add(Keyframe keyframe) {
@@ -35,7 +35,7 @@ void KeyframeGraph::place(int id, const Pose& world_from_camera) {
 }
 
 std::vector<const Keyframe*> KeyframeGraph::around(int id, const Pose& pose, int count,
-                                                   const KeyframeSteps& steps) const {
+                                                   const KeyframeSpacing& steps) const {
   const auto steps_away = [&](int other) {
     return steps.between((*this)[other].world_from_camera, pose);
   };

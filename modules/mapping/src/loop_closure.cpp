@@ -32,7 +32,7 @@ std::vector<const Keyframe*> earlier_around(const Keyframe& keyframe,
   for (const Keyframe& other : keyframes) {
     if (other.id + options.min_gap > keyframe.id) break;
     if ((pose.translation() - other.world_from_camera.translation()).norm() < options.radius_m &&
-        rotation_angle_rad(pose, other.world_from_camera) < options.max_turn_rad) {
+        rotation_angle_rad(pose, other.world_from_camera) < options.max_rotation_rad) {
       earlier.push_back(&other);
     }
   }
@@ -114,11 +114,11 @@ std::vector<OptionField<LoopOptions>> LoopOptions::fields() {
   return {
       {"close", &O::close, 0, 1, "", "look for places seen before, and correct the path by them"},
       {"radius_m", &O::radius_m, 0.1, 100, "m", "how far apart cameras of one place may stand"},
-      {"max_turn_rad", &O::max_turn_rad, 0.01, 3.2, "rad",
+      {"max_rotation_rad", &O::max_rotation_rad, 0.01, 3.2, "rad",
        "how far apart directions of view of one place may be"},
       {"min_gap", &O::min_gap, 1, 100000, "", "keyframes closer in time than this are no loop"},
       {"min_overlap", &O::min_overlap, 0.01, 1, "", "share of a keyframe that must be seen again"},
-      {"min_inlier_share", &O::min_inlier_share, 0, 1, "",
+      {"min_inlier_ratio", &O::min_inlier_ratio, 0, 1, "",
        "share of the correspondences that must agree"},
       {"drift_share", &O::drift_share, 0, 1, "",
        "how far off the path may be, as a share of its length since the place was seen"},
@@ -136,7 +136,7 @@ MotionPrior drift_prior(const Pose& expected, double path_m, const LoopOptions& 
 
 bool is_verified(const RegistrationResult& result, const LoopOptions& options) {
   return result.status == RegistrationStatus::converged && result.overlap >= options.min_overlap &&
-         result.inlier_share >= options.min_inlier_share && result.degenerate_directions == 0;
+         result.inlier_ratio >= options.min_inlier_ratio && result.degenerate_directions == 0;
 }
 
 PoseEdge edge_of(const Keyframe& from, int to, const RegistrationResult& registration) {
@@ -160,8 +160,9 @@ RegistrationResult register_from_afar(const SurfaceCloud& cloud,
   constexpr double widest_gap_m = 1;
   constexpr int iterations = 40;
   RegistrationOptions wide = registration;
-  wide.max_point_gap_m =
-      std::max(registration.max_point_gap_m, std::min(widest_gap_m, 2 * prior.translation_sigma_m));
+  wide.max_correspondence_distance_m =
+      std::max(registration.max_correspondence_distance_m,
+               std::min(widest_gap_m, 2 * prior.translation_sigma_m));
   wide.max_iterations = std::max(registration.max_iterations, iterations);
   MotionPrior closer = prior;
   closer.world_from_camera =

@@ -83,7 +83,7 @@ PoseGraphResult fit_loops(std::span<const Keyframe> keyframes, std::span<const P
   }
   const Loops agreeing = most_that_agree(loops, keyframes, options);
   const auto outvoted = std::ranges::count_if(agreeing, [&](const PoseEdge* loop) {
-    return is_outvoted(edge_deviation(*loop, fitted.poses), options.kernel_width);
+    return is_outvoted(mahalanobis_distance(*loop, fitted.poses), options.kernel_width);
   });
   const bool tell_of_drift = agreeing.size() >= least_agreeing &&
                              2 * agreeing.size() > loops.size() &&
@@ -91,9 +91,9 @@ PoseGraphResult fit_loops(std::span<const Keyframe> keyframes, std::span<const P
   if (!tell_of_drift) return fitted;
   fitted = optimise_pose_graph(std::move(poses), with_drift(edges, agreeing, keyframes, options),
                                options.kernel_width);
-  fitted.edge_deviations.clear();
+  fitted.edge_mahalanobis.clear();
   for (const PoseEdge& edge : edges) {
-    fitted.edge_deviations.push_back(edge_deviation(edge, fitted.poses));
+    fitted.edge_mahalanobis.push_back(mahalanobis_distance(edge, fitted.poses));
   }
   return fitted;
 }

@@ -82,7 +82,7 @@ void MotionUncertainty::serialize(Archive& archive, unsigned) {
 
 template <class Archive>
 void Odometry::serialize(Archive& archive, unsigned) {
-  archive& last_& before_last_& frames_since_placed_& recent_periods_s_& last_timestamp_s_;
+  archive& last_& before_last_& frames_since_registered_& recent_periods_s_& last_timestamp_s_;
   archive& uncertainty_;
 }
 
@@ -97,7 +97,7 @@ void SurfaceMap::serialize(Archive& archive, unsigned) {
 }
 
 template <class Archive>
-void RoomMapper::PlacedFrame::serialize(Archive& archive, unsigned) {
+void RoomMapper::RegisteredFrame::serialize(Archive& archive, unsigned) {
   archive& timestamp_s& keyframe& keyframe_from_camera;
 }
 

@@ -9,12 +9,12 @@
 namespace tofmap {
 namespace {
 
-/// One that has not been placed for longer may have moved otherwise than before.
+/// One that has not been registered for longer may have moved otherwise than before.
 constexpr double periods_of_steady_tracking = 3.5;
 
 /// Share of the frame's points that agree with the targets; 0 if registration failed.
 double support(const RegistrationResult& result) {
-  return succeeded(result.status) ? result.overlap * result.inlier_share : 0;
+  return succeeded(result.status) ? result.overlap * result.inlier_ratio : 0;
 }
 
 bool has_surface(const SurfaceCloud& cloud, int min_points) {
@@ -30,10 +30,10 @@ bool has_surface(const SurfaceCloud& cloud, int min_points) {
 std::vector<OptionField<OdometryOptions>> OdometryOptions::fields() {
   using O = OdometryOptions;
   return {
-      {"keyframe_step_m", &O::keyframe_step_m, 0.01, 10, "m",
+      {"keyframe_translation_m", &O::keyframe_translation_m, 0.01, 10, "m",
        "a frame this far from all keyframes around becomes one; twice as far from those of an "
        "earlier visit"},
-      {"keyframe_turn_rad", &O::keyframe_turn_rad, 0.01, 3.2, "rad",
+      {"keyframe_rotation_rad", &O::keyframe_rotation_rad, 0.01, 3.2, "rad",
        "a frame turned this far from all keyframes around becomes one; twice as far from those of "
        "an earlier visit"},
       {"keyframes_around", &O::keyframes_around, 1, 1000, "",
@@ -45,7 +45,7 @@ std::vector<OptionField<OdometryOptions>> OdometryOptions::fields() {
        "how much the turn between two frames may change from one to the next"},
       {"prior_translation_sigma_m", &O::prior_translation_sigma_m, 1e-4, 10, "m",
        "how much the step between two frames may change from one to the next"},
-      {"max_prior_deviation", &O::max_prior_deviation, 1, 1000, "",
+      {"max_prior_mahalanobis", &O::max_prior_mahalanobis, 1, 1000, "",
        "a pose more of these standard deviations off the expected one is not believed"},
   };
 }
@@ -81,7 +81,7 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
                                std::span<const Keyframe* const> around,
                                const std::function<bool(const RegistrationResult&)>& is_believed) {
   TrackingResult result;
-  ++frames_since_placed_;
+  ++frames_since_registered_;
   if (!has_surface(cloud, registration_.min_correspondences)) {
     result.status = TrackingStatus::no_surface;
     return result;
@@ -109,13 +109,13 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
   } else if (is_believed && !is_believed(result.registration)) {
     result.status = TrackingStatus::lost;
   } else if (deviation(prior, result.registration.world_from_camera) >
-             options_.max_prior_deviation) {
+             options_.max_prior_mahalanobis) {
     result.status = TrackingStatus::implausible;
   } else {
     result.status = TrackingStatus::tracked;
     result.world_from_camera = result.registration.world_from_camera;
     // The prior of one frame does not tell of those before it that left a direction open, too.
-    const double periods = std::max(1.0, periods_since_placed(timestamp_s));
+    const double periods = std::max(1.0, periods_since_registered(timestamp_s));
     uncertainty_.learn(static_cast<int>(std::lround(periods)),
                        result.registration.surface_information);
     result.registration.covariance = uncertainty_.of_pose();
@@ -142,7 +142,7 @@ void Odometry::register_from(const MotionPrior& prior, const SurfaceCloud& cloud
 }
 
 bool Odometry::is_after_gap(double timestamp_s) const {
-  return periods_since_placed(timestamp_s) > periods_of_steady_tracking;
+  return periods_since_registered(timestamp_s) > periods_of_steady_tracking;
 }
 
 bool Odometry::is_within_reach(double timestamp_s, const Pose& pose) const {
@@ -163,9 +163,9 @@ void Odometry::note_frame(double timestamp_s) {
   last_timestamp_s_ = timestamp_s;
 }
 
-double Odometry::periods_since_placed(double timestamp_s) const {
+double Odometry::periods_since_registered(double timestamp_s) const {
   if (!last_) return 0;
-  double periods = frames_since_placed_;
+  double periods = frames_since_registered_;
   if (!recent_periods_s_.empty()) {
     // Of frames that are dropped now and then most still come one after the other.
     std::vector<double> periods_s = recent_periods_s_;
@@ -179,17 +179,17 @@ double Odometry::periods_since_placed(double timestamp_s) const {
 
 MotionPrior Odometry::predict(double timestamp_s) const {
   MotionPrior prior;
-  // Every frame that could not be placed, or never came, adds its share of unknown motion.
-  const double periods = std::max(1.0, periods_since_placed(timestamp_s));
+  // Every frame that could not be registered, or never came, adds its share of unknown motion.
+  const double periods = std::max(1.0, periods_since_registered(timestamp_s));
   prior.rotation_sigma_rad = periods * options_.prior_rotation_sigma_rad;
   prior.translation_sigma_m = periods * options_.prior_translation_sigma_m;
   prior.world_from_camera = last_->world_from_camera;
-  // Frames that were there and could not be placed are a sign that motion has changed. Where none
-  // came it is the best guess, for some time.
+  // Frames that were there and could not be registered are a sign that motion has changed. Where
+  // none came it is the best guess, for some time.
   constexpr int frames_of_steady_motion = 3;
   constexpr double most_periods = 30;
   const double last_step_s = before_last_ ? last_->timestamp_s - before_last_->timestamp_s : 0;
-  if (last_step_s > 0 && frames_since_placed_ <= frames_of_steady_motion) {
+  if (last_step_s > 0 && frames_since_registered_ <= frames_of_steady_motion) {
     const double share = (timestamp_s - last_->timestamp_s) / last_step_s;
     const Pose step = before_last_->world_from_camera.inverse() * last_->world_from_camera;
     // A camera that turns goes on along its own axes, not along the world's.
@@ -232,7 +232,7 @@ void Odometry::restart(const StampedPose& pose) {
   last_ = pose;
   before_last_.reset();
   uncertainty_.reset();
-  frames_since_placed_ = 0;
+  frames_since_registered_ = 0;
 }
 
 void Odometry::move(const Pose& new_from_old_world) {
@@ -245,7 +245,7 @@ void Odometry::move(const Pose& new_from_old_world) {
 void Odometry::accept(const StampedPose& pose) {
   before_last_ = last_;
   last_ = pose;
-  frames_since_placed_ = 0;
+  frames_since_registered_ = 0;
 }
 
 }  // namespace tofmap

@@ -11,7 +11,7 @@ namespace {
 
 /// Share of the frame's points that agree with what is known of a place.
 double support(const Relocalisation& place) {
-  return place.registration.overlap * place.registration.inlier_share;
+  return place.registration.overlap * place.registration.inlier_ratio;
 }
 
 /// A place that another one has more than this share of the support of is not sure.

@@ -3,8 +3,8 @@
 
 #include "tofmap/mapping/room_mapper.hpp"
 
+#include "tofmap/mapping/free_space.hpp"
 #include "tofmap/mapping/loop_fit.hpp"
-#include "tofmap/mapping/seen_through.hpp"
 
 #include <algorithm>
 
@@ -50,7 +50,7 @@ AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
     return added;
   }
   added.tracking = timed(added.register_ms, [&] { return track(frame); });
-  if (!added.tracking.placed()) return added;
+  if (!added.tracking.registered()) return added;
   timed(added.integrate_ms, [&] { integrate(*frame.cloud); });
   timed(added.loop_ms, [&] { close_loops(); });
   return added;
@@ -61,8 +61,8 @@ TrackingResult RoomMapper::track(const NewFrame& frame) {
   const std::vector<const Keyframe*> around = keyframes_around();
   TrackingResult result = find_camera(frame.timestamp_s, *frame.cloud, around);
   odometry_.note_frame(frame.timestamp_s);
-  if (!frames_.empty()) lost_frames_ = result.placed() ? 0 : lost_frames_ + 1;
-  if (!result.placed()) return result;
+  if (!frames_.empty()) lost_frames_ = result.registered() ? 0 : lost_frames_ + 1;
+  if (!result.registered()) return result;
   result.is_keyframe = result.status != TrackingStatus::relocalised &&
                        wants_keyframe(result.world_from_camera, around);
   if (result.is_keyframe) {
@@ -75,16 +75,16 @@ TrackingResult RoomMapper::track(const NewFrame& frame) {
   return result;
 }
 
-KeyframeSteps RoomMapper::keyframe_steps() const {
-  return {odometry_options_.keyframe_step_m, odometry_options_.keyframe_turn_rad};
+KeyframeSpacing RoomMapper::keyframe_spacing() const {
+  return {odometry_options_.keyframe_translation_m, odometry_options_.keyframe_rotation_rad};
 }
 
 std::vector<const Keyframe*> RoomMapper::keyframes_around() const {
   if (frames_.empty()) return {};
-  const PlacedFrame& last = frames_.back();
+  const RegisteredFrame& last = frames_.back();
   const Pose pose = keyframes_[last.keyframe].world_from_camera * last.keyframe_from_camera;
   return keyframes_.around(last.keyframe, pose, odometry_options_.keyframes_around,
-                           keyframe_steps());
+                           keyframe_spacing());
 }
 
 TrackingResult RoomMapper::find_camera(double timestamp_s, const SurfaceCloud& cloud,
@@ -93,12 +93,12 @@ TrackingResult RoomMapper::find_camera(double timestamp_s, const SurfaceCloud& c
   // where it was last seen: so all of them are looked at first.
   if (lost_frames_ >= frames_until_lost) {
     const TrackingResult found = relocalised(timestamp_s, cloud);
-    if (found.placed() || lost_frames_ >= frames_until_given_up) return found;
+    if (found.registered() || lost_frames_ >= frames_until_given_up) return found;
   }
   if (!odometry_.is_after_gap(timestamp_s)) return odometry_.track(timestamp_s, cloud, around);
   return odometry_.track(timestamp_s, cloud, around, [this](const RegistrationResult& result) {
     return result.overlap >= loop_options_.min_overlap &&
-           result.inlier_share >= loop_options_.min_inlier_share;
+           result.inlier_ratio >= loop_options_.min_inlier_ratio;
   });
 }
 
@@ -111,7 +111,7 @@ TrackingResult RoomMapper::relocalised(double timestamp_s, const SurfaceCloud& c
   constexpr double sure_support_within_reach = 0.6;
   const RegistrationResult& there = found->registration;
   const bool is_within_reach = odometry_.is_within_reach(timestamp_s, there.world_from_camera);
-  if (there.overlap * there.inlier_share <
+  if (there.overlap * there.inlier_ratio <
       (is_within_reach ? sure_support_within_reach : sure_support)) {
     return result;
   }
@@ -123,7 +123,7 @@ TrackingResult RoomMapper::relocalised(double timestamp_s, const SurfaceCloud& c
   return result;
 }
 
-/// Adds the surface of the frame that was placed last to the part of its keyframe.
+/// Adds the surface of the frame that was registered last to the part of its keyframe.
 void RoomMapper::integrate(const SurfaceCloud& cloud) {
   Part& part = parts_[static_cast<std::size_t>(part_of_[static_cast<std::size_t>(current_)])];
   const Pose anchor_from_keyframe =
@@ -157,7 +157,7 @@ void RoomMapper::finish() {
 
 Trajectory RoomMapper::trajectory() const {
   Trajectory trajectory;
-  for (const PlacedFrame& frame : frames_) {
+  for (const RegisteredFrame& frame : frames_) {
     const Pose& world_from_keyframe = keyframes_[frame.keyframe].world_from_camera;
     trajectory.push_back({frame.timestamp_s, world_from_keyframe * frame.keyframe_from_camera});
   }
@@ -184,14 +184,14 @@ MapCloud RoomMapper::surface() const {
     whole.add(part.surface, keyframes_[part.anchor].world_from_camera);
   }
   const MapCloud map = whole.extract();
-  if (!surface_options_.drop_seen_through) return map;
-  return without_seen_through(map, keyframes_.all(), camera_, surface_options_.voxel_m);
+  if (!surface_options_.drop_free_space_violations) return map;
+  return without_free_space_violations(map, keyframes_.all(), camera_, surface_options_.voxel_m);
 }
 
 bool RoomMapper::wants_keyframe(const Pose& pose, std::span<const Keyframe* const> around) const {
   return std::ranges::none_of(around, [&](const Keyframe* keyframe) {
     const bool is_of_earlier_visit = keyframe->id + recent_keyframes < keyframes_.size();
-    return keyframe_steps().between(keyframe->world_from_camera, pose) <
+    return keyframe_spacing().between(keyframe->world_from_camera, pose) <
            (is_of_earlier_visit ? steps_on_earlier_visits : 1);
   });
 }
@@ -227,7 +227,7 @@ int RoomMapper::part_for(int id, const Pose& pose, std::span<const Keyframe* con
   for (const Keyframe* keyframe : around) {
     const int part = part_of_[static_cast<std::size_t>(keyframe->id)];
     const int anchor = parts_[static_cast<std::size_t>(part)].anchor;
-    const double steps = keyframe_steps().between(keyframes_[anchor].world_from_camera, pose);
+    const double steps = keyframe_spacing().between(keyframes_[anchor].world_from_camera, pose);
     if (steps >= least_steps) continue;
     nearest = part;
     least_steps = steps;
@@ -247,7 +247,7 @@ void RoomMapper::fit() {
   auto loop = loops_.begin();
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     if (!edges_[i].may_be_wrong) continue;
-    loop->deviations = fitted.edge_deviations[i];
+    loop->deviations = fitted.edge_mahalanobis[i];
     loop->is_used = !is_outvoted(loop->deviations, loop_options_.kernel_width);
     // Now both ends are where the loop says, and frames may be registered against either.
     if (loop->is_used) keyframes_.tie(edges_[i].from, edges_[i].to);

@@ -33,7 +33,7 @@ std::vector<OptionField<SurfaceMapOptions>> SurfaceMapOptions::fields() {
        "voxels with fewer points are not written"},
       {"max_sigma_m", &O::max_sigma_m, 0.001, 100, "m",
        "points less certain than this, along their normal, do not enter the map"},
-      {"drop_seen_through", &O::drop_seen_through, 0, 1, "",
+      {"drop_free_space_violations", &O::drop_free_space_violations, 0, 1, "",
        "leave out points that keyframes see through: what moved on, flying pixels, wrong wraps"},
   };
 }

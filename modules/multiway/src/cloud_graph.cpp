@@ -18,7 +18,7 @@ std::vector<std::size_t> by_quality(const std::vector<CloudPair>& pairs) {
     if (pairs[i].verdict == PairVerdict::registered) order.push_back(i);
   }
   std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t i) {
-    return pairs[i].fit.overlap * pairs[i].fit.inlier_share;
+    return pairs[i].fit.overlap * pairs[i].fit.inlier_ratio;
   });
   return order;
 }
@@ -89,7 +89,7 @@ std::vector<Pose> fitted_poses(std::vector<Pose> poses, std::vector<CloudPair>& 
   }
   PoseGraphResult fitted = optimise_pose_graph(std::move(poses), edges, kernel_width);
   for (std::size_t i = 0; i < used.size(); ++i) {
-    used[i]->deviations = fitted.edge_deviations[i];
+    used[i]->deviations = fitted.edge_mahalanobis[i];
     if (is_outvoted(used[i]->deviations, kernel_width)) {
       used[i]->verdict = PairVerdict::disagrees;
     }
@@ -101,19 +101,19 @@ std::vector<Pose> fitted_poses(std::vector<Pose> poses, std::vector<CloudPair>& 
 
 std::vector<std::optional<Pose>> fit_graph(std::size_t clouds, std::vector<CloudPair>& pairs,
                                            double slack_m, double kernel_width) {
-  std::vector<std::optional<Pose>> placed(clouds);
+  std::vector<std::optional<Pose>> registered(clouds);
   int first = largest_part(parts_of(clouds, pairs));
   const std::vector<Pose> poses =
       fitted_poses(chained_poses(clouds, pairs, first), pairs, slack_m, kernel_width);
   // Without the contradicted pairs fewer may be connected.
   const std::vector<int> part = parts_of(clouds, pairs);
   first = largest_part(part);
-  if (std::ranges::count(part, first) < 2) return placed;
+  if (std::ranges::count(part, first) < 2) return registered;
   const Pose first_from_world = poses[static_cast<std::size_t>(first)].inverse();
   for (std::size_t i = 0; i < clouds; ++i) {
-    if (part[i] == first) placed[i] = first_from_world * poses[i];
+    if (part[i] == first) registered[i] = first_from_world * poses[i];
   }
-  return placed;
+  return registered;
 }
 
 }  // namespace tofmap

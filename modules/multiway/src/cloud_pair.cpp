@@ -31,7 +31,7 @@ constexpr double max_contradiction = 0.023;
 constexpr double more_without_overlap = 0.15;
 
 /// Above that the next best pose is nearly as good as the best.
-constexpr double max_rival = 0.8;
+constexpr double max_runner_up = 0.8;
 
 /// That many matches cannot agree by chance.
 constexpr int least_support = 15;
@@ -43,12 +43,12 @@ struct Candidate {
   CloudIcpResult icp;
   int support = 0;
   CloudFit fit;
-  double seen_through = 0;
+  double free_space_violation = 0;
 
   /// Of poses that sensors contradict only if there are no others.
   double quality() const {
-    const double share = fit.overlap * fit.inlier_share;
-    return seen_through > max_contradiction ? contradicted_quality * share : share;
+    const double share = fit.overlap * fit.inlier_ratio;
+    return free_space_violation > max_contradiction ? contradicted_quality * share : share;
   }
 };
 
@@ -77,11 +77,11 @@ double contradiction(const LevelledCloud& source, const LevelledCloud& target, c
   const double slack_m = contradiction_slack_voxels * target.levels.front().voxel_m;
   double share = 0;
   if (target.view) {
-    share = seen_through_share(*target.view, source.levels.front(), pose, slack_m);
+    share = free_space_violation_share(*target.view, source.levels.front(), pose, slack_m);
   }
   if (source.view) {
-    share = std::max(
-        share, seen_through_share(*source.view, target.levels.front(), pose.inverse(), slack_m));
+    share = std::max(share, free_space_violation_share(*source.view, target.levels.front(),
+                                                       pose.inverse(), slack_m));
   }
   return share;
 }
@@ -101,7 +101,7 @@ std::vector<Candidate> refine_guesses(const LevelledCloud& source_cloud,
                                  {method, coarse_gap_voxels * target.voxel_m, coarse_points});
     candidate.support = guess.support;
     candidate.fit = mutual_fit(source, target, candidate.icp.target_from_source);
-    candidate.seen_through =
+    candidate.free_space_violation =
         contradiction(source_cloud, target_cloud, candidate.icp.target_from_source);
     all.push_back(candidate);
   }
@@ -120,11 +120,11 @@ std::vector<Candidate> refine_guesses(const LevelledCloud& source_cloud,
 PairVerdict verdict_of(const CloudPair& pair, const CloudRegistrationOptions& options) {
   if (pair.support < least_support) return PairVerdict::few_matches;
   if (pair.fit.overlap < options.min_overlap) return PairVerdict::low_overlap;
-  const double least = options.min_inlier_share + more_without_overlap * (1 - pair.fit.overlap);
-  if (pair.fit.inlier_share < least) return PairVerdict::low_inliers;
-  if (pair.seen_through > max_contradiction) return PairVerdict::contradicted;
+  const double least = options.min_inlier_ratio + more_without_overlap * (1 - pair.fit.overlap);
+  if (pair.fit.inlier_ratio < least) return PairVerdict::low_inliers;
+  if (pair.free_space_violation > max_contradiction) return PairVerdict::contradicted;
   if (pair.direction_share < options.min_direction_share) return PairVerdict::degenerate;
-  if (pair.rival > max_rival) return PairVerdict::ambiguous;
+  if (pair.runner_up > max_runner_up) return PairVerdict::ambiguous;
   return PairVerdict::registered;
 }
 
@@ -140,7 +140,7 @@ CloudPair align_pair(const LevelledCloud& source, const LevelledCloud& target,
   if (guesses.empty()) return pair;
   const std::vector<Candidate> candidates = refine_guesses(source, target, guesses, method);
   Candidate best = candidates.front();
-  if (candidates.size() > 1) pair.rival = candidates[1].quality() / best.quality();
+  if (candidates.size() > 1) pair.runner_up = candidates[1].quality() / best.quality();
   const std::size_t levels = std::min(source.levels.size(), target.levels.size());
   for (std::size_t level = 1; level < levels; ++level) {
     best.icp = align_clouds(source.levels[level], target.levels[level], best.icp.target_from_source,
@@ -149,7 +149,7 @@ CloudPair align_pair(const LevelledCloud& source, const LevelledCloud& target,
   pair.support = best.support;
   // Means over large voxels have little noise, so whether surfaces coincide is judged by them.
   pair.fit = mutual_fit(source.levels.front(), target.levels.front(), best.icp.target_from_source);
-  pair.seen_through = contradiction(source, target, best.icp.target_from_source);
+  pair.free_space_violation = contradiction(source, target, best.icp.target_from_source);
   pair.direction_share = best.icp.direction_shares.minCoeff();
   pair.covariance = best.icp.covariance;
   pair.target_from_source = best.icp.target_from_source;

@@ -60,7 +60,7 @@ class Registration {
     align_all_pairs();
     place();
     for (int i = 0; i < static_cast<int>(clouds_.size()) && !out_.interrupted; ++i) {
-      if (!cloud(i).is_placed) try_other_units(i);
+      if (!cloud(i).is_registered) try_other_units(i);
     }
     place();
     explain();
@@ -69,7 +69,7 @@ class Registration {
   }
 
  private:
-  PlacedCloud& cloud(int i) { return out_.clouds[static_cast<std::size_t>(i)]; }
+  RegisteredCloud& cloud(int i) { return out_.clouds[static_cast<std::size_t>(i)]; }
   std::optional<LevelledCloud>& levels(int i) { return levels_[static_cast<std::size_t>(i)]; }
 
   double common_voxel() const {
@@ -130,12 +130,13 @@ class Registration {
     const double slack_m = slack_voxels * out_.voxel_m / 4;
     const auto poses = fit_graph(clouds_.size(), out_.pairs, slack_m, options_.kernel_width);
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      out_.clouds[i].is_placed = poses[i].has_value();
+      out_.clouds[i].is_registered = poses[i].has_value();
       if (poses[i]) out_.clouds[i].common_from_cloud = *poses[i];
     }
   }
 
-  /// Looks whether a cloud fits a placed one, or any of the common size, if its unit is another.
+  /// Looks whether a cloud fits a registered one, or any of the common size, if its unit is
+  /// another.
   void try_other_units(int i) {
     const double spacing = spacings_[static_cast<std::size_t>(i)];
     for (const LengthUnit& unit : likely_units(spacing, common_voxel())) {
@@ -158,35 +159,36 @@ class Registration {
     }
   }
 
-  /// Units are found out by clouds that are placed; if none is, by any of the common size.
+  /// Units are found out by clouds that are registered; if none is, by any of the common size.
   bool is_reference(int i) {
-    return cloud(i).is_placed || (out_.placed() == 0 && is_common_[static_cast<std::size_t>(i)]);
+    return cloud(i).is_registered ||
+           (out_.registered() == 0 && is_common_[static_cast<std::size_t>(i)]);
   }
 
   void explain() {
     for (int i = 0; i < static_cast<int>(clouds_.size()); ++i) {
       const auto index = static_cast<std::size_t>(i);
-      if (cloud(i).is_placed || !cloud(i).remark.empty()) continue;
+      if (cloud(i).is_registered || !cloud(i).remark.empty()) continue;
       if (clouds_[index].points.size() < least_oriented_points ||
           (is_common_[index] && !levels(i))) {
         cloud(i).remark = "has too few points on surfaces";
       } else if (!is_common_[index]) {
         cloud(i).remark = odd_size(spacings_[index] / common_voxel());
       } else {
-        cloud(i).remark = why_not_placed(i, out_.pairs, names_);
+        cloud(i).remark = why_not_registered(i, out_.pairs, names_);
       }
     }
   }
 
   /// From centred frames to the clouds' own, and what each cloud is tied to.
   void finish() {
-    const auto first = std::ranges::find_if(out_.clouds, &PlacedCloud::is_placed);
+    const auto first = std::ranges::find_if(out_.clouds, &RegisteredCloud::is_registered);
     if (first != out_.clouds.end()) {
       const auto index = static_cast<std::size_t>(first - out_.clouds.begin());
       const LevelledCloud& common = *levels_[index];
       for (std::size_t i = 0; i < out_.clouds.size(); ++i) {
-        PlacedCloud& one = out_.clouds[i];
-        if (!one.is_placed) continue;
+        RegisteredCloud& one = out_.clouds[i];
+        if (!one.is_registered) continue;
         one.common_from_cloud = between_own_frames(one.common_from_cloud, *levels_[i], common);
       }
     }
@@ -203,13 +205,13 @@ class Registration {
   void tie(const CloudPair& pair) {
     for (const auto& [one, other] :
          {std::pair(pair.source, pair.target), std::pair(pair.target, pair.source)}) {
-      PlacedCloud& placed = cloud(one);
-      if (!placed.is_placed) continue;
-      placed.tied_to.push_back(other);
-      std::ranges::sort(placed.tied_to);
-      if (pair.fit.inlier_share <= placed.inlier_share) continue;
-      placed.inlier_share = pair.fit.inlier_share;
-      placed.rmse_m = pair.fit.rmse_m;
+      RegisteredCloud& registered = cloud(one);
+      if (!registered.is_registered) continue;
+      registered.tied_to.push_back(other);
+      std::ranges::sort(registered.tied_to);
+      if (pair.fit.inlier_ratio <= registered.inlier_ratio) continue;
+      registered.inlier_ratio = pair.fit.inlier_ratio;
+      registered.rmse_m = pair.fit.rmse_m;
     }
   }
 
@@ -235,7 +237,7 @@ std::vector<OptionField<CloudRegistrationOptions>> CloudRegistrationOptions::fie
        "generalised | point_to_plane | pcl_icp | pcl_gicp"},
       {"min_overlap", &O::min_overlap, 0, 1, "",
        "share of one of two clouds that must lie near the other"},
-      {"min_inlier_share", &O::min_inlier_share, 0, 1, "",
+      {"min_inlier_ratio", &O::min_inlier_ratio, 0, 1, "",
        "share of what lies near that must lie on the surface, of clouds that overlap wholly; up to "
        "0.15 more of those that hardly do"},
       {"min_direction_share", &O::min_direction_share, 0, 1, "",
@@ -270,8 +272,8 @@ const char* verdict_name(PairVerdict verdict) {
   return "unknown";
 }
 
-int CloudRegistration::placed() const {
-  return static_cast<int>(std::ranges::count_if(clouds, &PlacedCloud::is_placed));
+int CloudRegistration::registered() const {
+  return static_cast<int>(std::ranges::count_if(clouds, &RegisteredCloud::is_registered));
 }
 
 CloudRegistration register_clouds(std::span<const PointSet> clouds,

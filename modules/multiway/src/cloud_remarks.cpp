@@ -23,8 +23,8 @@ std::pair<bool, int> nearness(const CloudPair& pair) {
 
 }  // namespace
 
-std::string why_not_placed(int cloud, const std::vector<CloudPair>& pairs,
-                           std::span<const std::string> names) {
+std::string why_not_registered(int cloud, const std::vector<CloudPair>& pairs,
+                               std::span<const std::string> names) {
   const CloudPair* best = nullptr;
   for (const CloudPair& pair : pairs) {
     if (pair.source != cloud && pair.target != cloud) continue;

@@ -12,11 +12,11 @@
 
 namespace tofmap {
 
-// What is said of clouds that are odd or not placed.
+// What is said of clouds that are odd or not registered.
 
 /// By the pair that came nearest; empty if there is no pair.
-std::string why_not_placed(int cloud, const std::vector<CloudPair>& pairs,
-                           std::span<const std::string> names);
+std::string why_not_registered(int cloud, const std::vector<CloudPair>& pairs,
+                               std::span<const std::string> names);
 
 /// A cloud so many times as large as the others that fits none of them.
 std::string odd_size(double ratio);

@@ -48,9 +48,9 @@ struct Nearest {
   std::optional<std::size_t> index;
 };
 
-/// For each source point, or so many of them, the nearest target point within `max_gap_m`.
+/// For each source point, or so many of them, the nearest target point within `max_distance_m`.
 std::vector<Nearest> nearest_points(const OrientedCloud& source, const OrientedCloud& target,
-                                    const Pose& target_from_source, double max_gap_m,
+                                    const Pose& target_from_source, double max_distance_m,
                                     std::size_t max_points) {
   const std::size_t points = std::min(source.size(), max_points);
   std::vector<Nearest> nearest(points);
@@ -61,7 +61,7 @@ std::vector<Nearest> nearest_points(const OrientedCloud& source, const OrientedC
     Nearest& one = nearest[i];
     one.point_m = target_from_source * source.points_m[at].cast<double>();
     one.normal = target_from_source.linear() * source.normals[at].cast<double>();
-    const auto found = target.search.nearest(one.point_m.cast<float>(), max_gap_m);
+    const auto found = target.search.nearest(one.point_m.cast<float>(), max_distance_m);
     if (found) one.index = found->index;
   }
   return nearest;
@@ -72,8 +72,8 @@ std::vector<PointPair> find_pairs(const OrientedCloud& source, const OrientedClo
                                   const CloudIcpOptions& options) {
   const double sigma_m = sigma_per_voxel * target.voxel_m;
   std::vector<PointPair> pairs;
-  for (const Nearest& one :
-       nearest_points(source, target, target_from_source, options.max_gap_m, options.max_points)) {
+  for (const Nearest& one : nearest_points(source, target, target_from_source,
+                                           options.max_distance_m, options.max_points)) {
     if (!one.index) continue;
     const Eigen::Vector3d normal = target.normals[*one.index].cast<double>();
     if (std::abs(normal.dot(one.normal)) < max_pairing_normal_cos) continue;
@@ -159,7 +159,7 @@ CloudIcpResult align_clouds(const OrientedCloud& source, const OrientedCloud& ta
   const Eigen::Vector3d source_centre_m = centre_of(source);
   if (options.method == CloudMethod::pcl_icp || options.method == CloudMethod::pcl_gicp) {
     const PclAlignment found =
-        align_with_pcl(source.points_m, target.points_m, target_from_source, options.max_gap_m,
+        align_with_pcl(source.points_m, target.points_m, target_from_source, options.max_distance_m,
                        options.method == CloudMethod::pcl_gicp, max_iterations);
     result.target_from_source = found.target_from_source;
     result.converged = found.converged;
@@ -199,7 +199,7 @@ CloudFit measure_fit(const OrientedCloud& source, const OrientedCloud& target,
   CloudFit fit;
   if (near == 0) return fit;
   fit.overlap = static_cast<double>(near) / static_cast<double>(points.size());
-  fit.inlier_share = static_cast<double>(inliers) / near;
+  fit.inlier_ratio = static_cast<double>(inliers) / near;
   if (inliers > 0) fit.rmse_m = std::sqrt(squares_m2 / inliers);
   return fit;
 }

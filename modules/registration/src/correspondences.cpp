@@ -33,12 +33,12 @@ const SurfacePoint* look_up(const SurfaceCloud& target, const CameraModel& camer
 constexpr int least_points_for_threads = 4000;
 
 struct Gates {
-  double max_gap_m;
+  double max_distance_m;
   double min_normal_cos;
   double systematic_variance_m2;
 
   explicit Gates(const RegistrationOptions& options)
-      : max_gap_m(options.max_point_gap_m),
+      : max_distance_m(options.max_correspondence_distance_m),
         min_normal_cos(std::cos(options.max_normal_angle_rad)),
         systematic_variance_m2(options.systematic_sigma_m * options.systematic_sigma_m) {}
 };
@@ -52,7 +52,7 @@ std::optional<Correspondence> correspondence(const SurfacePoint& source,
   const SurfacePoint* found = look_up(target, camera, point);
   if (found == nullptr) return std::nullopt;
   const Eigen::Vector3d gap = point - found->getVector3fMap().cast<double>();
-  if (gap.squaredNorm() > gates.max_gap_m * gates.max_gap_m) return std::nullopt;
+  if (gap.squaredNorm() > gates.max_distance_m * gates.max_distance_m) return std::nullopt;
 
   const Eigen::Vector3d normal = found->getNormalVector3fMap().cast<double>();
   const Eigen::Vector3d source_normal = source.getNormalVector3fMap().cast<double>();

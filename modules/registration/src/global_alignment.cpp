@@ -28,8 +28,8 @@ struct PlacedMatch {
   Eigen::Vector3f source_normal, target_normal;
 };
 
-std::vector<PlacedMatch> placed(const OrientedCloud& source, const OrientedCloud& target,
-                                const std::vector<FeatureMatch>& matches) {
+std::vector<PlacedMatch> registered(const OrientedCloud& source, const OrientedCloud& target,
+                                    const std::vector<FeatureMatch>& matches) {
   std::vector<PlacedMatch> out;
   for (const FeatureMatch& match : matches) {
     const auto s = static_cast<std::size_t>(match.source);
@@ -130,7 +130,7 @@ std::vector<std::size_t> supporters(const std::vector<PlacedMatch>& matches, con
 std::vector<AlignmentGuess> guess_alignments(const OrientedCloud& source,
                                              const OrientedCloud& target,
                                              const std::vector<FeatureMatch>& feature_matches) {
-  const std::vector<PlacedMatch> matches = placed(source, target, feature_matches);
+  const std::vector<PlacedMatch> matches = registered(source, target, feature_matches);
   const double voxel_m = std::max(source.voxel_m, target.voxel_m);
   const BitMatrix together = compatibility(matches, voxel_m);
   const std::vector<double> scores = seed_scores(together, matches.size());

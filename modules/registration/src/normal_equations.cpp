@@ -114,7 +114,7 @@ ResidualStatistics residual_statistics(const std::vector<Correspondence>& pairs,
     sum += pair.residual_m * pair.residual_m;
   }
   if (inliers == 0) return statistics;
-  statistics.inlier_share = static_cast<double>(inliers) / static_cast<double>(pairs.size());
+  statistics.inlier_ratio = static_cast<double>(inliers) / static_cast<double>(pairs.size());
   statistics.rmse_m = std::sqrt(sum / inliers);
   return statistics;
 }

@@ -25,7 +25,7 @@ struct NormalEquations {
 /// How well the residuals fit at one pose.
 struct ResidualStatistics {
   double scale = 0;  ///< robust standard deviation of residual / predicted sigma
-  double inlier_share = 0;
+  double inlier_ratio = 0;
   double rmse_m = 0;  ///< over the inliers
 };
 

@@ -26,12 +26,12 @@ PointSearch::PointSearch(const std::vector<Eigen::Vector3f>& points_m) {
 }
 
 std::optional<PointSearch::Neighbour> PointSearch::nearest(const Eigen::Vector3f& place_m,
-                                                           double max_gap_m) const {
+                                                           double max_distance_m) const {
   thread_local pcl::Indices indices;
   thread_local std::vector<float> squared_gaps_m2;
   constexpr unsigned just_one = 1;
-  const int found = tree_->tree.radiusSearch({place_m.x(), place_m.y(), place_m.z()}, max_gap_m,
-                                             indices, squared_gaps_m2, just_one);
+  const int found = tree_->tree.radiusSearch({place_m.x(), place_m.y(), place_m.z()},
+                                             max_distance_m, indices, squared_gaps_m2, just_one);
   if (found == 0) return std::nullopt;
   return Neighbour{static_cast<std::size_t>(indices[0]), squared_gaps_m2[0]};
 }

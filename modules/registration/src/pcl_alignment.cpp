@@ -15,10 +15,10 @@ using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 template <class Icp>
 PclAlignment run(Icp& icp, const Cloud::Ptr& source, const Cloud::Ptr& target, const Pose& initial,
-                 double max_gap_m, int max_iterations) {
+                 double max_distance_m, int max_iterations) {
   icp.setInputSource(source);
   icp.setInputTarget(target);
-  icp.setMaxCorrespondenceDistance(max_gap_m);
+  icp.setMaxCorrespondenceDistance(max_distance_m);
   icp.setMaximumIterations(max_iterations);
   Cloud aligned;
   icp.align(aligned, initial.matrix().cast<float>());
@@ -35,16 +35,16 @@ PclAlignment run(Icp& icp, const Cloud::Ptr& source, const Cloud::Ptr& target, c
 
 PclAlignment align_with_pcl(const std::vector<Eigen::Vector3f>& source_m,
                             const std::vector<Eigen::Vector3f>& target_m,
-                            const Pose& target_from_source, double max_gap_m, bool generalised,
+                            const Pose& target_from_source, double max_distance_m, bool generalised,
                             int max_iterations) {
   const Cloud::Ptr source = pcl_points(source_m);
   const Cloud::Ptr target = pcl_points(target_m);
   if (generalised) {
     pcl::GeneralizedIterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ> icp;
-    return run(icp, source, target, target_from_source, max_gap_m, max_iterations);
+    return run(icp, source, target, target_from_source, max_distance_m, max_iterations);
   }
   pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ> icp;
-  return run(icp, source, target, target_from_source, max_gap_m, max_iterations);
+  return run(icp, source, target, target_from_source, max_distance_m, max_iterations);
 }
 
 }  // namespace tofmap

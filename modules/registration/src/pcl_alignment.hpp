@@ -18,7 +18,7 @@ struct PclAlignment {
 /// PCL's ICP or generalised ICP, as it comes.
 PclAlignment align_with_pcl(const std::vector<Eigen::Vector3f>& source_m,
                             const std::vector<Eigen::Vector3f>& target_m,
-                            const Pose& target_from_source, double max_gap_m, bool generalised,
+                            const Pose& target_from_source, double max_distance_m, bool generalised,
                             int max_iterations);
 
 }  // namespace tofmap

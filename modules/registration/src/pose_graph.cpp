@@ -130,7 +130,7 @@ ceres::Solver::Summary solve(std::span<const PoseEdge> edges, double kernel_widt
 
 }  // namespace
 
-double edge_deviation(const PoseEdge& edge, const std::vector<Pose>& poses) {
+double mahalanobis_distance(const PoseEdge& edge, const std::vector<Pose>& poses) {
   const Node from = node_of(poses[static_cast<std::size_t>(edge.from)]);
   const Node to = node_of(poses[static_cast<std::size_t>(edge.to)]);
   Eigen::Matrix<double, 6, 1> residual;
@@ -155,7 +155,7 @@ PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const Pos
   for (const Pose& pose : result.poses) nodes.push_back(node_of(pose));
   double width = kernel_width;
   for (const PoseEdge& edge : edges) {
-    if (edge.may_be_wrong) width = std::max(width, 2 * edge_deviation(edge, result.poses));
+    if (edge.may_be_wrong) width = std::max(width, 2 * mahalanobis_distance(edge, result.poses));
   }
   while (true) {
     const ceres::Solver::Summary summary = solve(edges, width, nodes);
@@ -170,7 +170,7 @@ PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const Pos
     result.poses[i].translation() = nodes[i].translation_m;
   }
   for (const PoseEdge& edge : edges) {
-    result.edge_deviations.push_back(edge_deviation(edge, result.poses));
+    result.edge_mahalanobis.push_back(mahalanobis_distance(edge, result.poses));
   }
   return result;
 }

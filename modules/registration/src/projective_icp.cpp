@@ -100,7 +100,7 @@ System build_system(const std::vector<Correspondence>& pairs, const Pose& pose, 
 RegistrationStatus verdict(const RegistrationResult& result, bool has_converged,
                            const RegistrationOptions& options) {
   if (result.overlap < options.min_overlap) return RegistrationStatus::low_overlap;
-  if (result.inlier_share < options.min_inlier_share) return RegistrationStatus::low_inliers;
+  if (result.inlier_ratio < options.min_inlier_ratio) return RegistrationStatus::low_inliers;
   return has_converged ? RegistrationStatus::converged : RegistrationStatus::iteration_limit;
 }
 
@@ -127,7 +127,7 @@ RegistrationStatus descend(const std::vector<const SurfacePoint*>& points,
     result.covariance = solver.solve(Matrix6d::Identity());
     result.surface_information = system.information;
     result.overlap = found.overlap;
-    result.inlier_share = system.statistics.inlier_share;
+    result.inlier_ratio = system.statistics.inlier_ratio;
     result.rmse_m = system.statistics.rmse_m;
     result.residual_scale = system.statistics.scale;
     result.direction_shares = system.seen.shares;
@@ -183,9 +183,9 @@ RegistrationStatus refine_with_pcl(const SurfaceCloud&,
     std::ranges::copy(positions(chosen, origin.inverse() * target.world_from_camera),
                       std::back_inserter(surface));
   }
-  const PclAlignment found =
-      align_with_pcl(positions(points, Pose::Identity()), surface, Pose::Identity(),
-                     options.max_point_gap_m, options.method == "pcl_gicp", options.max_iterations);
+  const PclAlignment found = align_with_pcl(positions(points, Pose::Identity()), surface,
+                                            Pose::Identity(), options.max_correspondence_distance_m,
+                                            options.method == "pcl_gicp", options.max_iterations);
   result.world_from_camera = origin * found.target_from_source;
   RegistrationOptions just_measure = options;
   just_measure.max_iterations = 1;
@@ -209,7 +209,7 @@ std::vector<OptionField<RegistrationOptions>> RegistrationOptions::fields() {
       {"source_stride_px", &O::source_stride_px, 1, 16, "px",
        "every how manieth pixel of a frame, in both axes, is registered"},
       {"max_iterations", &O::max_iterations, 1, 200, "", "Gauss-Newton steps at the most"},
-      {"max_point_gap_m", &O::max_point_gap_m, 0.01, 5, "m",
+      {"max_correspondence_distance_m", &O::max_correspondence_distance_m, 0.01, 5, "m",
        "points farther apart than this are no correspondence"},
       {"max_normal_angle_rad", &O::max_normal_angle_rad, 0.01, 1.57, "rad",
        "normals that differ by more are no correspondence"},
@@ -223,7 +223,7 @@ std::vector<OptionField<RegistrationOptions>> RegistrationOptions::fields() {
        "a frame with fewer is not registered"},
       {"min_overlap", &O::min_overlap, 0, 1, "",
        "share of a frame's points that must fall onto known surface"},
-      {"min_inlier_share", &O::min_inlier_share, 0, 1, "",
+      {"min_inlier_ratio", &O::min_inlier_ratio, 0, 1, "",
        "share of the correspondences that must agree with the pose"},
   };
 }

@@ -74,8 +74,8 @@ bool may_be_viewpoint(std::span<const Eigen::Vector3f> points_m, const Eigen::Ve
   return static_cast<double>(hidden) < max_hidden_share * static_cast<double>(points_m.size());
 }
 
-double seen_through_share(const SphericalView& view, const OrientedCloud& cloud,
-                          const Pose& view_from_cloud, double slack_m) {
+double free_space_violation_share(const SphericalView& view, const OrientedCloud& cloud,
+                                  const Pose& view_from_cloud, double slack_m) {
   constexpr double slack_share = 0.02;
   int in_front = 0;
   int on_surface = 0;

@@ -34,8 +34,9 @@ struct EffortTable {
     for (int i = 0; i <= samples; ++i) {
       u.push_back(path.end() * i / samples);
       const Pose pose = path.pose_at(u.back());
-      const double step = (pose.translation() - last.translation()).norm() / limits.max_step_m;
-      sum += std::hypot(step, rotation_angle_rad(last, pose) / limits.max_turn_rad);
+      const double step =
+          (pose.translation() - last.translation()).norm() / limits.max_translation_m;
+      sum += std::hypot(step, rotation_angle_rad(last, pose) / limits.max_rotation_rad);
       effort.push_back(sum);
       last = pose;
     }

@@ -87,7 +87,8 @@ CameraMotion camera_motion(const Scene& scene, const SimulatorOptions& options) 
     if (poses.empty()) throw InputError(options.trajectory_file + ": holds no pose");
     return replay_motion(poses, options.frames, options.b_delay_share);
   }
-  const MotionLimits limits{options.max_step_m, options.max_turn_deg * std::numbers::pi / 180};
+  const MotionLimits limits{options.max_translation_m,
+                            options.max_rotation_deg * std::numbers::pi / 180};
   return plan_motion(scene.path, limits, options.frames, scene.min_frames, options.frame_rate_hz,
                      options.b_delay_share);
 }
@@ -149,8 +150,10 @@ std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
       {"b_delay_share", &S::b_delay_share, 0, 1, "", "B follows A by this share of a frame period"},
       {"frames", &S::frames, 0, 1000000, "", "frames to record; 0: as many as the path needs"},
       {"frame_rate_hz", &S::frame_rate_hz, 0.01, 10000, "Hz", "frames a second"},
-      {"max_step_m", &S::max_step_m, 0.001, 10, "m", "how far the camera moves a frame, at most"},
-      {"max_turn_deg", &S::max_turn_deg, 0.01, 90, "deg", "how far it turns a frame, at most"},
+      {"max_translation_m", &S::max_translation_m, 0.001, 10, "m",
+       "how far the camera moves a frame, at most"},
+      {"max_rotation_deg", &S::max_rotation_deg, 0.01, 90, "deg",
+       "how far it turns a frame, at most"},
       // Truth images hold millimetres in 16 bits.
       {"max_range_m", &S::max_range_m, 0, 65.5, "m",
        "surfaces beyond return nothing, and the recording says so; 0: all return something"},

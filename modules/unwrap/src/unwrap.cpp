@@ -6,15 +6,15 @@
 #include "common/counted_ranges.hpp"
 #include "joint/joint.hpp"
 #include "jump/jump.hpp"
-#include "tofmap/unwrap/common/beat.hpp"
+#include "tofmap/unwrap/common/residual_cost.hpp"
 
 namespace tofmap {
 namespace {
 
-/// Every pixel by itself: its counts, as confident as the beat is of them.
+/// Every pixel by itself: its counts, as confident as the residual is of them.
 UnwrapResult unwrap_by_pixel(const MeasuredFrame& frame, const ImageU8& counts,
-                             const BeatLimits& limits) {
-  const ImageF confidence = BeatCost(frame.returns, limits, frame.sigma).probability(counts);
+                             const UnwrapLimits& limits) {
+  const ImageF confidence = ResidualCost(frame.returns, limits, frame.sigma).probability(counts);
   return {.image = make_range_image(frame.returns.phase_a, frame.sigma.a_cycles, counts, confidence,
                                     limits)};
 }
@@ -29,7 +29,7 @@ ImageU8 wrapped_counts(const ImageU8& valid) {
 Unwrapper::Unwrapper(const SensorModel& sensor, const UnwrapOptions& options)
     : options_(options),
       method_(unwrap_method(options)),
-      limits_(beat_limits(sensor, options.max_range_m)),
+      limits_(unwrap_limits(sensor, options.max_range_m)),
       measurer_(sensor, options) {}
 
 UnwrapResult Unwrapper::unwrap(const DualFrequencyFrame& frame) {

@@ -37,7 +37,7 @@ Rgb reason_color(InvalidReason reason) {
       return {150, 230, 255};
     case InvalidReason::saturated:
       return {255, 190, 190};
-    case InvalidReason::seen_through:
+    case InvalidReason::free_space_violation:
       return {120, 60, 20};
     case InvalidReason::outlier:
       return {230, 120, 0};

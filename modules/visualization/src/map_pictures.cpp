@@ -17,7 +17,7 @@ namespace {
 
 constexpr int gap_px = 16;
 
-ColorScale height_scale(const LevelFrame& frame) {
+ColorScale height_scale(const GravityAlignedFrame& frame) {
   const double height_m = frame.box_m.isEmpty() ? 0 : frame.box_m.sizes().z();
   return {0, std::max(0.1, height_m), "height, m"};
 }
@@ -50,12 +50,12 @@ Picture with_scale_bar(const Picture& picture, double metres_per_px) {
   return stacked({picture, beside({bar, label}, gap_px / 2)}, gap_px / 2);
 }
 
-LineLayer path_line(const Trajectory& trajectory, const LevelFrame& frame, Rgb color,
+LineLayer path_line(const Trajectory& trajectory, const GravityAlignedFrame& frame, Rgb color,
                     float width_px) {
   LineLayer line{{}, color, width_px};
   for (const StampedPose& pose : trajectory) {
     line.points_m.push_back(
-        (frame.level_from_map * pose.world_from_camera.translation()).cast<float>());
+        (frame.aligned_from_map * pose.world_from_camera.translation()).cast<float>());
   }
   return line;
 }
@@ -75,23 +75,23 @@ Picture drawn_from_above(const Drawing& drawing, const Eigen::AlignedBox3d& box_
   return with_scale_bar(draw(drawing, viewpoint, width_px, height_px), metres_per_px);
 }
 
-Viewpoint viewpoint_of(const Pose& level_from_camera, double vertical_fov_deg) {
+Viewpoint viewpoint_of(const Pose& aligned_from_camera, double vertical_fov_deg) {
   Viewpoint viewpoint;
-  viewpoint.eye_m = level_from_camera.translation();
-  viewpoint.target_m = level_from_camera * Eigen::Vector3d::UnitZ();
+  viewpoint.eye_m = aligned_from_camera.translation();
+  viewpoint.target_m = aligned_from_camera * Eigen::Vector3d::UnitZ();
   viewpoint.up = Eigen::Vector3d::UnitZ();
   viewpoint.vertical_fov_deg = vertical_fov_deg;
   return viewpoint;
 }
 
 /// How many points a camera there sees, as far as their normals face it; walls hide nothing.
-int count_seen(const PointLayer& layer, const Pose& level_from_camera, double tangent_x,
+int count_seen(const PointLayer& layer, const Pose& aligned_from_camera, double tangent_x,
                double tangent_y) {
-  const Eigen::Isometry3f camera_from_level = level_from_camera.inverse().cast<float>();
-  const Eigen::Vector3f eye = level_from_camera.translation().cast<float>();
+  const Eigen::Isometry3f camera_from_aligned = aligned_from_camera.inverse().cast<float>();
+  const Eigen::Vector3f eye = aligned_from_camera.translation().cast<float>();
   int seen = 0;
   for (std::size_t i = 0; i < layer.points_m.size(); ++i) {
-    const Eigen::Vector3f p = camera_from_level * layer.points_m[i];
+    const Eigen::Vector3f p = camera_from_aligned * layer.points_m[i];
     const bool in_view =
         p.z() > 0.3F && std::abs(p.x()) < tangent_x * p.z() && std::abs(p.y()) < tangent_y * p.z();
     const bool faces = layer.normals.empty() || layer.normals[i].dot(eye - layer.points_m[i]) > 0;
@@ -102,8 +102,8 @@ int count_seen(const PointLayer& layer, const Pose& level_from_camera, double ta
 
 }  // namespace
 
-MapColoring color_by_height(const MapCloud& map, const LevelFrame& frame) {
-  const Eigen::Vector3f up = frame.level_from_map.row(2).transpose().cast<float>();
+MapColoring color_by_height(const MapCloud& map, const GravityAlignedFrame& frame) {
+  const Eigen::Vector3f up = frame.aligned_from_map.row(2).transpose().cast<float>();
   const float floor_m = frame.box_m.isEmpty() ? 0 : static_cast<float>(frame.box_m.min().z());
   MapColoring coloring{{}, height_scale(frame)};
   coloring.values.reserve(map.size());
@@ -113,35 +113,37 @@ MapColoring color_by_height(const MapCloud& map, const LevelFrame& frame) {
   return coloring;
 }
 
-Drawing map_drawing(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame,
-                    const MapColoring& coloring) {
+Drawing map_drawing(const MapCloud& map, const Trajectory& trajectory,
+                    const GravityAlignedFrame& frame, const MapColoring& coloring) {
   if (coloring.values.size() != map.size()) {
     throw UsageError("map colours: there are not as many values as points");
   }
-  const Eigen::Matrix3f level_from_map = frame.level_from_map.cast<float>();
+  const Eigen::Matrix3f aligned_from_map = frame.aligned_from_map.cast<float>();
   PointLayer layer;
   layer.size_m = 1.6F * typical_spacing_m(map);  // overlap a little, so that no gaps show
   const bool has_normals =
       std::ranges::all_of(map, [](const MapPoint& point) { return std::isfinite(point.normal_z); });
   for (std::size_t i = 0; i < map.size(); ++i) {
     const MapPoint& point = map[i];
-    const Eigen::Vector3f p = level_from_map * point.getVector3fMap();
+    const Eigen::Vector3f p = aligned_from_map * point.getVector3fMap();
     if (!p.allFinite()) continue;
     layer.points_m.push_back(p);
     layer.colors.push_back(coloring.scale(coloring.values[i]));
-    if (has_normals) layer.normals.push_back(level_from_map * point.getNormalVector3fMap());
+    if (has_normals) layer.normals.push_back(aligned_from_map * point.getNormalVector3fMap());
   }
   return {{std::move(layer)}, {path_line(trajectory, frame, colors::path, 2.5F)}, {}};
 }
 
-Drawing map_drawing(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame) {
+Drawing map_drawing(const MapCloud& map, const Trajectory& trajectory,
+                    const GravityAlignedFrame& frame) {
   return map_drawing(map, trajectory, frame, color_by_height(map, frame));
 }
 
-LineLayer camera_outline(const Pose& level_from_camera) {
+LineLayer camera_outline(const Pose& aligned_from_camera) {
   LineLayer outline{{}, colors::path, 2.5F};
   const auto go_to = [&](double x_m, double y_m, double z_m) {
-    outline.points_m.push_back((level_from_camera * Eigen::Vector3d(x_m, y_m, z_m)).cast<float>());
+    outline.points_m.push_back(
+        (aligned_from_camera * Eigen::Vector3d(x_m, y_m, z_m)).cast<float>());
   };
   // One line: each side of the base, then in to the eye and out again.
   for (const auto& [x_m, y_m] :
@@ -178,8 +180,8 @@ Viewpoint viewpoint_outside(const Eigen::AlignedBox3d& box_m) {
   return viewpoint;
 }
 
-Picture map_from_above(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame,
-                       const MapColoring& coloring, int size_px) {
+Picture map_from_above(const MapCloud& map, const Trajectory& trajectory,
+                       const GravityAlignedFrame& frame, const MapColoring& coloring, int size_px) {
   if (frame.box_m.isEmpty()) return titled(Picture(size_px, size_px / 2), "the map is empty");
   const Picture picture =
       drawn_from_above(map_drawing(map, trajectory, frame, coloring), frame.box_m, size_px);
@@ -189,13 +191,13 @@ Picture map_from_above(const MapCloud& map, const Trajectory& trajectory, const 
   return with_margin(beside({picture, legend}, gap_px), gap_px);
 }
 
-Picture map_from_above(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame,
-                       int size_px) {
+Picture map_from_above(const MapCloud& map, const Trajectory& trajectory,
+                       const GravityAlignedFrame& frame, int size_px) {
   return map_from_above(map, trajectory, frame, color_by_height(map, frame), size_px);
 }
 
 Picture paths_from_above(const MapCloud& map, const std::vector<NamedPath>& paths,
-                         const LevelFrame& frame, int size_px) {
+                         const GravityAlignedFrame& frame, int size_px) {
   Drawing drawing = map_drawing(map, {}, frame);
   for (PointLayer& layer : drawing.points) std::ranges::fill(layer.colors, Rgb{225, 228, 232});
   Eigen::AlignedBox3d box_m = frame.box_m;
@@ -217,7 +219,7 @@ Picture paths_from_above(const MapCloud& map, const std::vector<NamedPath>& path
 }
 
 Viewpoint viewpoint_inside(const Drawing& drawing, const Trajectory& trajectory,
-                           const LevelFrame& frame, double aspect) {
+                           const GravityAlignedFrame& frame, double aspect) {
   if (trajectory.empty()) return viewpoint_outside(frame.box_m);
   constexpr double vertical_fov_deg = 62;
   const double tangent_y = std::tan(vertical_fov_deg / 2 * std::numbers::pi / 180);
@@ -226,7 +228,7 @@ Viewpoint viewpoint_inside(const Drawing& drawing, const Trajectory& trajectory,
   Pose best = Pose::Identity();
   int most = -1;
   for (std::size_t i = 0; i < trajectory.size(); i += step) {
-    const Pose pose = Pose(frame.level_from_map) * trajectory[i].world_from_camera;
+    const Pose pose = Pose(frame.aligned_from_map) * trajectory[i].world_from_camera;
     const int seen = count_seen(drawing.points.front(), pose, aspect * tangent_y, tangent_y);
     if (seen > most) {
       most = seen;
@@ -236,8 +238,8 @@ Viewpoint viewpoint_inside(const Drawing& drawing, const Trajectory& trajectory,
   return viewpoint_of(best, vertical_fov_deg);
 }
 
-Picture map_from_inside(const MapCloud& map, const Trajectory& trajectory, const LevelFrame& frame,
-                        int width_px) {
+Picture map_from_inside(const MapCloud& map, const Trajectory& trajectory,
+                        const GravityAlignedFrame& frame, int width_px) {
   constexpr double aspect = 1.6;
   const int height_px = static_cast<int>(width_px / aspect);
   if (frame.box_m.isEmpty()) return titled(Picture(width_px, height_px), "the map is empty");

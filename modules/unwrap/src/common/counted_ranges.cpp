@@ -60,7 +60,7 @@ RangeImage make_range_image(const ImageF& range_m, const ImageF& sigma_m, const 
 
 RangeImage make_range_image(const ImageF& phase_a, const ImageF& sigma_a_cycles,
                             const ImageU8& counts, const ImageF& confidence,
-                            const BeatLimits& limits) {
+                            const UnwrapLimits& limits) {
   return counted(phase_a, sigma_a_cycles, counts, confidence, 1,
                  static_cast<float>(limits.wavelength_a_m));
 }

@@ -4,7 +4,7 @@
 
 #include <tofmap/core/image.hpp>
 #include <tofmap/core/range_image.hpp>
-#include <tofmap/unwrap/common/beat.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
 
 namespace tofmap {
 
@@ -15,6 +15,6 @@ RangeImage make_range_image(const ImageF& range_m, const ImageF& sigma_m, const 
 /// The same with A's ranges: (phase_a + n) λ_A.
 RangeImage make_range_image(const ImageF& phase_a, const ImageF& sigma_a_cycles,
                             const ImageU8& counts, const ImageF& confidence,
-                            const BeatLimits& limits);
+                            const UnwrapLimits& limits);
 
 }  // namespace tofmap

@@ -65,7 +65,7 @@ TOFMAP_VECTOR_CLONES void fill_fused(int count, const Pixels& pixels_, float wav
 }  // namespace
 
 FusedRanges fuse_ranges(const DualFrequencyFrame& frame, const ImageU8& counts,
-                        const BeatLimits& limits, const PhaseSigma& sigma,
+                        const UnwrapLimits& limits, const PhaseSigma& sigma,
                         double residual_sigma_m) {
   FusedRanges out{ImageF(counts.rows(), counts.cols()), ImageF(counts.rows(), counts.cols())};
   fill_fused(static_cast<int>(counts.size()),

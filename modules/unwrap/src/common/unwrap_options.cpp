@@ -66,7 +66,8 @@ std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
        "jump, single: sigma of f_d and f_f: of true differences between neighbours; noise comes on "
        "top"},
       {"objection_share", &O::objection_share, 0, 1e6, "",
-       "jump: regions stay apart where the beat objects by more than this share of a jump's log "
+       "jump: regions stay apart where the residual objects by more than this share of a jump's "
+       "log "
        "odds"},
   };
 }

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <tofmap/unwrap/common/beat.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
 
 namespace tofmap {
 
@@ -27,12 +27,12 @@ struct ConstantPrior {
 
 /// Constants up to this, either way, are thought possible, metres: half of the residual step, and
 /// 12 cm at least.
-double largest_constant_m(const BeatLimits& limits);
+double largest_constant_m(const UnwrapLimits& limits);
 
 /// The most likely constant by which the residuals of all samples are off alike, metres: the least
 /// of docs/unwrapping.md, equation 24, among constants a centimetre apart, up to the largest. 0 if
 /// there are no samples.
-double likeliest_constant_m(const BeatLimits& limits, const ConstantPrior& prior,
+double likeliest_constant_m(const UnwrapLimits& limits, const ConstantPrior& prior,
                             const PredictedSamples& samples);
 
 }  // namespace tofmap

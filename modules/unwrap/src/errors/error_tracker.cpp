@@ -160,7 +160,7 @@ void read_image(std::istream& in, ImageF& image) {
 
 }  // namespace
 
-ErrorTracker::ErrorTracker(const BeatLimits& limits, const CameraModel& camera)
+ErrorTracker::ErrorTracker(const UnwrapLimits& limits, const CameraModel& camera)
     : limits_(limits), camera_(camera) {
   if (camera.width_px > 0 && camera.fx_px > 0) rays_ = pixel_rays(camera);
 }

@@ -199,7 +199,7 @@ class StillMatching : Matching {
     matching::subtract_lateral(in.cols, lateral_m2_.data(), range_m_.data(), predicted_m_.data());
   }
 
-  BeatLimits near_limits_;
+  UnwrapLimits near_limits_;
   ImageF kept_phase_b_;  ///< empty: all of it
   Row lateral_m2_;
   Row unused_;

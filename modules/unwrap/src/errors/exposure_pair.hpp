@@ -8,8 +8,8 @@
 
 #include <tofmap/core/camera.hpp>
 #include <tofmap/core/image.hpp>
-#include <tofmap/unwrap/common/beat.hpp>
 #include <tofmap/unwrap/common/frame_errors.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
 
 namespace tofmap {
 
@@ -31,7 +31,7 @@ struct ExposurePair {
 
 /// What does not change from frame to frame. `rays` are empty if the camera is not known.
 struct PairGeometry {
-  const BeatLimits& limits;
+  const UnwrapLimits& limits;
   const CameraModel& camera;
   const PixelRays& rays;
 
@@ -67,7 +67,7 @@ void add_errors_of_b(const CameraErrors& errors, int count, const float* phase_b
 /// The count whose residual is nearest to what is predicted of it, for `count` pixels: the residual
 /// minus `predicted_m`, metres, and the range that the count gives to A. Phases that are NaN give a
 /// residual of NaN.
-void find_nearest(const BeatLimits& limits, int count, const float* phase_a, const float* phase_b,
+void find_nearest(const UnwrapLimits& limits, int count, const float* phase_a, const float* phase_b,
                   const float* predicted_m, float* error_m, float* range_m);
 
 }  // namespace tofmap

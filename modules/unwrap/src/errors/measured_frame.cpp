@@ -79,7 +79,7 @@ MeasuredFrame measured_alone(const DualFrequencyFrame& frame, double saturation_
 }
 
 /// Replaces B by what the tracker makes of it, and adds what is known of the errors.
-void match_exposures(ErrorTracker& tracker, const BeatLimits& limits, MeasuredFrame& frame) {
+void match_exposures(ErrorTracker& tracker, const UnwrapLimits& limits, MeasuredFrame& frame) {
   // The tracker does not see errors that vary within the image, as of light that came by other
   // ways; this much of a step is no evidence against any count.
   constexpr double least_share_of_step = 1.0 / 30;
@@ -95,7 +95,7 @@ void match_exposures(ErrorTracker& tracker, const BeatLimits& limits, MeasuredFr
 }  // namespace
 
 FrameMeasurer::FrameMeasurer(const SensorModel& sensor, const UnwrapOptions& options)
-    : limits_(beat_limits(sensor, options.max_range_m)),
+    : limits_(unwrap_limits(sensor, options.max_range_m)),
       saturation_amplitude_(sensor.saturation_amplitude) {
   const UnwrapMethod method = unwrap_method(options);
   const bool compares_frequencies = method == UnwrapMethod::joint || method == UnwrapMethod::jump;

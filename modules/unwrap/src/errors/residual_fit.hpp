@@ -37,7 +37,7 @@ class ResidualFit {
   /// Also fits the apparent rotation between the exposures, from now on.
   void expect(const ApparentRotation& apparent) { apparent_ = apparent; }
 
-  /// Finds the motion, from `start` on. With `any_constant` the camera's offset is in doubt,
+  /// Finds the motion, from `start` on. With `any_constant` the camera's offset is in warning,
   /// too, as on a first frame: the likeliest constant is looked for.
   void find_motion(const ExposureMotion& start, bool any_constant);
 

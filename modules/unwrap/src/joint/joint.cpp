@@ -4,14 +4,14 @@
 #include "joint/joint.hpp"
 
 #include "common/counted_ranges.hpp"
-#include "joint/count_confidence.hpp"
+#include "joint/wrap_count_confidence.hpp"
 #include "tofmap/unwrap/common/range_fusion.hpp"
 
 namespace tofmap {
 namespace {
 
 /// The options of `joint` as its stages know them.
-CountEstimation count_estimation(const UnwrapOptions& options) {
+WrapCountOptions count_estimation(const UnwrapOptions& options) {
   return {.prior = {.outlier_share = options.outlier_share,
                     .slope_m = options.slope_m,
                     .amplitude_edges = options.amplitude_edges,
@@ -20,15 +20,16 @@ CountEstimation count_estimation(const UnwrapOptions& options) {
           .scales = options.scales};
 }
 
-/// Makes pixels invalid that have a rival count which the pair of frequencies cannot tell from
+/// Makes pixels invalid that have a runner_up count which the pair of frequencies cannot tell from
 /// the chosen one, and which is nearly as likely.
-void drop_ambiguous(const CountBeliefs& beliefs, const BeatLimits& limits, RangeImage& image) {
+void drop_ambiguous(const WrapCountBeliefs& beliefs, const UnwrapLimits& limits,
+                    RangeImage& image) {
   constexpr float nearly = 0.1F;
   for (Eigen::Index v = 0; v < image.rows(); ++v) {
     for (Eigen::Index u = 0; u < image.cols(); ++u) {
       if (!image.valid(v, u)) continue;
-      if (beliefs.rival_probability(v, u) < nearly * beliefs.probability(v, u)) continue;
-      if (can_tell_apart(limits, beliefs.count(v, u), beliefs.rival(v, u))) continue;
+      if (beliefs.runner_up_probability(v, u) < nearly * beliefs.probability(v, u)) continue;
+      if (can_tell_apart(limits, beliefs.count(v, u), beliefs.runner_up(v, u))) continue;
       image.invalidate(v, u, InvalidReason::ambiguous);
     }
   }
@@ -36,11 +37,11 @@ void drop_ambiguous(const CountBeliefs& beliefs, const BeatLimits& limits, Range
 
 }  // namespace
 
-UnwrapResult unwrap_jointly(CountEstimator& estimator, const MeasuredFrame& frame,
-                            const BeatLimits& limits, const UnwrapOptions& options) {
-  const CountBeliefs beliefs = estimator.estimate(
+UnwrapResult unwrap_jointly(WrapCountEstimator& estimator, const MeasuredFrame& frame,
+                            const UnwrapLimits& limits, const UnwrapOptions& options) {
+  const WrapCountBeliefs beliefs = estimator.estimate(
       frame.returns, limits, frame.sigma, frame.residual_sigma_m, count_estimation(options));
-  const ImageF confidence = count_confidence(beliefs, frame.sigma.a_cycles, limits);
+  const ImageF confidence = wrap_count_confidence(beliefs, frame.sigma.a_cycles, limits);
   UnwrapResult result;
   if (options.fuse_frequencies) {
     const FusedRanges fused =

@@ -4,13 +4,13 @@
 
 #include <tofmap/unwrap/common/unwrap_result.hpp>
 #include <tofmap/unwrap/errors/measured_frame.hpp>
-#include <tofmap/unwrap/joint/count_estimate.hpp>
+#include <tofmap/unwrap/joint/wrap_count_estimate.hpp>
 
 namespace tofmap {
 
 /// The method `joint`: counts by belief propagation, ranges from both frequencies. B is matched to
 /// A.
-UnwrapResult unwrap_jointly(CountEstimator& estimator, const MeasuredFrame& frame,
-                            const BeatLimits& limits, const UnwrapOptions& options);
+UnwrapResult unwrap_jointly(WrapCountEstimator& estimator, const MeasuredFrame& frame,
+                            const UnwrapLimits& limits, const UnwrapOptions& options);
 
 }  // namespace tofmap

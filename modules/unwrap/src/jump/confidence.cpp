@@ -83,7 +83,7 @@ TOFMAP_VECTOR_CLONES void multiply_odds(int pixels, const float* other, const st
   for (int i = 0; i < pixels; ++i) {
     const float both = other[i] * probability[i];
     const float neither = (1 - other[i]) * (1 - probability[i]);
-    // A beat that is sure and neighbours that are sure of the opposite leave nothing known.
+    // A residual that is sure and neighbours that are sure of the opposite leave nothing known.
     const float odds = both + neither > 0 ? both / (both + neither) : 0.5F;
     probability[i] = counts[i] == invalid_wrap_count ? 0.0F : odds;
   }
@@ -108,11 +108,12 @@ ImageF jump_confidence(const ImageU8& counts, const JumpProbabilities& marginals
   return means;
 }
 
-ImageF jump_and_beat_confidence(const ImageU8& counts, const JumpProbabilities& marginals,
-                                const BeatCost& beat) {
-  const ImageF by_beat = beat.probability(counts);
+ImageF jump_and_residual_confidence(const ImageU8& counts, const JumpProbabilities& marginals,
+                                    const ResidualCost& residual) {
+  const ImageF by_residual = residual.probability(counts);
   ImageF confidence = jump_confidence(counts, marginals);
-  multiply_odds(static_cast<int>(counts.size()), by_beat.data(), counts.data(), confidence.data());
+  multiply_odds(static_cast<int>(counts.size()), by_residual.data(), counts.data(),
+                confidence.data());
   return confidence;
 }
 

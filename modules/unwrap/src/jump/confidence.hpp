@@ -3,7 +3,7 @@
 #pragma once
 
 #include <tofmap/core/image.hpp>
-#include <tofmap/unwrap/common/beat.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
 #include <tofmap/unwrap/jump/jump_evidence.hpp>
 
 namespace tofmap {
@@ -14,8 +14,9 @@ namespace tofmap {
 /// neighbours; 0 for a step of more than one. One half for a pixel that has no neighbour.
 ImageF jump_confidence(const ImageU8& counts, const JumpProbabilities& marginals);
 
-/// Neighbours and the pixel's own beat together, their odds multiplied as of independent witnesses.
-ImageF jump_and_beat_confidence(const ImageU8& counts, const JumpProbabilities& marginals,
-                                const BeatCost& beat);
+/// Neighbours and the pixel's own residual together, their odds multiplied as of independent
+/// witnesses.
+ImageF jump_and_residual_confidence(const ImageU8& counts, const JumpProbabilities& marginals,
+                                    const ResidualCost& residual);
 
 }  // namespace tofmap

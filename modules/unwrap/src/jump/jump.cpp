@@ -33,7 +33,7 @@ struct Integrated {
 };
 
 Integrated integrated(const JumpEstimate& jumps, const MeasuredFrame& frame,
-                      const BeatLimits& limits, const JumpMethod& method) {
+                      const UnwrapLimits& limits, const JumpMethod& method) {
   const RelativeCounts relative =
       integrate_jumps(jumps.beliefs.marginals, jumps.evidence, frame.valid);
   // A wrapped range is corrected by adding λ_A (section II.C), once.
@@ -43,20 +43,20 @@ Integrated integrated(const JumpEstimate& jumps, const MeasuredFrame& frame,
 }
 
 Integrated integrated_with_residual(const JumpEstimate& jumps, const MeasuredFrame& frame,
-                                    const BeatLimits& limits, const UnwrapOptions& options) {
-  const BeatCost beat(frame.returns, limits, frame.sigma, frame.residual_sigma_m);
+                                    const UnwrapLimits& limits, const UnwrapOptions& options) {
+  const ResidualCost residual(frame.returns, limits, frame.sigma, frame.residual_sigma_m);
   const RelativeCounts relative =
-      integrate_jumps_with_beat(jumps.beliefs.marginals, jumps.evidence, frame.valid, beat,
-                                jumps.inputs.pixel_counts, options.objection_share);
+      integrate_jumps_with_residual(jumps.beliefs.marginals, jumps.evidence, frame.valid, residual,
+                                    jumps.inputs.pixel_counts, options.objection_share);
   ImageU8 counts = absolute_counts(relative, limits.count_a);
-  ImageF confidence = jump_and_beat_confidence(counts, jumps.beliefs.marginals, beat);
+  ImageF confidence = jump_and_residual_confidence(counts, jumps.beliefs.marginals, residual);
   return {std::move(counts), std::move(confidence), relative.region_count};
 }
 
 }  // namespace
 
 UnwrapResult unwrap_by_jumps(JumpEstimator& estimator, const MeasuredFrame& frame,
-                             const BeatLimits& limits, const JumpMethod& method,
+                             const UnwrapLimits& limits, const JumpMethod& method,
                              const UnwrapOptions& options) {
   const JumpEstimate& jumps =
       estimator.estimate(frame.returns, frame.sigma, limits, method, options);

@@ -10,7 +10,7 @@ namespace tofmap {
 
 /// The methods `paper`, `jump` and `single`: evidence, propagation, integration, anchors.
 UnwrapResult unwrap_by_jumps(JumpEstimator& estimator, const MeasuredFrame& frame,
-                             const BeatLimits& limits, const JumpMethod& method,
+                             const UnwrapLimits& limits, const JumpMethod& method,
                              const UnwrapOptions& options);
 
 }  // namespace tofmap

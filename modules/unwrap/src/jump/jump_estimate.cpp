@@ -11,7 +11,7 @@ namespace tofmap {
 namespace {
 
 JumpInputs jump_inputs(const DualFrequencyFrame& frame, const PhaseSigma& sigma,
-                       const BeatLimits& limits, const JumpMethod& method,
+                       const UnwrapLimits& limits, const JumpMethod& method,
                        const UnwrapOptions& options) {
   JumpInputs inputs;
   if (method.has_frequency_term) {
@@ -46,7 +46,7 @@ JumpMethod jump_method(UnwrapMethod method) {
 }
 
 const JumpEstimate& JumpEstimator::estimate(const DualFrequencyFrame& frame,
-                                            const PhaseSigma& sigma, const BeatLimits& limits,
+                                            const PhaseSigma& sigma, const UnwrapLimits& limits,
                                             const JumpMethod& method,
                                             const UnwrapOptions& options) {
   jumps_.inputs = jump_inputs(frame, sigma, limits, method, options);

@@ -319,17 +319,17 @@ RelativeCounts integrate_jumps(const JumpProbabilities& marginals,
   return counts;
 }
 
-RelativeCounts integrate_jumps_with_beat(const JumpProbabilities& marginals,
-                                         const JumpProbabilities& evidence, const ImageU8& valid,
-                                         const BeatCost& beat, const ImageU8& nearest,
-                                         double objection_share) {
+RelativeCounts integrate_jumps_with_residual(const JumpProbabilities& marginals,
+                                             const JumpProbabilities& evidence,
+                                             const ImageU8& valid, const ResidualCost& residual,
+                                             const ImageU8& nearest, double objection_share) {
   const Bridges bridges(marginals, evidence);
   OffsetUnion forest(static_cast<int>(valid.size()));
-  const auto beat_agrees = [&](int p, int q, int step) {
+  const auto residual_agrees = [&](int p, int q, int step) {
     return nearest.data()[p] + step == nearest.data()[q];
   };
-  CertainJoins(bridges, beat_agrees, forest).join();
-  RegionFits fits(beat, nearest, forest);
+  CertainJoins(bridges, residual_agrees, forest).join();
+  RegionFits fits(residual, nearest, forest);
   const auto may_join = [&](int root, int child, int offset, float certainty) {
     return fits.join(root, child, offset, certainty, objection_share);
   };

@@ -46,7 +46,7 @@ double neighbour_variance_cycles2(const ImageF& phase) {
   return std::max(differences.variance(), quantisation_cycles * quantisation_cycles);
 }
 
-ImageU8 threshold_counts(const DualFrequencyFrame& frame, const BeatLimits& limits,
+ImageU8 threshold_counts(const DualFrequencyFrame& frame, const UnwrapLimits& limits,
                          double threshold_m) {
   const auto count_of = [&](float phase_a, float phase_b) {
     if (std::isnan(phase_a) || std::isnan(phase_b)) return invalid_wrap_count;
@@ -61,7 +61,7 @@ ImageU8 threshold_counts(const DualFrequencyFrame& frame, const BeatLimits& limi
   return counts;
 }
 
-double halfway_threshold_m(const BeatLimits& limits) {
+double halfway_threshold_m(const UnwrapLimits& limits) {
   return std::abs(limits.wavelength_a_m - limits.wavelength_b_m) / 2;
 }
 

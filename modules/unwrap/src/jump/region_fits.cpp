@@ -51,14 +51,14 @@ float log_odds(float certainty) {
 
 }  // namespace
 
-RegionFits::RegionFits(const BeatCost& beat, const ImageU8& nearest, OffsetUnion& forest)
-    : beat_(beat),
+RegionFits::RegionFits(const ResidualCost& residual, const ImageU8& nearest, OffsetUnion& forest)
+    : residual_(residual),
       forest_(forest),
-      size_(static_cast<int>(beat.size())),
+      size_(static_cast<int>(residual.size())),
       regions_(static_cast<std::size_t>(nearest.size())),
       next_(regions_.size(), none),
-      sums_(2 * beat.size()),
-      both_(beat.size()) {
+      sums_(2 * residual.size()),
+      both_(residual.size()) {
   for (std::size_t i = 0; i < regions_.size(); ++i) {
     const int best = nearest.data()[i];
     if (best == invalid_wrap_count) continue;
@@ -112,7 +112,7 @@ float RegionFits::add_contested(Region& into, const Region& from, int offset) {
 /// The sums of both slots in both_; returns the least.
 float RegionFits::add_sums(const Region& into, const Region& from, int offset) {
   std::copy_n(slot(into.slot), size_, both_.data());
-  const float beyond = BeatCost::bound * static_cast<float>(from.summed);
+  const float beyond = ResidualCost::bound * static_cast<float>(from.summed);
   return add_shifted(slot(from.slot), beyond, offset, size_, both_.data());
 }
 
@@ -153,7 +153,8 @@ void RegionFits::sum_up(Region& of, int pixels) {
       batch[static_cast<std::size_t>(size++)] = {of.first, offset};
       of.first = next_[static_cast<std::size_t>(of.first)];
     }
-    beat_.add({batch.data(), static_cast<std::size_t>(size)}, {slot(of.slot), beat_.size()});
+    residual_.add({batch.data(), static_cast<std::size_t>(size)},
+                  {slot(of.slot), residual_.size()});
     of.summed += size;
   }
   if (of.first == none) of.last = none;

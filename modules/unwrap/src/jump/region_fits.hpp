@@ -9,12 +9,12 @@
 #include <vector>
 
 #include <tofmap/core/image.hpp>
-#include <tofmap/unwrap/common/beat.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
 
 namespace tofmap {
 
-/// How well regions fit the beat. A region is named by its root in a forest, and its count is the
-/// root's.
+/// How well regions fit the residual. A region is named by its root in a forest, and its count is
+/// the root's.
 ///
 /// Most joins are between regions whose best counts agree; then both fit together as well as apart,
 /// and their pixels need only be remembered. Where they do not, costs of all counts are summed, of
@@ -23,7 +23,7 @@ class RegionFits {
  public:
   /// The regions are the trees of a flat forest. `nearest` is the best count of each pixel, and all
   /// pixels of a tree make the same one best for the root. Invalid ones take no part.
-  RegionFits(const BeatCost& beat, const ImageU8& nearest, OffsetUnion& forest);
+  RegionFits(const ResidualCost& residual, const ImageU8& nearest, OffsetUnion& forest);
 
   /// The count of the root at which the beats of all pixels together cost least.
   int best_count(int root) const { return region(root).best; }
@@ -56,7 +56,7 @@ class RegionFits {
   void take_sums(Region& into, Region& from);
   void hand_over(Region& from, Region& into);
 
-  const BeatCost& beat_;
+  const ResidualCost& residual_;
   OffsetUnion& forest_;
   int size_;                     ///< counts of a slot
   std::vector<Region> regions_;  ///< by root

@@ -59,7 +59,7 @@ PhaseErrorFit fit_to_references(std::span<const RangeSample> samples, const Modu
 /// to have the same harmonics in cycles, as electronics that drive both have. Offsets stay zero:
 /// what both share cannot be seen, and `offset_m` has motion between both images in it, too.
 /// Harmonics below 2 mm are left out, which motion may feign. Otherwise as above.
-PhaseErrorFit fit_to_beat(std::span<const RangeSample> samples, const Modulation& modulation,
-                          const PhaseErrorFitOptions& options);
+PhaseErrorFit fit_to_residual(std::span<const RangeSample> samples, const Modulation& modulation,
+                              const PhaseErrorFitOptions& options);
 
 }  // namespace tofmap

@@ -18,9 +18,9 @@ enum class InvalidReason : std::uint8_t {
   out_of_range = 5,    ///< the range lies outside what is allowed
   ambiguous = 6,       ///< the frequencies cannot tell two equally likely wrap counts apart
   saturated = 7,       ///< the signal is too strong to be measured at one of the frequencies
-  isolated_wrap = 8,   ///< a small region whose wrap count fits neither surroundings nor beat
+  isolated_wrap = 8,   ///< a small region whose wrap count fits neither surroundings nor residual
   outlier = 9,         ///< farther from all around it than the image's points mostly are
-  seen_through = 10,   ///< other views see what is behind it
+  free_space_violation = 10,  ///< other views see what is behind it
 };
 
 /// The name of a reason, as the documentation spells it.

@@ -17,7 +17,7 @@ bool looks_like_axial_depth(const std::vector<DualFrequencyFrame>& frames,
                             const SensorModel& sensor);
 
 /// The same as a sentence with the remedy; nothing if it does not look so.
-std::optional<std::string> axial_depth_doubt(const std::vector<DualFrequencyFrame>& frames,
-                                             const SensorModel& sensor);
+std::optional<std::string> axial_depth_warning(const std::vector<DualFrequencyFrame>& frames,
+                                               const SensorModel& sensor);
 
 }  // namespace tofmap

@@ -25,7 +25,7 @@ struct RangedFrame {
 };
 
 /// How well the wrap counts agree with both frequencies. NaN if no pixel has both phases.
-struct BeatAgreement {
+struct ResidualAgreement {
   /// Pixels whose neighbourhood of 5 x 5 would fit both frequencies better with another wrap count.
   /// NaN, too, if the pair of frequencies tells no counts apart.
   double misfit_percent = 0;
@@ -35,7 +35,8 @@ struct BeatAgreement {
 
 /// The agreement over images as unwrapping returns them, before filters. Throws UsageError if the
 /// sizes of a frame and its image differ.
-BeatAgreement beat_agreement(const std::vector<RangedFrame>& frames, const Modulation& modulation);
+ResidualAgreement residual_agreement(const std::vector<RangedFrame>& frames,
+                                     const Modulation& modulation);
 
 /// Pixels with a return whose wrap count the pair of frequencies cannot tell, in images as
 /// unwrapping returns them. NaN if no pixel has a return.
@@ -54,8 +55,8 @@ double plane_thickness_m(const MapCloud& map);
 
 /// All of the measures above. NaN where one is unknown.
 struct Consistency {
-  double beat_misfit_percent = 0;
-  double beat_residual_cycles = 0;
+  double residual_misfit_percent = 0;
+  double residual_rms_cycles = 0;
   double ambiguous_percent = 0;
   double contradicted_percent = 0;
   double plane_thickness_m = 0;
@@ -76,6 +77,6 @@ Consistency consistency_of(const std::vector<RangedFrame>& unwrapped,
                            const SensorModel& sensor);
 
 /// Sentences about measures that exceed what right maps have. Empty if none does.
-std::vector<std::string> doubts_about(const Consistency& consistency);
+std::vector<std::string> warnings_about(const Consistency& consistency);
 
 }  // namespace tofmap

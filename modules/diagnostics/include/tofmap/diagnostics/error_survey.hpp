@@ -45,6 +45,6 @@ std::vector<std::string> remarks_about(const ErrorSurvey& survey);
 
 /// What makes ranges and maps wrong although unwrapping allows for it, in sentences with the
 /// remedy.
-std::vector<std::string> doubts_about(const ErrorSurvey& survey);
+std::vector<std::string> warnings_about(const ErrorSurvey& survey);
 
 }  // namespace tofmap

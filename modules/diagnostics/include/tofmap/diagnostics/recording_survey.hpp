@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <tofmap/acquisition/sequence.hpp>
-#include <tofmap/diagnostics/beat_survey.hpp>
 #include <tofmap/diagnostics/error_survey.hpp>
+#include <tofmap/diagnostics/residual_survey.hpp>
 
 namespace tofmap {
 
@@ -28,22 +28,23 @@ struct RecordingSurvey {
   double median_period_s = 0;
   double longest_gap_s = 0;
   int frame_before_gap = 0;
-  std::optional<std::string> axial_depth_doubt;  ///< see axial_depth.hpp
-  std::optional<BeatSurvey> beat;  ///< if some hundred pixels have returns at both frequencies
-  ErrorSurvey errors;              ///< of some frames, spread over the recording
+  std::optional<std::string> axial_depth_warning;  ///< see axial_depth.hpp
+  std::optional<ResidualSurvey>
+      residual;        ///< if some hundred pixels have returns at both frequencies
+  ErrorSurvey errors;  ///< of some frames, spread over the recording
 };
 
 /// Whether a frame has the phases of the one before it.
 bool repeats(const DualFrequencyFrame& frame, const DualFrequencyFrame& last);
 
 /// So many such frames as a sentence; nothing if there are none.
-std::optional<std::string> repetition_doubt(int repeated);
+std::optional<std::string> repetition_warning(int repeated);
 
 /// Reads all frames. `keep_going` is asked before each, with the number done; false ends it.
 RecordingSurvey survey_recording(const SequenceReader& recording,
                                  const std::function<bool(int frames_done)>& keep_going = {});
 
 /// What of it is likely to be a mistake, in sentences with the remedy.
-std::vector<std::string> doubts_about(const RecordingSurvey& survey, const SensorModel& sensor);
+std::vector<std::string> warnings_about(const RecordingSurvey& survey, const SensorModel& sensor);
 
 }  // namespace tofmap

@@ -17,10 +17,11 @@ struct IsolatedWrapLimits {
 ///
 /// A region is what hangs together without a step of half a wavelength. One that is small, and
 /// whose border is mostly a whole number of wavelengths off the same surroundings, is judged by the
-/// beat of its pixels (range by A against range by B). Unless this is surely better by the region's
-/// own counts than by those of the surroundings, the region gets these, with A's ranges (B's may
-/// have been fused into them by the wrong count) and the confidence of the surroundings. If the
-/// beat is surely better by a third count, the region is dropped. Else it is an object, and stays.
+/// residual of its pixels (range by A against range by B). Unless this is surely better by the
+/// region's own counts than by those of the surroundings, the region gets these, with A's ranges
+/// (B's may have been fused into them by the wrong count) and the confidence of the surroundings.
+/// If the residual is surely better by a third count, the region is dropped. Else it is an object,
+/// and stays.
 ///
 /// An image without any wraps was not unwrapped, and stays as it is. Throws UsageError if image and
 /// frame differ in size.

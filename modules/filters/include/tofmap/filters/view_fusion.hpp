@@ -36,8 +36,8 @@ struct FusionOptions {
 /// becomes that of the mean.
 ///
 /// A pixel that more views see through than agree with, at least two, is none of a surface that
-/// stays: it is dropped as `seen_through` (flying pixels, what moves, wrong wraps). No pixel
-/// becomes valid. `FusionOptions::views` is for the caller, who chooses the views.
+/// stays: it is dropped as `free_space_violation` (flying pixels, what moves, wrong wraps). No
+/// pixel becomes valid. `FusionOptions::views` is for the caller, who chooses the views.
 ///
 /// Throws UsageError if images and camera differ in size.
 RangeImage fuse_views(const PosedView& view, std::span<const PosedView> others,

@@ -59,7 +59,7 @@ void serialize(Archive& archive, tofmap::PoseEdge& edge, unsigned) {
 template <class Archive>
 void serialize(Archive& archive, tofmap::RegistrationResult& result, unsigned) {
   archive& result.status& result.world_from_camera& result.iterations& result.correspondences;
-  archive& result.overlap& result.inlier_share& result.rmse_m& result.residual_scale;
+  archive& result.overlap& result.inlier_ratio& result.rmse_m& result.residual_scale;
   archive& result.covariance& result.surface_information;
   archive& result.degenerate_directions& result.direction_shares;
 }

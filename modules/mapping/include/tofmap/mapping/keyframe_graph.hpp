@@ -14,9 +14,9 @@ class access;
 namespace tofmap {
 
 /// The steps at which keyframes are taken.
-struct KeyframeSteps {
+struct KeyframeSpacing {
   double step_m = 0;
-  double turn_rad = 0;
+  double rotation_rad = 0;
 
   /// How many steps apart two cameras are: by distance or by turn, the larger of both.
   double between(const Pose& a, const Pose& b) const;
@@ -43,7 +43,7 @@ class KeyframeGraph {
   /// those the fewest steps away. `id` is one of them and comes last, the others in the order of
   /// their ids.
   std::vector<const Keyframe*> around(int id, const Pose& pose, int count,
-                                      const KeyframeSteps& steps) const;
+                                      const KeyframeSpacing& steps) const;
 
  private:
   friend class boost::serialization::access;

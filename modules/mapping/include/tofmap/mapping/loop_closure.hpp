@@ -17,10 +17,10 @@ namespace tofmap {
 struct LoopOptions {
   bool close = true;
   double radius_m = 3;
-  double max_turn_rad = 1;
+  double max_rotation_rad = 1;
   int min_gap = 20;
   double min_overlap = 0.35;
-  double min_inlier_share = 0.7;
+  double min_inlier_ratio = 0.7;
   double drift_share = 0.01;
   double kernel_width = 3;
 
@@ -43,7 +43,7 @@ struct LoopCandidate {
 /// Looks for an earlier keyframe that sees what `keyframe` sees.
 ///
 /// Candidates are keyframes at least `min_gap` before it, whose cameras stand within `radius_m` and
-/// look within `max_turn_rad` of the same direction. The three that overlap most are registered
+/// look within `max_rotation_rad` of the same direction. The three that overlap most are registered
 /// against together, from the pose as it is believed and with a prior as wide as drift allows:
 /// `drift_share` of the path between. If that is not verified, drift may have been larger: then the
 /// candidate that looks most like the keyframe is registered against from where it stands, and what
@@ -72,7 +72,7 @@ RegistrationResult register_near(const Keyframe& keyframe, const SurfaceCloud& c
                                  const RegistrationOptions& registration);
 
 /// Whether a registration far from where the path came from can be believed: it converged with
-/// `min_overlap` and `min_inlier_share`, and leaves no direction to the prior.
+/// `min_overlap` and `min_inlier_ratio`, and leaves no direction to the prior.
 bool is_verified(const RegistrationResult& result, const LoopOptions& options);
 
 /// The edge that a registration against `from` measures, with what registration cannot know of its

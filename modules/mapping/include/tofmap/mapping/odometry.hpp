@@ -22,14 +22,14 @@ class access;
 namespace tofmap {
 
 struct OdometryOptions {
-  double keyframe_step_m = 0.25;
-  double keyframe_turn_rad = 0.21;
+  double keyframe_translation_m = 0.25;
+  double keyframe_rotation_rad = 0.21;
   int keyframes_around = 15;
   int targets = 3;
   double min_target_overlap = 0.15;
   double prior_rotation_sigma_rad = 0.03;
   double prior_translation_sigma_m = 0.03;
-  double max_prior_deviation = 8;
+  double max_prior_mahalanobis = 8;
 
   static std::vector<OptionField<OdometryOptions>> fields();
 };
@@ -48,12 +48,12 @@ const char* status_name(TrackingStatus status);
 
 struct TrackingResult {
   TrackingStatus status = TrackingStatus::lost;
-  Pose world_from_camera = Pose::Identity();  ///< meaningful only if `placed`
+  Pose world_from_camera = Pose::Identity();  ///< meaningful only if `registered`
   bool is_keyframe = false;                   ///< it has become one (RoomMapper decides)
   std::vector<int> targets;  ///< ids of the keyframes it was registered against, best overlap first
   RegistrationResult registration;
 
-  bool placed() const {
+  bool registered() const {
     return status == TrackingStatus::first || status == TrackingStatus::tracked ||
            status == TrackingStatus::relocalised;
   }
@@ -61,8 +61,8 @@ struct TrackingResult {
 
 /// Follows the camera: registers each frame against those keyframes around it that overlap most,
 /// starting from constant velocity, and after a gap in time from where the camera was last as well,
-/// with three times the iterations. The first frame with a surface is placed at the origin. A frame
-/// that cannot be placed changes nothing but the time since the last placed one.
+/// with three times the iterations. The first frame with a surface is registered at the origin. A
+/// frame that cannot be registered changes nothing but the time since the last registered one.
 class Odometry {
  public:
   Odometry(const CameraModel& camera, const OdometryOptions& options,
@@ -70,7 +70,7 @@ class Odometry {
 
   /// Frames come in the order of time. `around` are keyframes that agree with one another; the last
   /// one is registered against in any case. They may be empty only for the first frame that is
-  /// placed.
+  /// registered.
   /// Where `is_believed` says no of a registration, the camera counts as lost.
   TrackingResult track(double timestamp_s, const SurfaceCloud& cloud,
                        std::span<const Keyframe* const> around,
@@ -80,14 +80,14 @@ class Odometry {
   /// tell the camera's period.
   void note_frame(double timestamp_s);
 
-  /// Whether the last frame that was placed is more than three periods of the camera ago: frames
-  /// that never came count, too.
+  /// Whether the last frame that was registered is more than three periods of the camera ago:
+  /// frames that never came count, too.
   bool is_after_gap(double timestamp_s) const;
 
   /// Whether a camera can have come there meanwhile.
   bool is_within_reach(double timestamp_s, const Pose& pose) const;
 
-  /// Goes on from a frame that was placed otherwise.
+  /// Goes on from a frame that was registered otherwise.
   void restart(const StampedPose& pose);
 
   /// Moves the camera along with the keyframes that it is registered against.
@@ -98,7 +98,7 @@ class Odometry {
   template <class Archive>
   void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
 
-  double periods_since_placed(double timestamp_s) const;
+  double periods_since_registered(double timestamp_s) const;
   void register_from(const MotionPrior& prior, const SurfaceCloud& cloud,
                      std::span<const Keyframe* const> around, TrackingResult& result) const;
   MotionPrior predict(double timestamp_s) const;
@@ -111,10 +111,10 @@ class Odometry {
   RegistrationOptions registration_;
   std::optional<StampedPose> last_;
   std::optional<StampedPose> before_last_;
-  int frames_since_placed_ = 0;
+  int frames_since_registered_ = 0;
   std::vector<double> recent_periods_s_;  ///< from frame to frame, the newest last
   double last_timestamp_s_ = 0;           ///< of the last frame that was tried
-  MotionUncertainty uncertainty_;         ///< of the last pose that was placed
+  MotionUncertainty uncertainty_;         ///< of the last pose that was registered
 };
 
 }  // namespace tofmap

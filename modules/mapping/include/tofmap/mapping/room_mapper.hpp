@@ -45,16 +45,15 @@ struct AddedFrame {
 
 /// Follows the camera, recognises places, and keeps path and map consistent.
 ///
-/// Every frame is placed by odometry against the keyframes around it, which where a place is seen
-/// again are those of the first time. It belongs to the keyframe it overlaps most, and its surface
-/// to the part of the map around that keyframe: so keyframes and map grow with what is seen, not
-/// with time.
-/// Where a keyframe sees what one long before it saw, both are tied by an edge, and the poses of
-/// all keyframes are fitted to the edges of odometry and loops. Parts and frames move with their
-/// keyframes, so nothing is integrated anew.
+/// Every frame is registered by odometry against the keyframes around it, which where a place is
+/// seen again are those of the first time. It belongs to the keyframe it overlaps most, and its
+/// surface to the part of the map around that keyframe: so keyframes and map grow with what is
+/// seen, not with time. Where a keyframe sees what one long before it saw, both are tied by an
+/// edge, and the poses of all keyframes are fitted to the edges of odometry and loops. Parts and
+/// frames move with their keyframes, so nothing is integrated anew.
 ///
 /// A camera that has been lost for a few frames is looked for among all keyframes; after a second
-/// or so only there. Frames in between are not placed.
+/// or so only there. Frames in between are not registered.
 class RoomMapper {
  public:
   RoomMapper(const CameraModel& camera, const OdometryOptions& odometry,
@@ -72,7 +71,7 @@ class RoomMapper {
   /// Fits the poses to edges that were not fitted yet; to be called after the last frame.
   void finish();
 
-  Trajectory trajectory() const;  ///< every frame that was placed, as it is believed now
+  Trajectory trajectory() const;  ///< every frame that was registered, as it is believed now
   Trajectory keyframe_trajectory() const;
   MapCloud surface() const;
   std::size_t voxel_count() const;  ///< those with too few points to be written among them
@@ -89,7 +88,7 @@ class RoomMapper {
   template <class Archive>
   void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
 
-  struct PlacedFrame {
+  struct RegisteredFrame {
     double timestamp_s = 0;
     int keyframe = 0;
     Pose keyframe_from_camera = Pose::Identity();
@@ -110,7 +109,7 @@ class RoomMapper {
   TrackingResult find_camera(double timestamp_s, const SurfaceCloud& cloud,
                              std::span<const Keyframe* const> around);
   TrackingResult relocalised(double timestamp_s, const SurfaceCloud& cloud);
-  KeyframeSteps keyframe_steps() const;
+  KeyframeSpacing keyframe_spacing() const;
   std::vector<const Keyframe*> keyframes_around() const;
   bool wants_keyframe(const Pose& pose, std::span<const Keyframe* const> around) const;
   void add_keyframe(const NewFrame& frame, std::span<const Keyframe* const> around,
@@ -127,13 +126,13 @@ class RoomMapper {
   KeyframeGraph keyframes_;
   std::vector<Part> parts_;
   std::vector<int> part_of_;  ///< index of the part that a keyframe's frames go to
-  std::vector<PlacedFrame> frames_;
+  std::vector<RegisteredFrame> frames_;
   std::vector<PoseEdge> edges_;
   std::vector<Loop> loops_;  ///< in the order of their edges
   int unfitted_loops_ = 0;
   int last_fit_ = 0;     ///< keyframe
   int current_ = 0;      ///< keyframe that frames belong to
-  int lost_frames_ = 0;  ///< since the last that was placed
+  int lost_frames_ = 0;  ///< since the last that was registered
   int searched_ = 0;     ///< keyframes for which loops were looked for
 };
 

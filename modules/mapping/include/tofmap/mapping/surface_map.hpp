@@ -21,7 +21,7 @@ struct SurfaceMapOptions {
   double voxel_m = 0.04;
   int min_observations = 3;
   double max_sigma_m = 0.1;
-  bool drop_seen_through = true;
+  bool drop_free_space_violations = true;
 
   static std::vector<OptionField<SurfaceMapOptions>> fields();
 };

@@ -18,7 +18,7 @@ struct CloudRegistrationOptions {
   double voxel_m = 0;
   std::string method = "generalised";
   double min_overlap = 0.15;
-  double min_inlier_share = 0.6;
+  double min_inlier_ratio = 0.6;
   double min_direction_share = 0.004;
   double kernel_width = 3;
   bool convert_units = false;
@@ -46,43 +46,44 @@ struct CloudPair {
   PairVerdict verdict = PairVerdict::few_matches;
   Pose target_from_source = Pose::Identity();  ///< between the files' frames, metres
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  int matches = 0;             ///< features that look alike
-  int support = 0;             ///< those of them that agree on the pose
-  CloudFit fit;                ///< of the cloud that overlaps more
-  double seen_through = 0;     ///< share that contradicts what the other's sensor looked through
-  double rival = 0;            ///< quality of the next best pose over that of this one
+  int matches = 0;  ///< features that look alike
+  int support = 0;  ///< those of them that agree on the pose
+  CloudFit fit;     ///< of the cloud that overlaps more
+  double free_space_violation =
+      0;                       ///< share that contradicts what the other's sensor looked through
+  double runner_up = 0;        ///< quality of the next best pose over that of this one
   double direction_share = 0;  ///< of the direction that is constrained least
   double deviations = 0;       ///< off what all pairs together say, in standard deviations
 };
 
 /// Where a cloud lies.
-struct PlacedCloud {
-  bool is_placed = false;
-  Pose common_from_cloud = Pose::Identity();  ///< meaningful only if placed
+struct RegisteredCloud {
+  bool is_registered = false;
+  Pose common_from_cloud = Pose::Identity();  ///< meaningful only if registered
   double unit_m = 1;         ///< length of the cloud's unit, metres: its points are scaled by that
-  std::string remark;        ///< why it is not placed, or what is odd about it; empty: nothing
-  double inlier_share = 0;   ///< of the pair with most inliers
+  std::string remark;        ///< why it is not registered, or what is odd about it; empty: nothing
+  double inlier_ratio = 0;   ///< of the pair with most inliers
   double rmse_m = 0;         ///< of that pair
   std::vector<int> tied_to;  ///< clouds that it was registered with
 };
 
 struct CloudRegistration {
   double voxel_m = 0;
-  std::vector<PlacedCloud> clouds;  ///< in the order given
-  std::vector<CloudPair> pairs;     ///< all that were tried, ordered by source, then target
+  std::vector<RegisteredCloud> clouds;  ///< in the order given
+  std::vector<CloudPair> pairs;         ///< all that were tried, ordered by source, then target
   bool interrupted = false;
 
-  int placed() const;
+  int registered() const;
 };
 
-/// Places clouds of one scene in a common frame, which is that of the first one placed: no order,
-/// no start poses.
+/// Places clouds of one scene in a common frame, which is that of the first one registered: no
+/// order, no start poses.
 ///
 /// Every two clouds are aligned by features and refined from coarse to fine; pairs that pass their
 /// tests are edges of a graph, whose largest connected part is fitted as a whole (robustly: pairs
-/// that others contradict lose their say). Clouds outside of it are not placed. A cloud whose size
-/// differs from the others' by about the ratio of two units of length is tried with that unit, and
-/// the remark says so; it is placed only with `convert_units`.
+/// that others contradict lose their say). Clouds outside of it are not registered. A cloud whose
+/// size differs from the others' by about the ratio of two units of length is tried with that unit,
+/// and the remark says so; it is registered only with `convert_units`.
 ///
 /// `keep_going` is shown the pairs done and to do; false ends the run. The result is the same for
 /// any number of threads. `names` are what remarks call the clouds. Throws UsageError for fewer

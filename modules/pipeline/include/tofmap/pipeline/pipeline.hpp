@@ -97,9 +97,9 @@ struct FrameRecord {
   bool is_prepared() const { return damage.empty() && !repeats; }
 };
 
-/// A room as the camera saw it. The world is the frame of the first placed camera.
+/// A room as the camera saw it. The world is the frame of the first registered camera.
 struct RoomMap {
-  Trajectory trajectory;  ///< every frame that was placed
+  Trajectory trajectory;  ///< every frame that was registered
   Trajectory keyframes;
   MapCloud surface;
   std::vector<Loop> loops;          ///< places recognised
@@ -133,8 +133,8 @@ class MapRun {
   MapRun(const SensorModel& sensor, const PipelineOptions& options);
 
   /// Takes frames from the source until its end, or until a hook ends it. Frames that are damaged
-  /// or cannot be placed are skipped, and said so in their record. Frames are prepared in parallel
-  /// and registered in order; the result is the same for any number of threads.
+  /// or cannot be registered are skipped, and said so in their record. Frames are prepared in
+  /// parallel and registered in order; the result is the same for any number of threads.
   void advance(FrameSource& source, const MapHooks& hooks = {});
 
   /// Frames that were taken so far, in order.

@@ -25,14 +25,14 @@ CloudMethod cloud_method(const std::string& name);
 
 struct CloudIcpOptions {
   CloudMethod method = CloudMethod::generalised;
-  double max_gap_m = 0;            ///< farther apart points are no pair; must be positive
+  double max_distance_m = 0;       ///< farther apart points are no pair; must be positive
   std::size_t max_points = 20000;  ///< of the source that take part, evenly drawn
 };
 
 /// How well one cloud lies on another.
 struct CloudFit {
   double overlap = 0;       ///< share of the source's points that have a target point near
-  double inlier_share = 0;  ///< share of those that lie on its surface
+  double inlier_ratio = 0;  ///< share of those that lie on its surface
   double rmse_m = 0;        ///< point to plane, over the inliers
 };
 

@@ -21,8 +21,8 @@ class PointSearch {
     float squared_gap_m2 = 0;
   };
 
-  /// The nearest point within `max_gap_m`; nothing if there is none. The place must be finite.
-  std::optional<Neighbour> nearest(const Eigen::Vector3f& place_m, double max_gap_m) const;
+  /// The nearest point within `max_distance_m`; nothing if there is none. The place must be finite.
+  std::optional<Neighbour> nearest(const Eigen::Vector3f& place_m, double max_distance_m) const;
 
  private:
   struct Tree;

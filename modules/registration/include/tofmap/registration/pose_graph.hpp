@@ -28,7 +28,7 @@ struct PoseGraphResult {
   bool converged = false;
   int iterations = 0;
   /// Of each edge: its error in standard deviations, √(eᵀ Σ⁻¹ e), at the end.
-  std::vector<double> edge_deviations;
+  std::vector<double> edge_mahalanobis;
 };
 
 /// The poses that fit all edges best, the first one held: nonlinear least squares over rotations
@@ -44,7 +44,7 @@ PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const Pos
                                     double kernel_width);
 
 /// The error of an edge between these poses in standard deviations, √(eᵀ Σ⁻¹ e).
-double edge_deviation(const PoseEdge& edge, const std::vector<Pose>& poses);
+double mahalanobis_distance(const PoseEdge& edge, const std::vector<Pose>& poses);
 
 /// Whether an edge that may be wrong has hardly a say left with these deviations: a sixteenth of
 /// that of an edge without error, or less.

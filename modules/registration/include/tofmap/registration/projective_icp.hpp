@@ -33,14 +33,14 @@ struct RegistrationOptions {
   std::string method = "projective";
   int source_stride_px = 2;
   int max_iterations = 20;
-  double max_point_gap_m = 0.4;
+  double max_correspondence_distance_m = 0.4;
   double max_normal_angle_rad = 0.8;
   double kernel_width = 3;
   double systematic_sigma_m = 0.003;
   double correlated_observations = 12;
   int min_correspondences = 200;
   double min_overlap = 0.15;
-  double min_inlier_share = 0.5;
+  double min_inlier_ratio = 0.5;
 
   static std::vector<OptionField<RegistrationOptions>> fields();
 };
@@ -63,7 +63,7 @@ struct RegistrationResult {
   int iterations = 0;  ///< with all points
   int correspondences = 0;
   double overlap = 0;         ///< share of the source's points with a correspondence
-  double inlier_share = 0;    ///< share of correspondences the kernel keeps at half weight or more
+  double inlier_ratio = 0;    ///< share of correspondences the kernel keeps at half weight or more
   double rmse_m = 0;          ///< point-to-plane, over those inliers
   double residual_scale = 0;  ///< robust standard deviation of residuals over predicted noise
 

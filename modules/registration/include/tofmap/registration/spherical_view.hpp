@@ -49,7 +49,7 @@ bool may_be_viewpoint(std::span<const Eigen::Vector3f> points_m, const Eigen::Ve
 /// Share of the points, of those where the view holds a surface at all, that stand in front of it,
 /// by more than `slack_m` and a fiftieth of the range: the view has looked through them, so they
 /// are not there. 0 if no point is where the view looks or behind it.
-double seen_through_share(const SphericalView& view, const OrientedCloud& cloud,
-                          const Pose& view_from_cloud, double slack_m);
+double free_space_violation_share(const SphericalView& view, const OrientedCloud& cloud,
+                                  const Pose& view_from_cloud, double slack_m);
 
 }  // namespace tofmap

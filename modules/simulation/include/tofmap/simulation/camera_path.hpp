@@ -22,8 +22,8 @@ Waypoint look_at(const Eigen::Vector3d& position, const Eigen::Vector3d& target)
 
 /// How far the camera may move and turn from one frame to the next.
 struct MotionLimits {
-  double max_step_m = 0.07;
-  double max_turn_rad = 0.0524;
+  double max_translation_m = 0.07;
+  double max_rotation_rad = 0.0524;
 };
 
 /// A smooth camera path: uniform cubic B-splines through position and direction, which are

@@ -53,8 +53,8 @@ struct SimulatorOptions {
   double b_delay_share = 0.1;
   int frames = 0;
   double frame_rate_hz = 15;
-  double max_step_m = 0.07;
-  double max_turn_deg = 3;
+  double max_translation_m = 0.07;
+  double max_rotation_deg = 3;
   double max_range_m = 0;
   std::string trajectory_file;
   int seed = 1;

@@ -5,11 +5,11 @@
 #include <span>
 
 #include <tofmap/core/frame.hpp>
-#include <tofmap/unwrap/common/beat.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
 #include <tofmap/unwrap/common/unwrap_options.hpp>
 #include <tofmap/unwrap/common/unwrap_result.hpp>
 #include <tofmap/unwrap/errors/measured_frame.hpp>
-#include <tofmap/unwrap/joint/count_estimate.hpp>
+#include <tofmap/unwrap/joint/wrap_count_estimate.hpp>
 #include <tofmap/unwrap/jump/jump_estimate.hpp>
 
 namespace tofmap {
@@ -48,9 +48,9 @@ class Unwrapper {
  private:
   UnwrapOptions options_;
   UnwrapMethod method_;
-  BeatLimits limits_;
+  UnwrapLimits limits_;
   FrameMeasurer measurer_;
-  CountEstimator count_estimator_;
+  WrapCountEstimator count_estimator_;
   JumpEstimator jump_estimator_;
 };
 

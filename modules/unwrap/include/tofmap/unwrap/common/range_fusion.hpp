@@ -5,7 +5,7 @@
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/image.hpp>
 #include <tofmap/core/range_error.hpp>
-#include <tofmap/unwrap/common/beat.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
 
 namespace tofmap {
 
@@ -22,6 +22,7 @@ struct FusedRanges {
 /// noise and `residual_sigma_m`: a pixel of two surfaces, or a wrong count. B is matched to A: what
 /// the camera's errors and motion make of the residual is gone from its phases.
 FusedRanges fuse_ranges(const DualFrequencyFrame& frame, const ImageU8& counts,
-                        const BeatLimits& limits, const PhaseSigma& sigma, double residual_sigma_m);
+                        const UnwrapLimits& limits, const PhaseSigma& sigma,
+                        double residual_sigma_m);
 
 }  // namespace tofmap

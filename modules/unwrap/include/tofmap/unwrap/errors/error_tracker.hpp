@@ -9,8 +9,8 @@
 #include <tofmap/core/camera.hpp>
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/range_error.hpp>
-#include <tofmap/unwrap/common/beat.hpp>
 #include <tofmap/unwrap/common/frame_errors.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
 
 namespace tofmap {
 
@@ -45,7 +45,7 @@ struct MatchedExposure {
 class ErrorTracker {
  public:
   /// A camera without size is unknown: its motion is then taken for an offset.
-  ErrorTracker(const BeatLimits& limits, const CameraModel& camera);
+  ErrorTracker(const UnwrapLimits& limits, const CameraModel& camera);
 
   struct Tracked {
     FrameErrors errors;
@@ -86,7 +86,7 @@ class ErrorTracker {
   void match_moved(const SurfaceSamples& samples, const ExposurePair& pair,
                    const PairGeometry& geometry, Tracked& tracked);
 
-  BeatLimits limits_;
+  UnwrapLimits limits_;
   CameraModel camera_;
   PixelRays rays_;
   CameraErrors camera_errors_;

@@ -9,8 +9,8 @@
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/image.hpp>
 #include <tofmap/core/range_error.hpp>
-#include <tofmap/unwrap/common/beat.hpp>
 #include <tofmap/unwrap/common/frame_errors.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
 #include <tofmap/unwrap/common/unwrap_options.hpp>
 #include <tofmap/unwrap/errors/error_tracker.hpp>
 
@@ -53,7 +53,7 @@ class FrameMeasurer {
   void load(std::istream& in);
 
  private:
-  BeatLimits limits_;
+  UnwrapLimits limits_;
   double saturation_amplitude_;
   std::optional<ErrorTracker> tracker_;  ///< of methods that compare the frequencies
 };

@@ -13,7 +13,7 @@ namespace tofmap {
 ///
 /// A second difference cancels planes to first order and needs no unwrapping; the median
 /// passes over edges. (The residual between A and B, the obvious other source, is bounded by
-/// half a beat step and so saturates just when the noise is large.)
+/// half a residual step and so saturates just when the noise is large.)
 /// The result is at least the quantisation of 16-bit phases; where too few pixels have
 /// neighbours to tell (fewer than 16 triples), it is a noise of 0.01 cycles at the median
 /// amplitude.

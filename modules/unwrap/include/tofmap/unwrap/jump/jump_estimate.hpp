@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <tofmap/unwrap/common/beat.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
 #include <tofmap/unwrap/common/unwrap_options.hpp>
 #include <tofmap/unwrap/errors/phase_noise.hpp>
 #include <tofmap/unwrap/jump/jump_evidence.hpp>
@@ -45,7 +45,7 @@ class JumpEstimator {
  public:
   /// What it returns is good until the next call.
   const JumpEstimate& estimate(const DualFrequencyFrame& frame, const PhaseSigma& sigma,
-                               const BeatLimits& limits, const JumpMethod& method,
+                               const UnwrapLimits& limits, const JumpMethod& method,
                                const UnwrapOptions& options);
 
  private:

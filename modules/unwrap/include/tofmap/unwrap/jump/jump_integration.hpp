@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <tofmap/core/image.hpp>
-#include <tofmap/unwrap/common/beat.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
 #include <tofmap/unwrap/jump/jump_evidence.hpp>
 
 namespace tofmap {
@@ -30,15 +30,15 @@ struct RelativeCounts {
 RelativeCounts integrate_jumps(const JumpProbabilities& marginals,
                                const JumpProbabilities& evidence, const ImageU8& valid);
 
-/// The same, except that the beat may object to any join: two regions stay apart where their
-/// joint fit to the beat costs more than both fits apart by more than `objection_share` times
+/// The same, except that the residual may object to any join: two regions stay apart where their
+/// joint fit to the residual costs more than both fits apart by more than `objection_share` times
 /// the log odds of the jump node between them. So one wrong node cannot carry a whole region.
-/// Regions are anchored where the beat of all their pixels together fits best; counts that leave
-/// 0 … count_a − 1 cost as much as the worst beat. `nearest` is the best count of each pixel by
-/// itself (nearest_pair_counts).
-RelativeCounts integrate_jumps_with_beat(const JumpProbabilities& marginals,
-                                         const JumpProbabilities& evidence, const ImageU8& valid,
-                                         const BeatCost& beat, const ImageU8& nearest,
-                                         double objection_share);
+/// Regions are anchored where the residual of all their pixels together fits best; counts that
+/// leave 0 … count_a − 1 cost as much as the worst residual. `nearest` is the best count of each
+/// pixel by itself (nearest_pair_counts).
+RelativeCounts integrate_jumps_with_residual(const JumpProbabilities& marginals,
+                                             const JumpProbabilities& evidence,
+                                             const ImageU8& valid, const ResidualCost& residual,
+                                             const ImageU8& nearest, double objection_share);
 
 }  // namespace tofmap

@@ -4,7 +4,7 @@
 
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/image.hpp>
-#include <tofmap/unwrap/common/beat.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
 
 namespace tofmap {
 
@@ -21,11 +21,11 @@ double neighbour_variance_cycles2(const ImageF& phase);
 
 /// Equation 2: count 1 where |a mod λ_B − b| > τ, else 0; a and b are the wrapped ranges of both
 /// frequencies, metres. invalid_wrap_count where either phase is NaN.
-ImageU8 threshold_counts(const DualFrequencyFrame& frame, const BeatLimits& limits,
+ImageU8 threshold_counts(const DualFrequencyFrame& frame, const UnwrapLimits& limits,
                          double threshold_m);
 
 /// τ of equation 2, metres: |λ_A − λ_B| / 2, halfway between the differences that equation 2
 /// expects of pixels that are not wrapped, and of those that are.
-double halfway_threshold_m(const BeatLimits& limits);
+double halfway_threshold_m(const UnwrapLimits& limits);
 
 }  // namespace tofmap

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "tofmap/mapping/seen_through.hpp"
+#include "tofmap/mapping/free_space.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -74,22 +74,22 @@ class View {
   float farthest_m_ = 0;
 };
 
-bool is_seen_through(const MapPoint& point, const std::vector<View>& views) {
+bool violates_free_space(const MapPoint& point, const std::vector<View>& views) {
   constexpr int least = 2;
-  int seen_through = 0;
+  int free_space_violation = 0;
   int agreeing = 0;
   for (const View& view : views) {
     const View::Verdict verdict = view.judge(point.getVector3fMap().cast<double>());
-    seen_through += verdict == View::Verdict::sees_through ? 1 : 0;
+    free_space_violation += verdict == View::Verdict::sees_through ? 1 : 0;
     agreeing += verdict == View::Verdict::agrees ? 1 : 0;
   }
-  return seen_through >= least && seen_through > agreeing;
+  return free_space_violation >= least && free_space_violation > agreeing;
 }
 
 }  // namespace
 
-MapCloud without_seen_through(const MapCloud& map, std::span<const Keyframe> keyframes,
-                              const CameraModel& camera, double margin_m) {
+MapCloud without_free_space_violations(const MapCloud& map, std::span<const Keyframe> keyframes,
+                                       const CameraModel& camera, double margin_m) {
   std::vector<View> views;
   for (const Keyframe& keyframe : keyframes) views.emplace_back(keyframe, camera, margin_m);
   std::vector<char> goes(map.size());
@@ -97,7 +97,7 @@ MapCloud without_seen_through(const MapCloud& map, std::span<const Keyframe> key
 #pragma omp parallel for schedule(dynamic, 256)
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     goes[static_cast<std::size_t>(i)] =
-        is_seen_through(map[static_cast<std::size_t>(i)], views) ? 1 : 0;
+        violates_free_space(map[static_cast<std::size_t>(i)], views) ? 1 : 0;
   }
   MapCloud kept;
   for (std::size_t i = 0; i < map.size(); ++i) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "tofmap/unwrap/joint/count_estimate.hpp"
+#include "tofmap/unwrap/joint/wrap_count_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -45,28 +45,28 @@ std::uint8_t nearest_count(float block_cycles, float phase, int counts) {
 }
 
 /// What the counts of a block, which the pixel is in, say of the pixel's: a factor for each.
-void set_hint(const CountBeliefs& coarse, Eigen::Index row, Eigen::Index col, float block_phase,
+void set_hint(const WrapCountBeliefs& coarse, Eigen::Index row, Eigen::Index col, float block_phase,
               float phase, std::vector<float>& factors) {
   // Blocks and pixels see the same light: little of what blocks say is news.
   constexpr float news = 0.15F;
   constexpr float least_share = 1e-3F;
   const auto counts = static_cast<int>(factors.size());
   const float best = coarse.probability(row, col);
-  const float rival = coarse.rival_probability(row, col);
-  const float others = (1 - best - rival) / static_cast<float>(std::max(counts - 2, 1));
+  const float runner_up = coarse.runner_up_probability(row, col);
+  const float others = (1 - best - runner_up) / static_cast<float>(std::max(counts - 2, 1));
   const float least = std::max(others / best, least_share);
   const auto set = [&](std::uint8_t count, float share) {
     const int n = nearest_count(block_phase + static_cast<float>(count), phase, counts);
     factors[static_cast<std::size_t>(n)] = std::pow(share, news);
   };
   std::fill(factors.begin(), factors.end(), std::pow(least, news));
-  set(coarse.rival(row, col), std::max(rival / best, least));
+  set(coarse.runner_up(row, col), std::max(runner_up / best, least));
   set(coarse.count(row, col), 1);
 }
 
 /// Lets noisy pixels hear what the blocks of 2 x 2 that they are in have found out.
 void hint(const DualFrequencyFrame& pixels, const PhaseSigma& sigma,
-          const DualFrequencyFrame& blocks, const CountBeliefs& coarse, CountModel& model) {
+          const DualFrequencyFrame& blocks, const WrapCountBeliefs& coarse, WrapCountModel& model) {
   std::vector<float> factors(static_cast<std::size_t>(model.counts()));
   for (Eigen::Index v = 0; v < pixels.phase_a.rows(); ++v) {
     for (Eigen::Index u = 0; u < pixels.phase_a.cols(); ++u) {
@@ -85,7 +85,7 @@ float joint_probability(float coarse, float fine, bool agree) {
 
 /// Takes over what the blocks know better: where pixels are loud and the block is surer.
 void adopt(const DualFrequencyFrame& pixels, const NoisyFrame& blocks, int block_px,
-           const CountBeliefs& coarse, int counts, CountBeliefs& fine) {
+           const WrapCountBeliefs& coarse, int counts, WrapCountBeliefs& fine) {
   for (Eigen::Index v = 0; v < pixels.phase_a.rows(); ++v) {
     for (Eigen::Index u = 0; u < pixels.phase_a.cols(); ++u) {
       const Eigen::Index row = v / block_px;
@@ -105,8 +105,8 @@ void adopt(const DualFrequencyFrame& pixels, const NoisyFrame& blocks, int block
           joint_probability(coarse.probability(row, col), fine.probability(v, u), agree);
       fine.other_probability(v, u) =
           agree ? coarse.other_probability(row, col) : 1 - fine.probability(v, u);
-      fine.rival(v, u) = count(coarse.rival(row, col));
-      fine.rival_probability(v, u) = coarse.rival_probability(row, col);
+      fine.runner_up(v, u) = count(coarse.runner_up(row, col));
+      fine.runner_up_probability(v, u) = coarse.runner_up_probability(row, col);
     }
   }
 }
@@ -175,7 +175,7 @@ NoisyFrame halve(const DualFrequencyFrame& frame, const PhaseSigma& sigma) {
 }
 
 /// Prepares the scales that noise asks for, at most so many: their blocks and noise.
-int CountEstimator::divide(const DualFrequencyFrame& frame, const PhaseSigma& sigma, int most) {
+int WrapCountEstimator::divide(const DualFrequencyFrame& frame, const PhaseSigma& sigma, int most) {
   scales_.resize(static_cast<std::size_t>(most));
   const DualFrequencyFrame* finer = &frame;
   const PhaseSigma* finer_sigma = &sigma;
@@ -190,16 +190,17 @@ int CountEstimator::divide(const DualFrequencyFrame& frame, const PhaseSigma& si
   return count;
 }
 
-CountBeliefs CountEstimator::estimate(const DualFrequencyFrame& frame, const BeatLimits& limits,
-                                      const PhaseSigma& sigma, double residual_sigma_m,
-                                      const CountEstimation& options) {
+WrapCountBeliefs WrapCountEstimator::estimate(const DualFrequencyFrame& frame,
+                                              const UnwrapLimits& limits, const PhaseSigma& sigma,
+                                              double residual_sigma_m,
+                                              const WrapCountOptions& options) {
   const int count = divide(frame, sigma, options.scales);
   const auto seen_at = [&](std::size_t s) -> const DualFrequencyFrame& {
     return s == 0 ? frame : scales_[s].blocks.frame;
   };
   for (auto s = static_cast<std::size_t>(count); s-- > 0;) {
     Scale& scale = scales_[s];
-    CountPrior prior = options.prior;
+    WrapCountPrior prior = options.prior;
     prior.slope_m *= static_cast<double>(1U << s);
     const PhaseSigma& its_sigma = s == 0 ? sigma : scale.blocks.sigma;
     scale.model.assign(seen_at(s), limits, its_sigma, residual_sigma_m, prior);
@@ -210,7 +211,7 @@ CountBeliefs CountEstimator::estimate(const DualFrequencyFrame& frame, const Bea
     scale.beliefs = scale.propagation.run(scale.model, options.iterations);
   }
 
-  CountBeliefs beliefs = std::move(scales_[0].beliefs);
+  WrapCountBeliefs beliefs = std::move(scales_[0].beliefs);
   for (std::size_t s = 1; s < static_cast<std::size_t>(count); ++s) {
     const Scale& coarse = scales_[s];
     adopt(frame, coarse.blocks, 1 << s, coarse.beliefs, limits.count_a, beliefs);

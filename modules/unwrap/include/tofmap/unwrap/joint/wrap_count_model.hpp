@@ -9,13 +9,13 @@
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/image.hpp>
 #include <tofmap/core/range_error.hpp>
-#include <tofmap/unwrap/common/beat.hpp>
 #include <tofmap/unwrap/common/diagonal_layout.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
 
 namespace tofmap {
 
 /// What is assumed of scenes, for the method `joint`. docs/unwrapping.md has the effect of each.
-struct CountPrior {
+struct WrapCountPrior {
   double outlier_share = 0.4;   ///< how much of the evidence of a pixel is thought to be any
   double slope_m = 0.2;         ///< typical difference of true ranges between neighbours
   double edge_share = 0.02;     ///< neighbours on different surfaces, at equal amplitude
@@ -27,11 +27,11 @@ struct CountPrior {
 /// Probabilities of the wrap counts of all pixels, as a grid of factors (docs/unwrapping.md,
 /// equations 11 to 14), stored diagonal by diagonal.
 ///
-/// evidence: of each pixel for each count, from its beat; the best is 1.
+/// evidence: of each pixel for each count, from its residual; the best is 1.
 /// right, down: of each pixel and that neighbour for the two steps in count that make their ranges
 /// lie close, relative to all other steps, which count 0: `same` for no step, `next` for the other;
 /// that is one up if the number is positive, one down, of its absolute value, if it is negative.
-class CountModel {
+class WrapCountModel {
  public:
   struct Edges {
     std::vector<float> same;
@@ -41,8 +41,8 @@ class CountModel {
   /// Replaces the model by that of a frame, whose phases are NaN where there is no return. `sigma`
   /// is the noise of its phases, `residual_sigma_m` what their residual has besides, as systematic
   /// errors make it. Keeps its memory, so that frames of one size cost no allocation.
-  void assign(const DualFrequencyFrame& frame, const BeatLimits& limits, const PhaseSigma& sigma,
-              double residual_sigma_m, const CountPrior& prior);
+  void assign(const DualFrequencyFrame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
+              double residual_sigma_m, const WrapCountPrior& prior);
 
   /// Multiplies the evidence of a pixel by a factor for each count. The best is 1 again then.
   void weigh_evidence(int row, int col, std::span<const float> factors);

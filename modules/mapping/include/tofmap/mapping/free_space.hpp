@@ -17,7 +17,7 @@ namespace tofmap {
 /// surface. It agrees with one that lies within that of the surface at its pixel. A point goes if
 /// at least two keyframes see through it and more than agree with it. Where a keyframe has no
 /// surface it says nothing. The result is the same for any number of threads.
-MapCloud without_seen_through(const MapCloud& map, std::span<const Keyframe> keyframes,
-                              const CameraModel& camera, double margin_m);
+MapCloud without_free_space_violations(const MapCloud& map, std::span<const Keyframe> keyframes,
+                                       const CameraModel& camera, double margin_m);
 
 }  // namespace tofmap

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "tofmap/diagnostics/beat_survey.hpp"
+#include "tofmap/diagnostics/residual_survey.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -180,26 +180,26 @@ std::string more_or_less(double offset_m) {
 }
 
 /// "133 mm more than B, or 200 mm less".
-std::string offset_text(const BeatSurvey& beat) {
-  std::string text = more_or_less(beat.offset_m) + " than B";
+std::string offset_text(const ResidualSurvey& residual) {
+  std::string text = more_or_less(residual.offset_m) + " than B";
   constexpr std::size_t some = 2;
-  for (std::size_t i = 0; i < std::min(some, beat.other_offsets_m.size()); ++i) {
-    text += ", or " + more_or_less(beat.other_offsets_m[i]);
+  for (std::size_t i = 0; i < std::min(some, residual.other_offsets_m.size()); ++i) {
+    text += ", or " + more_or_less(residual.other_offsets_m[i]);
   }
   return text;
 }
 
 }  // namespace
 
-std::optional<BeatSurvey> survey_beat(const std::vector<DualFrequencyFrame>& frames,
-                                      const SensorModel& sensor) {
+std::optional<ResidualSurvey> survey_residual(const std::vector<DualFrequencyFrame>& frames,
+                                              const SensorModel& sensor) {
   const std::vector<PhasePair> pairs = phase_pairs(frames);
   if (pairs.size() < least_pixels) return std::nullopt;
   Agreement as_is = agreement(pairs, sensor);
   SensorModel swapped = sensor;
   std::swap(swapped.modulation.frequency_a_hz, swapped.modulation.frequency_b_hz);
   if (as_is.offsets_m.empty()) return std::nullopt;
-  BeatSurvey survey;
+  ResidualSurvey survey;
   survey.offset_m = as_is.offsets_m.front();
   survey.other_offsets_m.assign(as_is.offsets_m.begin() + 1, as_is.offsets_m.end());
   survey.spread_m = as_is.spread_m;
@@ -208,47 +208,48 @@ std::optional<BeatSurvey> survey_beat(const std::vector<DualFrequencyFrame>& fra
   return survey;
 }
 
-std::optional<std::string> pairing_doubt(const BeatSurvey& beat) {
+std::optional<std::string> pairing_warning(const ResidualSurvey& residual) {
   constexpr double telling_ratio = 0.5;
-  if (beat.swapped_spread_m < telling_ratio * beat.spread_m) {
+  if (residual.swapped_spread_m < telling_ratio * residual.spread_m) {
     return formatted(
         "both frequencies agree within %.0f mm if they are swapped, and within %.0f mm as they "
         "are; are frequency_a_hz and frequency_b_hz mixed up, or the folders of A and B?",
-        1000 * beat.swapped_spread_m, 1000 * beat.spread_m);
+        1000 * residual.swapped_spread_m, 1000 * residual.spread_m);
   }
   // Differences that chance alone makes have a spread of .37 of the ambiguity, or more where ranges
   // are known to be short.
   constexpr double no_agreement = 0.3;
-  if (beat.spread_m > no_agreement * beat.ambiguity_m) {
+  if (residual.spread_m > no_agreement * residual.ambiguity_m) {
     return formatted(
         "A and B agree within %.0f mm only, no better than images of different places: are "
         "their folders or files mixed up, does device.layout fit the device, or is there "
         "nothing but noise?",
-        1000 * beat.spread_m);
+        1000 * residual.spread_m);
   }
   return std::nullopt;
 }
 
-std::optional<std::string> offset_doubt(const BeatSurvey& beat, const CameraErrors* camera) {
+std::optional<std::string> offset_warning(const ResidualSurvey& residual,
+                                          const CameraErrors* camera) {
   constexpr double least_m = 0.02;  // motion between both images makes some millimetres
   constexpr double same_m = 0.03;   // both estimates have the errors of what they look at
   const bool is_known = camera != nullptr && camera->frames > 0;
-  const double estimate_m = is_known ? camera->offset_m() : beat.offset_m;
-  const bool agree = std::abs(estimate_m - beat.offset_m) < same_m;
-  if (std::max(std::abs(estimate_m), std::abs(beat.offset_m)) < least_m) return std::nullopt;
+  const double estimate_m = is_known ? camera->offset_m() : residual.offset_m;
+  const bool agree = std::abs(estimate_m - residual.offset_m) < same_m;
+  if (std::max(std::abs(estimate_m), std::abs(residual.offset_m)) < least_m) return std::nullopt;
   const std::string remedy =
       "; 'tofmap calibrate' against known ranges finds the phase offsets of both";
   if (!agree) {
     return "the offset between the frequencies is not sure: A measures " +
-           more_or_less(estimate_m) + " than B, or " + offset_text(beat) + remedy;
+           more_or_less(estimate_m) + " than B, or " + offset_text(residual) + remedy;
   }
   // The next offsets that fit are about `ambiguity_m` away: three times as large as this one.
-  const bool is_smallest_by_far = std::abs(estimate_m) < beat.ambiguity_m / 4;
+  const bool is_smallest_by_far = std::abs(estimate_m) < residual.ambiguity_m / 4;
   if (is_known && is_smallest_by_far) return std::nullopt;
-  return "A measures " + offset_text(beat) + remedy;
+  return "A measures " + offset_text(residual) + remedy;
 }
 
-std::optional<std::string> frequency_pair_doubt(const Modulation& modulation) {
+std::optional<std::string> frequency_pair_warning(const Modulation& modulation) {
   constexpr double least_wavelengths = 1.5;
   const double combined_m = combined_range_m(modulation);
   if (combined_m >= least_wavelengths * modulation.wavelength_a_m()) return std::nullopt;

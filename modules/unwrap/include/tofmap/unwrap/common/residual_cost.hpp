@@ -13,7 +13,7 @@
 namespace tofmap {
 
 /// What bounds the wrap counts of a frame: count_a is the number of counts n_A = 0 … count_a − 1.
-struct BeatLimits {
+struct UnwrapLimits {
   double wavelength_a_m = 0;
   double wavelength_b_m = 0;
   double max_range_m = 0;
@@ -25,33 +25,33 @@ struct BeatLimits {
 /// Limits for ranges up to `max_range_m`; 0 means the sensor's, and if that is 0 too, what the
 /// pair can tell apart at a noise of 0.05 cycles (29 and 31 MHz: 72.4 m).
 /// Throws UsageError if that takes more than 255 counts, which wrap images cannot hold.
-BeatLimits beat_limits(const SensorModel& sensor, double max_range_m);
+UnwrapLimits unwrap_limits(const SensorModel& sensor, double max_range_m);
 
-/// The beat: range at A minus the nearest range that B allows, metres, for one pixel and one
+/// The residual: range at A minus the nearest range that B allows, metres, for one pixel and one
 /// count n_A; at most λ_B / 2 in size, and near zero for the true count.
 /// B's count is not bounded by itself: near both ends of the range noise may carry B across
 /// a wrap boundary that A has not crossed.
-float beat_residual_m(const BeatLimits& limits, float phase_a, float phase_b, int n_a);
+float count_residual_m(const UnwrapLimits& limits, float phase_a, float phase_b, int n_a);
 
 /// The phase of A up to which a count's range is within the limits, cycles; negative for a count
 /// that is none.
-float farthest_phase_cycles(const BeatLimits& limits, int n_a);
+float farthest_phase_cycles(const UnwrapLimits& limits, int n_a);
 
 /// residual_step_m (tofmap/core/frequency_residual.hpp) among the counts within the limits.
-double residual_step_m(const BeatLimits& limits);
+double residual_step_m(const UnwrapLimits& limits);
 
 /// True if the count puts A's range within 0 … max_range_m. A twentieth of a wavelength is
 /// tolerated above for noise at the limit; count 0 is always within.
-bool count_within_limits(const BeatLimits& limits, float phase_a, int n_a);
+bool count_within_limits(const UnwrapLimits& limits, float phase_a, int n_a);
 
-/// False if the beat of both counts is the same to a twentieth of a cycle of B: whole combined
+/// False if the residual of both counts is the same to a twentieth of a cycle of B: whole combined
 /// ranges lie between them.
-bool can_tell_apart(const BeatLimits& limits, int n_a, int other_n_a);
+bool can_tell_apart(const UnwrapLimits& limits, int n_a, int other_n_a);
 
 /// Equation 2 for any number of wraps: per pixel the n_A of the nearest pair, i.e. the least
-/// |beat residual|; invalid_wrap_count where either phase is NaN. Equal residuals: the smaller.
+/// |residual residual|; invalid_wrap_count where either phase is NaN. Equal residuals: the smaller.
 /// For two counts it is a threshold at |λ_A − λ_B| / 2; the paper's own is threshold_counts.
-ImageU8 nearest_pair_counts(const DualFrequencyFrame& frame, const BeatLimits& limits);
+ImageU8 nearest_pair_counts(const DualFrequencyFrame& frame, const UnwrapLimits& limits);
 
 /// R̂ of equation 2: phase_a + n_A, cycles; NaN where the count is invalid.
 ImageF reconstruct_cycles(const ImageF& phase_a, const ImageU8& counts);
@@ -62,15 +62,15 @@ struct CountedPixel {
   int offset;
 };
 
-/// How badly a count fits the beat of each pixel, in nats: half the squared residual over its
+/// How badly a count fits the residual of each pixel, in nats: half the squared residual over its
 /// variance, bounded so that flying pixels and multipath cannot outvote a surface. Outside the
 /// limits, and without a return, every count costs the bound.
-class BeatCost {
+class ResidualCost {
  public:
-  BeatCost() = default;
+  ResidualCost() = default;
   /// `residual_sigma_m` is what the residual has besides the noise of both phases.
-  BeatCost(const DualFrequencyFrame& frame, const BeatLimits& limits, const PhaseSigma& sigma,
-           double residual_sigma_m = 0);
+  ResidualCost(const DualFrequencyFrame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
+               double residual_sigma_m = 0);
 
   /// The cost of n_A at a pixel, numbered row by row: 0 … bound. n_A is any count.
   float operator()(Eigen::Index pixel, int n_a) const;
@@ -89,9 +89,9 @@ class BeatCost {
   int count_a_ = 0;
   std::size_t size_ = 0;
   ImageF phase_a_;
-  ImageF beat_cycles_;           ///< of count 0, in cycles of B
-  ImageF precision_;             ///< half the inverse variance of the beat, 1 / cycles²
-  std::vector<float> shift_;     ///< what counts from −1 − size() on add to the beat, cycles
+  ImageF residual_cycles_;    ///< of count 0, in cycles of B
+  ImageF precision_;          ///< half the inverse variance of the residual, 1 / cycles²
+  std::vector<float> shift_;  ///< what counts from −1 − size() on add to the residual, cycles
   std::vector<float> farthest_;  ///< phase up to which their range is within the limits
 };
 

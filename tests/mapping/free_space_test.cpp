@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tofmap/mapping/seen_through.hpp>
+#include <tofmap/mapping/free_space.hpp>
 
 namespace tofmap {
 namespace {
@@ -38,7 +38,7 @@ class SeenThrough : public testing::Test {
     point.normal_z = -1;
     MapCloud map;
     map.push_back(point);
-    return !without_seen_through(map, keyframes_, small_camera(), margin_m).empty();
+    return !without_free_space_violations(map, keyframes_, small_camera(), margin_m).empty();
   }
 
   std::vector<Keyframe> keyframes_;

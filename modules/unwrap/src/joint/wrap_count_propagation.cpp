@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "tofmap/unwrap/joint/count_propagation.hpp"
+#include "tofmap/unwrap/joint/wrap_count_propagation.hpp"
 
 #include "common/fast_math.hpp"
 
@@ -99,7 +99,7 @@ enum class Sweep { forward, backward };
 
 /// The pixels of diagonal d from `row` on, in a sweep to later or to earlier diagonals. `has_back`
 /// is false before anything has been sent against the sweep.
-Block block_at(const CountModel& model, const Buffers& buffers, Sweep sweep, int d, int row,
+Block block_at(const WrapCountModel& model, const Buffers& buffers, Sweep sweep, int d, int row,
                bool has_back) {
   const DiagonalLayout& layout = model.layout();
   const auto counts = static_cast<std::size_t>(model.counts());
@@ -117,7 +117,7 @@ Block block_at(const CountModel& model, const Buffers& buffers, Sweep sweep, int
   // Edges are stored at their left or upper pixel.
   const std::size_t edge_right = layout.place(forward ? d : d - 1, row, 1);
   const std::size_t edge_down = forward ? edge_right : edge_right - 1;
-  const auto edge = [&](const Planes<HalfFloat>& slot, const CountModel::Edges& edges,
+  const auto edge = [&](const Planes<HalfFloat>& slot, const WrapCountModel::Edges& edges,
                         std::size_t place) {
     return Edge{has_back ? read_only(slot) : Planes<const HalfFloat>{buffers.ones, 0}, slot,
                 &edges.same[place], &edges.next[place]};
@@ -249,9 +249,9 @@ TOFMAP_VECTOR_CLONES float largest_change(const Block& block, const Planes<const
 /// The two most likely counts of a block and their probabilities.
 struct BlockBeliefs {
   Row best;
-  Row rival;
+  Row runner_up;
   Row best_count;
-  Row rival_count;
+  Row runner_up_count;
   Row others;  ///< of all other counts together
 };
 
@@ -261,9 +261,9 @@ TOFMAP_VECTOR_CLONES void read_block(const Block& block_, BlockBeliefs& out) {
   const Lanes none{};
   for (int i = 0; i < block.lanes; i += DiagonalLayout::lanes) {
     Lanes best = none - 1.0F;
-    Lanes rival = none - 1.0F;
+    Lanes runner_up = none - 1.0F;
     Lanes best_count = none;
-    Lanes rival_count = none;
+    Lanes runner_up_count = none;
     Lanes sum = none;
     Lanes others = none;
     for (int n = 0; n < block.counts; ++n) {
@@ -277,28 +277,28 @@ TOFMAP_VECTOR_CLONES void read_block(const Block& block_, BlockBeliefs& out) {
       const Lanes count = none + static_cast<float>(n);
       sum += belief;
       const auto is_best = belief > best;
-      const auto is_rival = belief > rival;
+      const auto is_runner_up = belief > runner_up;
       const Lanes overtaken = best > none ? best : none;
-      const Lanes beaten = is_rival ? belief : rival;
-      const Lanes beaten_count = is_rival ? count : rival_count;
+      const Lanes beaten = is_runner_up ? belief : runner_up;
+      const Lanes beaten_count = is_runner_up ? count : runner_up_count;
       others += is_best ? overtaken : belief;
-      rival_count = is_best ? best_count : beaten_count;
-      rival = is_best ? best : beaten;
+      runner_up_count = is_best ? best_count : beaten_count;
+      runner_up = is_best ? best : beaten;
       best_count = is_best ? count : best_count;
       best = is_best ? belief : best;
     }
     const auto write = [i](const Lanes& lanes, Row& row) { store(lanes, row.data() + i); };
     write(best / sum, out.best);
-    write((rival > none ? rival : none) / sum, out.rival);
+    write((runner_up > none ? runner_up : none) / sum, out.runner_up);
     write(others / sum, out.others);
     write(best_count, out.best_count);
-    write(rival_count, out.rival_count);
+    write(runner_up_count, out.runner_up_count);
   }
 }
 
 }  // namespace
 
-void CountPropagation::reset(const CountModel& model) {
+void WrapCountPropagation::reset(const WrapCountModel& model) {
   const std::size_t size = model.layout().size(static_cast<std::size_t>(model.counts()));
   scratch_.assign(2 * static_cast<std::size_t>((model.counts() + 1) * DiagonalLayout::lanes), 0.0F);
   ones_.assign(block_rows, half_one);
@@ -315,7 +315,7 @@ void CountPropagation::reset(const CountModel& model) {
   for (auto& message : before_) message.assign(size, half_one);
 }
 
-void CountPropagation::sweep_forward(const CountModel& model, bool is_first) {
+void WrapCountPropagation::sweep_forward(const WrapCountModel& model, bool is_first) {
   const DiagonalLayout& layout = model.layout();
   const Buffers buffers{messages_, ones_.data(), scratch_.data()};
   for (int d = 0; d < layout.diagonals(); ++d) {
@@ -325,7 +325,7 @@ void CountPropagation::sweep_forward(const CountModel& model, bool is_first) {
   }
 }
 
-void CountPropagation::sweep_backward(const CountModel& model) {
+void WrapCountPropagation::sweep_backward(const WrapCountModel& model) {
   const DiagonalLayout& layout = model.layout();
   const Buffers buffers{messages_, ones_.data(), scratch_.data()};
   for (int d = layout.diagonals() - 1; d >= 0; --d) {
@@ -336,7 +336,7 @@ void CountPropagation::sweep_backward(const CountModel& model) {
 }
 
 /// The last sweep back, in which all messages of a pixel have come in before it sends its own.
-void CountPropagation::read_backward(const CountModel& model, CountBeliefs& beliefs) {
+void WrapCountPropagation::read_backward(const WrapCountModel& model, WrapCountBeliefs& beliefs) {
   const DiagonalLayout& layout = model.layout();
   const auto counts = static_cast<std::size_t>(model.counts());
   const Buffers buffers{messages_, ones_.data(), scratch_.data()};
@@ -353,8 +353,8 @@ void CountPropagation::read_backward(const CountModel& model, CountBeliefs& beli
         beliefs.count(v, u) = static_cast<std::uint8_t>(read.best_count[at]);
         beliefs.probability(v, u) = read.best[at];
         beliefs.other_probability(v, u) = read.others[at];
-        beliefs.rival(v, u) = static_cast<std::uint8_t>(read.rival_count[at]);
-        beliefs.rival_probability(v, u) = read.rival[at];
+        beliefs.runner_up(v, u) = static_cast<std::uint8_t>(read.runner_up_count[at]);
+        beliefs.runner_up_probability(v, u) = read.runner_up[at];
       }
       send_block(block);
       if (d % watched_diagonals != 0) continue;
@@ -371,7 +371,7 @@ void CountPropagation::read_backward(const CountModel& model, CountBeliefs& beli
 
 /// Keeps the messages whose change the last sweep back will watch: those that were sent back, or 1
 /// before there were any.
-void CountPropagation::remember_watched(const CountModel& model, bool was_sent) {
+void WrapCountPropagation::remember_watched(const WrapCountModel& model, bool was_sent) {
   const DiagonalLayout& layout = model.layout();
   const auto counts = static_cast<std::size_t>(model.counts());
   for (int d = 0; d < layout.diagonals(); d += watched_diagonals) {
@@ -388,16 +388,16 @@ void CountPropagation::remember_watched(const CountModel& model, bool was_sent) 
   }
 }
 
-CountBeliefs CountPropagation::run(const CountModel& model, int iterations) {
+WrapCountBeliefs WrapCountPropagation::run(const WrapCountModel& model, int iterations) {
   reset(model);
   const int rows = model.layout().rows();
   const int cols = model.layout().cols();
-  CountBeliefs beliefs{.count = ImageU8(rows, cols),
-                       .probability = ImageF(rows, cols),
-                       .other_probability = ImageF(rows, cols),
-                       .rival = ImageU8(rows, cols),
-                       .rival_probability = ImageF(rows, cols),
-                       .iterations = iterations};
+  WrapCountBeliefs beliefs{.count = ImageU8(rows, cols),
+                           .probability = ImageF(rows, cols),
+                           .other_probability = ImageF(rows, cols),
+                           .runner_up = ImageU8(rows, cols),
+                           .runner_up_probability = ImageF(rows, cols),
+                           .iterations = iterations};
   for (int i = 0; i + 1 < iterations; ++i) {
     sweep_forward(model, i == 0);
     sweep_backward(model);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "joint/count_confidence.hpp"
+#include "joint/wrap_count_confidence.hpp"
 
 #include "common/fast_math.hpp"
 
@@ -17,9 +17,9 @@ namespace tofmap {
 namespace {
 
 /// Pixels of one row, whose counts are believed in with these odds against.
-CountBeliefs beliefs_against(const std::vector<float>& others) {
+WrapCountBeliefs beliefs_against(const std::vector<float>& others) {
   const auto cols = static_cast<Eigen::Index>(others.size());
-  CountBeliefs beliefs;
+  WrapCountBeliefs beliefs;
   beliefs.count = ImageU8::Ones(1, cols);
   beliefs.other_probability = ImageF(1, cols);
   for (Eigen::Index i = 0; i < cols; ++i) {
@@ -30,13 +30,13 @@ CountBeliefs beliefs_against(const std::vector<float>& others) {
 }
 
 /// The confidence where all pixels have this noise, a share of the residual step.
-ImageF confidence_at(const CountBeliefs& beliefs, float noise_share) {
+ImageF confidence_at(const WrapCountBeliefs& beliefs, float noise_share) {
   SensorModel sensor;
   sensor.modulation = {29e6, 31e6};
-  const BeatLimits limits = beat_limits(sensor, 0);
+  const UnwrapLimits limits = unwrap_limits(sensor, 0);
   const double cycles =
       noise_share * residual_step_m(limits) / (std::numbers::sqrt2 * limits.wavelength_a_m);
-  return count_confidence(
+  return wrap_count_confidence(
       beliefs,
       ImageF::Constant(beliefs.count.rows(), beliefs.count.cols(), static_cast<float>(cycles)),
       limits);
@@ -49,7 +49,7 @@ std::vector<float> noises() {
   return shares;
 }
 
-TEST(CountConfidence, RisesWithTheOdds) {
+TEST(WrapCountConfidence, RisesWithTheOdds) {
   std::vector<float> others;
   for (double exponent = -0.05; exponent > -36; exponent -= 0.05) {
     others.push_back(static_cast<float>(std::pow(10, exponent)));
@@ -65,7 +65,7 @@ TEST(CountConfidence, RisesWithTheOdds) {
   }
 }
 
-TEST(CountConfidence, ChangesLittleWithLittleNoise) {
+TEST(WrapCountConfidence, ChangesLittleWithLittleNoise) {
   constexpr float largest_step = 0.12F;  // of the steepest curves, a tenth of an octave apart
   for (const float other : {0.5F, 1e-2F, 1e-4F, 1e-6F, 1e-12F}) {
     float before = confidence_at(beliefs_against({other}), 1e-3F)(0);
@@ -77,14 +77,14 @@ TEST(CountConfidence, ChangesLittleWithLittleNoise) {
   }
 }
 
-TEST(CountConfidence, IsLessAtEdgesThatNoiseDoesNotExplain) {
+TEST(WrapCountConfidence, IsLessAtEdgesThatNoiseDoesNotExplain) {
   // Log odds of ten: an edge where noise is low, and half of what there is where it is not.
-  const CountBeliefs beliefs = beliefs_against({4.5e-5F});
+  const WrapCountBeliefs beliefs = beliefs_against({4.5e-5F});
   EXPECT_LT(confidence_at(beliefs, 0.03F)(0), 0.7F);
   EXPECT_GT(confidence_at(beliefs, 0.7F)(0), 0.9F);
 }
 
-TEST(CountConfidence, TellsBeliefsApartThatRoundToOne) {
+TEST(WrapCountConfidence, TellsBeliefsApartThatRoundToOne) {
   const ImageF confidence = confidence_at(beliefs_against({1e-9F, 1e-20F, 1e-30F}), 0.3F);
   EXPECT_LT(confidence(0), confidence(1));
   EXPECT_LT(confidence(1), confidence(2));
@@ -92,14 +92,14 @@ TEST(CountConfidence, TellsBeliefsApartThatRoundToOne) {
   EXPECT_GT(confidence(2) - confidence(0), 1.0F / 65535);
 }
 
-TEST(CountConfidence, IsLessThanTheBelief) {
+TEST(WrapCountConfidence, IsLessThanTheBelief) {
   for (const float other : {0.2F, 0.01F, 1e-4F, 1e-7F}) {
     EXPECT_LT(confidence_at(beliefs_against({other}), 0.3F)(0), 1 - other);
   }
 }
 
-TEST(CountConfidence, IsFiniteWithoutRivalsAndZeroWithoutACount) {
-  CountBeliefs beliefs = beliefs_against({0, 0.5F});
+TEST(WrapCountConfidence, IsFiniteWithoutRivalsAndZeroWithoutACount) {
+  WrapCountBeliefs beliefs = beliefs_against({0, 0.5F});
   beliefs.count(1) = invalid_wrap_count;
   const ImageF confidence = confidence_at(beliefs, 0.3F);
   EXPECT_GT(confidence(0), 0.999F);

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <vector>
 
-#include <tofmap/unwrap/joint/count_model.hpp>
+#include <tofmap/unwrap/joint/wrap_count_model.hpp>
 
 namespace tofmap::test {
 
 /// The grid of factors of a count model, pixel by pixel in doubles.
-struct PlainCountModel {
+struct PlainWrapCountModel {
   int rows = 0;
   int cols = 0;
   int counts = 0;
@@ -19,7 +19,7 @@ struct PlainCountModel {
   std::vector<std::array<double, 3>> right;   ///< ψ of a step of −1, 0, +1, by left pixel
   std::vector<std::array<double, 3>> down;    ///< by upper pixel
 
-  explicit PlainCountModel(const CountModel& model)
+  explicit PlainWrapCountModel(const WrapCountModel& model)
       : rows(model.layout().rows()), cols(model.layout().cols()), counts(model.counts()) {
     for (int v = 0; v < rows; ++v) {
       for (int u = 0; u < cols; ++u) {
@@ -36,8 +36,8 @@ struct PlainCountModel {
   }
 
  private:
-  static std::array<double, 3> steps(const CountModel& model, const CountModel::Edges& edges, int v,
-                                     int u) {
+  static std::array<double, 3> steps(const WrapCountModel& model,
+                                     const WrapCountModel::Edges& edges, int v, int u) {
     const std::size_t at = model.layout().place(u + v, v, 1);
     const double next = edges.next[at];
     return {1 + std::max(-next, 0.0), 1.0 + edges.same[at], 1 + std::max(next, 0.0)};
@@ -46,9 +46,9 @@ struct PlainCountModel {
 
 /// The marginals of tree-reweighted belief propagation, as the equations say it: no vectors, no
 /// diagonals, doubles.
-class PlainCountPropagation {
+class PlainWrapCountPropagation {
  public:
-  explicit PlainCountPropagation(const PlainCountModel& model)
+  explicit PlainWrapCountPropagation(const PlainWrapCountModel& model)
       : model_(model),
         messages_(4, std::vector<std::vector<double>>(
                          model.evidence.size(),
@@ -102,7 +102,7 @@ class PlainCountPropagation {
     for (std::size_t to = 0; to < b.size(); ++to) {
       for (std::size_t n = 0; n < b.size(); ++n) {
         const int step = static_cast<int>(to) - static_cast<int>(n);
-        message[to] += PlainCountModel::factor(edge, forward ? step : -step) * b[n] /
+        message[to] += PlainWrapCountModel::factor(edge, forward ? step : -step) * b[n] /
                        messages_[opposite[from]][p][n];
       }
       largest = std::max(largest, message[to]);
@@ -111,12 +111,12 @@ class PlainCountPropagation {
     messages_[from][q] = message;
   }
 
-  const PlainCountModel& model_;
+  const PlainWrapCountModel& model_;
   std::vector<std::vector<std::vector<double>>> messages_;
 };
 
 /// Exact marginals of a small grid: the sum over all assignments of counts.
-inline std::vector<std::vector<double>> exact_marginals(const PlainCountModel& model) {
+inline std::vector<std::vector<double>> exact_marginals(const PlainWrapCountModel& model) {
   const std::size_t pixels = model.evidence.size();
   const auto counts = static_cast<std::size_t>(model.counts);
   std::vector<std::vector<double>> sums(pixels, std::vector<double>(counts, 0));
@@ -131,11 +131,11 @@ inline std::vector<std::vector<double>> exact_marginals(const PlainCountModel& m
       probability *= model.evidence[p][assigned[p]];
       if (col + 1 < model.cols) {
         const int step = static_cast<int>(assigned[p + 1]) - n;
-        probability *= PlainCountModel::factor(model.right[p], step);
+        probability *= PlainWrapCountModel::factor(model.right[p], step);
       }
       if (row + 1 < model.rows) {
         const int step = static_cast<int>(assigned[p + static_cast<std::size_t>(model.cols)]) - n;
-        probability *= PlainCountModel::factor(model.down[p], step);
+        probability *= PlainWrapCountModel::factor(model.down[p], step);
       }
     }
     total += probability;

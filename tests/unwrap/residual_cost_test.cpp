@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <tofmap/core/range_image.hpp>
-#include <tofmap/unwrap/common/beat.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
 
 namespace tofmap {
 namespace {
@@ -43,7 +43,7 @@ class Beat : public testing::TestWithParam<double> {};
 
 TEST_P(Beat, NearestPairHasTheLeastResidualOfAllCounts) {
   const RandomFrame random(GetParam());
-  const BeatLimits limits = beat_limits(random.sensor, 0);
+  const UnwrapLimits limits = unwrap_limits(random.sensor, 0);
   const ImageU8 nearest = nearest_pair_counts(random.frame, limits);
   for (Eigen::Index i = 0; i < nearest.size(); ++i) {
     const float a = random.frame.phase_a.data()[i];
@@ -54,32 +54,33 @@ TEST_P(Beat, NearestPairHasTheLeastResidualOfAllCounts) {
     ASSERT_TRUE(count_within_limits(limits, a, found));
     for (int n = 0; n < limits.count_a && count_within_limits(limits, a, n); ++n) {
       constexpr float rounding_m = 1e-4F;  // of ranges up to 70 m
-      ASSERT_LE(std::abs(beat_residual_m(limits, a, b, found)),
-                std::abs(beat_residual_m(limits, a, b, n)) + rounding_m);
+      ASSERT_LE(std::abs(count_residual_m(limits, a, b, found)),
+                std::abs(count_residual_m(limits, a, b, n)) + rounding_m);
     }
   }
 }
 
 /// The definition, for one pixel and any count.
-float plain_cost(const RandomFrame& random, const BeatLimits& limits, const PhaseNoise& noise,
+float plain_cost(const RandomFrame& random, const UnwrapLimits& limits, const PhaseNoise& noise,
                  Eigen::Index i, int n) {
   const float a = random.frame.phase_a.data()[i];
   const float b = random.frame.phase_b.data()[i];
-  if (std::isnan(b) || n < 0 || !count_within_limits(limits, a, n)) return BeatCost::bound;
+  if (std::isnan(b) || n < 0 || !count_within_limits(limits, a, n)) return ResidualCost::bound;
   const double sigma_a_m =
       noise.scale_a / random.frame.amplitude_a.data()[i] * limits.wavelength_a_m;
   const double sigma_b_m =
       noise.scale_b / random.frame.amplitude_b.data()[i] * limits.wavelength_b_m;
-  const double residual_m = beat_residual_m(limits, a, b, n);
+  const double residual_m = count_residual_m(limits, a, b, n);
   const double variance_m2 = sigma_a_m * sigma_a_m + sigma_b_m * sigma_b_m;
-  return std::min(static_cast<float>(residual_m * residual_m / (2 * variance_m2)), BeatCost::bound);
+  return std::min(static_cast<float>(residual_m * residual_m / (2 * variance_m2)),
+                  ResidualCost::bound);
 }
 
 TEST_P(Beat, CostIsThatOfTheDefinition) {
   const RandomFrame random(GetParam());
-  const BeatLimits limits = beat_limits(random.sensor, 0);
+  const UnwrapLimits limits = unwrap_limits(random.sensor, 0);
   const PhaseNoise noise{1, 1};
-  const BeatCost cost(random.frame, limits, PhaseSigma(random.frame, noise));
+  const ResidualCost cost(random.frame, limits, PhaseSigma(random.frame, noise));
   const auto counts = static_cast<int>(cost.size());
   constexpr float tolerance = 2e-2F;  // 1e-4 m of a residual of up to 0.15 m at a noise of 1 cm
   for (Eigen::Index i = 0; i < random.frame.phase_a.size(); i += 5) {
@@ -102,8 +103,8 @@ TEST_P(Beat, CostIsThatOfTheDefinition) {
 
 TEST_P(Beat, ProbabilityIsTheShareOfTheLikelihood) {
   const RandomFrame random(GetParam());
-  const BeatLimits limits = beat_limits(random.sensor, 0);
-  const BeatCost cost(random.frame, limits, PhaseSigma(random.frame, {1, 1}));
+  const UnwrapLimits limits = unwrap_limits(random.sensor, 0);
+  const ResidualCost cost(random.frame, limits, PhaseSigma(random.frame, {1, 1}));
   const ImageU8 counts = nearest_pair_counts(random.frame, limits);
   const ImageF probability = cost.probability(counts);
   for (Eigen::Index i = 0; i < counts.size(); ++i) {

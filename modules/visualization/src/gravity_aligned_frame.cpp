@@ -64,10 +64,10 @@ Eigen::Vector3d upward_of_room(const MapCloud& map, const Eigen::Vector3d& guess
 }
 
 /// The direction of most walls, modulo a quarter turn: the phase of the mean of exp(4 i α).
-double wall_angle_rad(const MapCloud& map, const Eigen::Matrix3d& level_from_map) {
+double wall_angle_rad(const MapCloud& map, const Eigen::Matrix3d& aligned_from_map) {
   std::complex<double> sum = 0;
   for (const MapPoint& point : map) {
-    const Eigen::Vector3d normal = level_from_map * point.getNormalVector3fMap().cast<double>();
+    const Eigen::Vector3d normal = aligned_from_map * point.getNormalVector3fMap().cast<double>();
     if (!(std::abs(normal.z()) < 0.3)) continue;
     sum += std::polar(1.0, 4 * std::atan2(normal.y(), normal.x()));
   }
@@ -82,23 +82,24 @@ std::pair<double, double> limits(std::vector<double> values) {
 }
 
 /// The same frame with x where −y was and y where x was.
-LevelFrame turned_by_a_quarter(const LevelFrame& frame) {
+GravityAlignedFrame turned_by_a_quarter(const GravityAlignedFrame& frame) {
   Eigen::Matrix3d turn;
   turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   const Eigen::Vector3d low = frame.box_m.min();
   const Eigen::Vector3d high = frame.box_m.max();
-  return {turn * frame.level_from_map,
+  return {turn * frame.aligned_from_map,
           Eigen::AlignedBox3d(Eigen::Vector3d(-high.y(), low.x(), low.z()),
                               Eigen::Vector3d(-low.y(), high.x(), high.z()))};
 }
 
 }  // namespace
 
-Eigen::AlignedBox3d level_box(const MapCloud& map, const Eigen::Matrix3d& level_from_map) {
+Eigen::AlignedBox3d gravity_aligned_box(const MapCloud& map,
+                                        const Eigen::Matrix3d& aligned_from_map) {
   if (map.empty()) return {};
   std::array<std::vector<double>, 3> coordinates;
   for (const MapPoint& point : map) {
-    const Eigen::Vector3d p = level_from_map * point.getVector3fMap().cast<double>();
+    const Eigen::Vector3d p = aligned_from_map * point.getVector3fMap().cast<double>();
     for (int axis = 0; axis < 3; ++axis) {
       coordinates[static_cast<std::size_t>(axis)].push_back(p[axis]);
     }
@@ -112,16 +113,16 @@ Eigen::AlignedBox3d level_box(const MapCloud& map, const Eigen::Matrix3d& level_
   return {low, high};
 }
 
-LevelFrame level_frame(const MapCloud& map, const Trajectory& trajectory) {
-  LevelFrame frame;
+GravityAlignedFrame gravity_aligned_frame(const MapCloud& map, const Trajectory& trajectory) {
+  GravityAlignedFrame frame;
   if (map.empty()) return frame;
   const Eigen::Vector3d up = upward_of_room(map, upward_of_cameras(trajectory));
-  frame.level_from_map =
+  frame.aligned_from_map =
       Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  frame.level_from_map =
-      Eigen::AngleAxisd(-wall_angle_rad(map, frame.level_from_map), Eigen::Vector3d::UnitZ()) *
-      frame.level_from_map;
-  frame.box_m = level_box(map, frame.level_from_map);
+  frame.aligned_from_map =
+      Eigen::AngleAxisd(-wall_angle_rad(map, frame.aligned_from_map), Eigen::Vector3d::UnitZ()) *
+      frame.aligned_from_map;
+  frame.box_m = gravity_aligned_box(map, frame.aligned_from_map);
   return frame.box_m.sizes().y() > frame.box_m.sizes().x() ? turned_by_a_quarter(frame) : frame;
 }
 

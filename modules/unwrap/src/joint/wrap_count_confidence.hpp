@@ -3,8 +3,8 @@
 #pragma once
 
 #include <tofmap/core/image.hpp>
-#include <tofmap/unwrap/common/beat.hpp>
-#include <tofmap/unwrap/joint/count_propagation.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
+#include <tofmap/unwrap/joint/wrap_count_propagation.hpp>
 
 namespace tofmap {
 
@@ -13,7 +13,7 @@ namespace tofmap {
 /// The noise is that of the residual over the residual step, as if both frequencies had A's: B may
 /// be of another exposure. Where there is no count `sigma_a_cycles` is any number, and the
 /// confidence 0.
-ImageF count_confidence(const CountBeliefs& beliefs, const ImageF& sigma_a_cycles,
-                        const BeatLimits& limits);
+ImageF wrap_count_confidence(const WrapCountBeliefs& beliefs, const ImageF& sigma_a_cycles,
+                             const UnwrapLimits& limits);
 
 }  // namespace tofmap

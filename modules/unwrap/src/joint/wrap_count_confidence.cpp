@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "joint/count_confidence.hpp"
+#include "joint/wrap_count_confidence.hpp"
 
 #include "common/fast_math.hpp"
 
@@ -97,8 +97,8 @@ TOFMAP_VECTOR_CLONES void fill_confidence(int count, const Pixels& pixels_, floa
 
 }  // namespace
 
-ImageF count_confidence(const CountBeliefs& beliefs, const ImageF& sigma_a_cycles,
-                        const BeatLimits& limits) {
+ImageF wrap_count_confidence(const WrapCountBeliefs& beliefs, const ImageF& sigma_a_cycles,
+                             const UnwrapLimits& limits) {
   const double steps_per_cycle =
       std::numbers::sqrt2 * limits.wavelength_a_m / residual_step_m(limits);
   ImageF confidence(beliefs.count.rows(), beliefs.count.cols());

@@ -7,18 +7,18 @@
 #include <vector>
 
 #include <tofmap/core/image.hpp>
-#include <tofmap/unwrap/joint/count_model.hpp>
+#include <tofmap/unwrap/joint/wrap_count_model.hpp>
 
 namespace tofmap {
 
 /// The most likely count of every pixel and what belief propagation thinks of it.
-struct CountBeliefs {
+struct WrapCountBeliefs {
   ImageU8 count;
-  ImageF probability;        ///< of that count
-  ImageF other_probability;  ///< of all other counts together: what probability lacks to 1, and
-                             ///< exact where that is lost in rounding
-  ImageU8 rival;             ///< the second most likely count
-  ImageF rival_probability;  ///< its probability; 0 where there is one count only
+  ImageF probability;            ///< of that count
+  ImageF other_probability;      ///< of all other counts together: what probability lacks to 1, and
+                                 ///< exact where that is lost in rounding
+  ImageU8 runner_up;             ///< the second most likely count
+  ImageF runner_up_probability;  ///< its probability; 0 where there is one count only
   int iterations = 0;
   double largest_message_change = 0;  ///< of any element of a message, last sweep back; of a sample
 };
@@ -33,16 +33,16 @@ struct CountBeliefs {
 ///
 /// One iteration is one sweep from the top left to the bottom right pixel and one back; each
 /// message is built from the newest ones. Buffers persist between calls.
-class CountPropagation {
+class WrapCountPropagation {
  public:
-  CountBeliefs run(const CountModel& model, int iterations);
+  WrapCountBeliefs run(const WrapCountModel& model, int iterations);
 
  private:
-  void reset(const CountModel& model);
-  void sweep_forward(const CountModel& model, bool is_first);
-  void sweep_backward(const CountModel& model);
-  void remember_watched(const CountModel& model, bool was_sent);
-  void read_backward(const CountModel& model, CountBeliefs& beliefs);
+  void reset(const WrapCountModel& model);
+  void sweep_forward(const WrapCountModel& model, bool is_first);
+  void sweep_backward(const WrapCountModel& model);
+  void remember_watched(const WrapCountModel& model, bool was_sent);
+  void read_backward(const WrapCountModel& model, WrapCountBeliefs& beliefs);
 
   int rows_ = 0;
   int cols_ = 0;

@@ -7,15 +7,15 @@
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/image.hpp>
 #include <tofmap/core/range_error.hpp>
-#include <tofmap/unwrap/common/beat.hpp>
-#include <tofmap/unwrap/joint/count_model.hpp>
-#include <tofmap/unwrap/joint/count_propagation.hpp>
+#include <tofmap/unwrap/common/residual_cost.hpp>
+#include <tofmap/unwrap/joint/wrap_count_model.hpp>
+#include <tofmap/unwrap/joint/wrap_count_propagation.hpp>
 
 namespace tofmap {
 
 /// How counts are estimated.
-struct CountEstimation {
-  CountPrior prior;
+struct WrapCountOptions {
+  WrapCountPrior prior;
   int iterations = 3;
   int scales = 3;  ///< pixels, blocks of 2 x 2, of 4 x 4 …, as far as the noise asks for it
 };
@@ -34,20 +34,20 @@ NoisyFrame halve(const DualFrequencyFrame& frame, const PhaseSigma& sigma);
 /// Estimates the wrap counts of frames by belief propagation, at several scales where noise is
 /// large. Phases are NaN where there is no return; counts are invalid there. Buffers persist, so
 /// that frames of one size cost few allocations.
-class CountEstimator {
+class WrapCountEstimator {
  public:
   /// `residual_sigma_m` is what the residual between the frequencies has besides noise.
-  CountBeliefs estimate(const DualFrequencyFrame& frame, const BeatLimits& limits,
-                        const PhaseSigma& sigma, double residual_sigma_m,
-                        const CountEstimation& options);
+  WrapCountBeliefs estimate(const DualFrequencyFrame& frame, const UnwrapLimits& limits,
+                            const PhaseSigma& sigma, double residual_sigma_m,
+                            const WrapCountOptions& options);
 
  private:
   /// What is seen at one scale: pixels, or blocks of them.
   struct Scale {
     NoisyFrame blocks;  ///< empty at the scale of pixels
-    CountModel model;
-    CountPropagation propagation;
-    CountBeliefs beliefs;
+    WrapCountModel model;
+    WrapCountPropagation propagation;
+    WrapCountBeliefs beliefs;
   };
 
   int divide(const DualFrequencyFrame& frame, const PhaseSigma& sigma, int most);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "tofmap/unwrap/joint/count_model.hpp"
+#include "tofmap/unwrap/joint/wrap_count_model.hpp"
 
 #include "common/fast_math.hpp"
 
@@ -42,13 +42,13 @@ struct EvidenceScale {
 /// Pixels whose evidence is found at a time.
 constexpr int evidence_rows = 4 * DiagonalLayout::lanes;
 
-/// What the beat tells of each pixel, besides its offset.
+/// What the residual tells of each pixel, besides its offset.
 struct Sharpness {
-  std::array<float, evidence_rows> precision;  ///< 1 / variance of the beat, 1 / cycles²
-  std::array<float, evidence_rows> height;     ///< density of the beat at the true count
+  std::array<float, evidence_rows> precision;  ///< 1 / variance of the residual, 1 / cycles²
+  std::array<float, evidence_rows> height;     ///< density of the residual at the true count
 };
 
-/// Returns the least precision of the pixels whose beat tells anything.
+/// Returns the least precision of the pixels whose residual tells anything.
 TOFMAP_VECTOR_CLONES float fill_sharpness(const Pixels& pixels_, const EvidenceScale& scale,
                                           Sharpness& out) {
   const Pixels pixels = pixels_;
@@ -73,7 +73,7 @@ TOFMAP_VECTOR_CLONES float fill_sharpness(const Pixels& pixels_, const EvidenceS
   return least_of(least);
 }
 
-/// Equation 11: the probability of every count given the beat of the pixel. `passes` tells that
+/// Equation 11: the probability of every count given the residual of the pixel. `passes` tells that
 /// B's noise may pass half a cycle.
 template <bool passes>
 [[gnu::always_inline]] inline void fill_evidence_of(const Pixels& pixels,
@@ -223,7 +223,7 @@ TOFMAP_VECTOR_CLONES void fill_edges(const Pixels& from, const Pixels& to, const
 
 }  // namespace
 
-void CountModel::resize(int rows, int cols, int counts) {
+void WrapCountModel::resize(int rows, int cols, int counts) {
   if (layout_.rows() != rows || layout_.cols() != cols) layout_ = DiagonalLayout(rows, cols);
   counts_ = counts;
   evidence_.resize(layout_.size(static_cast<std::size_t>(counts)));
@@ -237,9 +237,9 @@ void CountModel::resize(int rows, int cols, int counts) {
   }
 }
 
-/// The beat of a pixel that sees two surfaces is that of none: its evidence is made flat. The outer
-/// pixels of the image are taken at their word.
-void CountModel::mark_mixed_pixels(const ImageF& amplitude, const ImageF& sigma_cycles) {
+/// The residual of a pixel that sees two surfaces is that of none: its evidence is made flat. The
+/// outer pixels of the image are taken at their word.
+void WrapCountModel::mark_mixed_pixels(const ImageF& amplitude, const ImageF& sigma_cycles) {
   constexpr float flat = 0.999F;
   const auto rows = static_cast<int>(amplitude.rows());
   const auto cols = static_cast<int>(amplitude.cols());
@@ -255,8 +255,9 @@ void CountModel::mark_mixed_pixels(const ImageF& amplitude, const ImageF& sigma_
   }
 }
 
-void CountModel::assign(const DualFrequencyFrame& frame, const BeatLimits& limits,
-                        const PhaseSigma& sigma, double residual_sigma_m, const CountPrior& prior) {
+void WrapCountModel::assign(const DualFrequencyFrame& frame, const UnwrapLimits& limits,
+                            const PhaseSigma& sigma, double residual_sigma_m,
+                            const WrapCountPrior& prior) {
   const auto rows = static_cast<int>(frame.phase_a.rows());
   const auto cols = static_cast<int>(frame.phase_a.cols());
   resize(rows, cols, limits.count_a);
@@ -324,7 +325,7 @@ void CountModel::assign(const DualFrequencyFrame& frame, const BeatLimits& limit
   }
 }
 
-void CountModel::weigh_evidence(int row, int col, std::span<const float> factors) {
+void WrapCountModel::weigh_evidence(int row, int col, std::span<const float> factors) {
   const std::size_t place = layout_.place(row + col, row, static_cast<std::size_t>(counts_));
   const std::size_t step = layout_.plane_step(row + col);
   const auto weighed = [&](std::size_t n) {
@@ -337,7 +338,7 @@ void CountModel::weigh_evidence(int row, int col, std::span<const float> factors
   }
 }
 
-std::vector<double> CountModel::evidence_of(int row, int col) const {
+std::vector<double> WrapCountModel::evidence_of(int row, int col) const {
   const auto counts = static_cast<std::size_t>(counts_);
   std::size_t at = layout_.place(row + col, row, counts);
   std::vector<double> evidence;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "tofmap/unwrap/common/beat.hpp"
+#include "tofmap/unwrap/common/residual_cost.hpp"
 
 #include "common/fast_math.hpp"
 
@@ -23,13 +23,13 @@ namespace {
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr double noise_tolerance_cycles = 0.05;
 
-/// What a count adds to the beat.
+/// What a count adds to the residual.
 struct CountStep {
   float shift;     ///< cycles of B in so many wavelengths of A, without the whole ones
   float farthest;  ///< phase up to which the range is within the limits
 };
 
-CountStep count_step(const BeatLimits& limits, int n) {
+CountStep count_step(const UnwrapLimits& limits, int n) {
   const double ratio = limits.wavelength_ratio();
   return {static_cast<float>(residual_shift_cycles(ratio, n)), farthest_phase_cycles(limits, n)};
 }
@@ -52,8 +52,8 @@ TOFMAP_VECTOR_CLONES void take_nearer(int pixels, const float* phase_a, const fl
   const float farthest = step.farthest;
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
-    const float beat = phase_a[i] * wavelength_ratio - phase_b[i] + shift;
-    const float residual = to_half_cycle(beat == beat ? beat : 0.0F);
+    const float difference = phase_a[i] * wavelength_ratio - phase_b[i] + shift;
+    const float residual = to_half_cycle(difference == difference ? difference : 0.0F);
     const float size = residual < 0 ? -residual : residual;
     const bool is_nearer = phase_a[i] <= farthest && size < least[i];
     least[i] = is_nearer ? size : least[i];
@@ -62,10 +62,11 @@ TOFMAP_VECTOR_CLONES void take_nearer(int pixels, const float* phase_a, const fl
 }
 
 /// Half the squared residual over its variance, bounded.
-[[gnu::always_inline]] inline float cost_of(float beat_cycles, float precision, bool is_within) {
-  const float residual = to_half_cycle(beat_cycles);
+[[gnu::always_inline]] inline float cost_of(float residual_cycles, float precision,
+                                            bool is_within) {
+  const float residual = to_half_cycle(residual_cycles);
   const float cost = residual * residual * precision;
-  return is_within && cost < BeatCost::bound ? cost : BeatCost::bound;
+  return is_within && cost < ResidualCost::bound ? cost : ResidualCost::bound;
 }
 
 /// Pixels of both frequencies.
@@ -76,22 +77,22 @@ struct Pixels {
   const float* sigma_b;
 };
 
-/// The beat of count 0, and half its inverse variance, both in cycles of B. Without a return the
-/// phase is beyond any limit.
-TOFMAP_VECTOR_CLONES void fill_beat(int pixels, const Pixels& from_, float wavelength_ratio,
-                                    float residual_variance, float* phase_a, float* beat_cycles,
-                                    float* precision) {
+/// The residual of count 0, and half its inverse variance, both in cycles of B. Without a return
+/// the phase is beyond any limit.
+TOFMAP_VECTOR_CLONES void fill_residual(int pixels, const Pixels& from_, float wavelength_ratio,
+                                        float residual_variance, float* phase_a,
+                                        float* residual_cycles, float* precision) {
   constexpr float beyond_any_limit = 1e9F;
   const Pixels from = from_;
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
-    const float beat = from.phase_a[i] * wavelength_ratio - from.phase_b[i];
+    const float residual = from.phase_a[i] * wavelength_ratio - from.phase_b[i];
     const float sigma_a = from.sigma_a[i] * wavelength_ratio;
     const float variance =
         sigma_a * sigma_a + from.sigma_b[i] * from.sigma_b[i] + residual_variance;
-    const bool is_present = beat == beat;
+    const bool is_present = residual == residual;
     phase_a[i] = is_present ? from.phase_a[i] : beyond_any_limit;
-    beat_cycles[i] = is_present ? beat : 0.0F;
+    residual_cycles[i] = is_present ? residual : 0.0F;
     precision[i] = is_present ? 0.5F / variance : 0.0F;
   }
 }
@@ -99,10 +100,10 @@ TOFMAP_VECTOR_CLONES void fill_beat(int pixels, const Pixels& from_, float wavel
 /// Counts in a row, one in each lane.
 constexpr int count_lanes = DiagonalLayout::lanes;
 
-/// What a BeatCost knows of pixels and of counts.
+/// What a ResidualCost knows of pixels and of counts.
 struct CostTables {
   const float* phase_a;
-  const float* beat_cycles;
+  const float* residual_cycles;
   const float* precision;
   const float* shift;  ///< of count −1, with room before and after
   const float* farthest;
@@ -118,14 +119,15 @@ TOFMAP_VECTOR_CLONES void add_costs(const CostTables& tables_, const CountedPixe
     for (int i = 0; i < pixel_count; ++i) {
       const int pixel = pixels[i].pixel;
       const float phase_a = tables.phase_a[pixel];
-      const float beat_cycles = tables.beat_cycles[pixel];
+      const float residual_cycles = tables.residual_cycles[pixel];
       const float precision = tables.precision[pixel];
       const float* shift = tables.shift + n + pixels[i].offset;
       const float* farthest = tables.farthest + n + pixels[i].offset;
 #pragma GCC ivdep
       for (int k = 0; k < count_lanes; ++k) {
         float& lane = lanes[static_cast<std::size_t>(k)];
-        const float sum = lane + cost_of(beat_cycles + shift[k], precision, phase_a <= farthest[k]);
+        const float sum =
+            lane + cost_of(residual_cycles + shift[k], precision, phase_a <= farthest[k]);
         lane = sum;
       }
     }
@@ -135,7 +137,7 @@ TOFMAP_VECTOR_CLONES void add_costs(const CostTables& tables_, const CountedPixe
 
 /// Adds the likelihoods of one count, and keeps those of the counts that are asked for.
 TOFMAP_VECTOR_CLONES void add_likelihoods(int pixels, const float* phase_a,
-                                          const float* beat_cycles, const float* precision,
+                                          const float* residual_cycles, const float* precision,
                                           const CountStep& step, float count,
                                           const std::uint8_t* asked, float* sums, float* own) {
   const float shift = step.shift;
@@ -143,7 +145,7 @@ TOFMAP_VECTOR_CLONES void add_likelihoods(int pixels, const float* phase_a,
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
     const float likelihood =
-        exp_of_negative(-cost_of(beat_cycles[i] + shift, precision[i], phase_a[i] <= farthest));
+        exp_of_negative(-cost_of(residual_cycles[i] + shift, precision[i], phase_a[i] <= farthest));
     sums[i] += likelihood;
     own[i] = static_cast<float>(asked[i]) == count ? likelihood : own[i];
   }
@@ -151,8 +153,8 @@ TOFMAP_VECTOR_CLONES void add_likelihoods(int pixels, const float* phase_a,
 
 }  // namespace
 
-BeatLimits beat_limits(const SensorModel& sensor, double max_range_m) {
-  BeatLimits limits;
+UnwrapLimits unwrap_limits(const SensorModel& sensor, double max_range_m) {
+  UnwrapLimits limits;
   limits.wavelength_a_m = sensor.modulation.wavelength_a_m();
   limits.wavelength_b_m = sensor.modulation.wavelength_b_m();
   const double most_m = invalid_wrap_count * limits.wavelength_a_m;  // as many counts fit 8 bits
@@ -170,35 +172,35 @@ BeatLimits beat_limits(const SensorModel& sensor, double max_range_m) {
   return limits;
 }
 
-float beat_residual_m(const BeatLimits& limits, float phase_a, float phase_b, int n_a) {
+float count_residual_m(const UnwrapLimits& limits, float phase_a, float phase_b, int n_a) {
   return static_cast<float>(frequency_residual_m(limits.wavelength_a_m, limits.wavelength_b_m,
                                                  double{phase_a} + n_a, phase_b));
 }
 
-float farthest_phase_cycles(const BeatLimits& limits, int n_a) {
+float farthest_phase_cycles(const UnwrapLimits& limits, int n_a) {
   if (n_a == 0) return 1;
   if (n_a < 0 || n_a >= limits.count_a) return -1;
   return static_cast<float>(limits.max_range_m / limits.wavelength_a_m + noise_tolerance_cycles -
                             n_a);
 }
 
-double residual_step_m(const BeatLimits& limits) {
+double residual_step_m(const UnwrapLimits& limits) {
   return residual_step_m(limits.wavelength_a_m, limits.wavelength_b_m, limits.count_a);
 }
 
-bool count_within_limits(const BeatLimits& limits, float phase_a, int n_a) {
+bool count_within_limits(const UnwrapLimits& limits, float phase_a, int n_a) {
   if (n_a == 0) return true;
   const double range_m = (phase_a + n_a) * limits.wavelength_a_m;
   return n_a < limits.count_a &&
          range_m <= limits.max_range_m + noise_tolerance_cycles * limits.wavelength_a_m;
 }
 
-bool can_tell_apart(const BeatLimits& limits, int n_a, int other_n_a) {
+bool can_tell_apart(const UnwrapLimits& limits, int n_a, int other_n_a) {
   return std::abs(residual_shift_cycles(limits.wavelength_ratio(), n_a - other_n_a)) >
          noise_tolerance_cycles;
 }
 
-ImageU8 nearest_pair_counts(const DualFrequencyFrame& frame, const BeatLimits& limits) {
+ImageU8 nearest_pair_counts(const DualFrequencyFrame& frame, const UnwrapLimits& limits) {
   ImageU8 counts(frame.phase_a.rows(), frame.phase_a.cols());
   const auto ratio = static_cast<float>(limits.wavelength_a_m / limits.wavelength_b_m);
   Nearest nearest;
@@ -227,20 +229,20 @@ ImageF reconstruct_cycles(const ImageF& phase_a, const ImageU8& counts) {
   return (counts == invalid_wrap_count).select(nan, phase_a + counts.cast<float>());
 }
 
-BeatCost::BeatCost(const DualFrequencyFrame& frame, const BeatLimits& limits,
-                   const PhaseSigma& sigma, double residual_sigma_m)
+ResidualCost::ResidualCost(const DualFrequencyFrame& frame, const UnwrapLimits& limits,
+                           const PhaseSigma& sigma, double residual_sigma_m)
     : count_a_(limits.count_a),
       size_(static_cast<std::size_t>(DiagonalLayout::whole_vectors(count_a_ + 2))) {
-  for (ImageF* plane : {&phase_a_, &beat_cycles_, &precision_}) {
+  for (ImageF* plane : {&phase_a_, &residual_cycles_, &precision_}) {
     plane->resize(frame.phase_a.rows(), frame.phase_a.cols());
   }
   const double residual_cycles = residual_sigma_m / limits.wavelength_b_m;
-  fill_beat(
+  fill_residual(
       static_cast<int>(phase_a_.size()),
       {frame.phase_a.data(), frame.phase_b.data(), sigma.a_cycles.data(), sigma.b_cycles.data()},
       static_cast<float>(limits.wavelength_a_m / limits.wavelength_b_m),
-      static_cast<float>(residual_cycles * residual_cycles), phase_a_.data(), beat_cycles_.data(),
-      precision_.data());
+      static_cast<float>(residual_cycles * residual_cycles), phase_a_.data(),
+      residual_cycles_.data(), precision_.data());
   const int reach = static_cast<int>(size_);
   for (int n = -1 - reach; n < 2 * reach - 1; ++n) {
     const CountStep step = count_step(limits, n);
@@ -249,21 +251,21 @@ BeatCost::BeatCost(const DualFrequencyFrame& frame, const BeatLimits& limits,
   }
 }
 
-float BeatCost::operator()(Eigen::Index pixel, int n_a) const {
+float ResidualCost::operator()(Eigen::Index pixel, int n_a) const {
   if (n_a < 0 || n_a >= count_a_) return bound;
   const std::size_t at = size_ + 1 + static_cast<std::size_t>(n_a);
-  return cost_of(beat_cycles_.data()[pixel] + shift_[at], precision_.data()[pixel],
+  return cost_of(residual_cycles_.data()[pixel] + shift_[at], precision_.data()[pixel],
                  phase_a_.data()[pixel] <= farthest_[at]);
 }
 
-void BeatCost::add(std::span<const CountedPixel> pixels, std::span<float> costs) const {
-  const CostTables tables{phase_a_.data(), beat_cycles_.data(), precision_.data(), &shift_[size_],
-                          &farthest_[size_]};
+void ResidualCost::add(std::span<const CountedPixel> pixels, std::span<float> costs) const {
+  const CostTables tables{phase_a_.data(), residual_cycles_.data(), precision_.data(),
+                          &shift_[size_], &farthest_[size_]};
   add_costs(tables, pixels.data(), static_cast<int>(pixels.size()), static_cast<int>(size_),
             costs.data());
 }
 
-ImageF BeatCost::probability(const ImageU8& counts) const {
+ImageF ResidualCost::probability(const ImageU8& counts) const {
   ImageF probability(counts.rows(), counts.cols());
   std::array<float, block_pixels> sums;
   std::array<float, block_pixels> own;
@@ -274,7 +276,7 @@ ImageF BeatCost::probability(const ImageU8& counts) const {
     own.fill(0);
     for (int n = 0; n < count_a_; ++n) {
       const std::size_t at = size_ + 1 + static_cast<std::size_t>(n);
-      add_likelihoods(pixels, phase_a_.data() + done, beat_cycles_.data() + done,
+      add_likelihoods(pixels, phase_a_.data() + done, residual_cycles_.data() + done,
                       precision_.data() + done, {shift_[at], farthest_[at]}, static_cast<float>(n),
                       counts.data() + done, sums.data(), own.data());
     }

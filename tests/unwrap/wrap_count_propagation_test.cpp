@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "common/fast_math.hpp"
-#include "plain_count_propagation.hpp"
+#include "plain_wrap_count_propagation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,22 +11,22 @@
 
 #include <gtest/gtest.h>
 
-#include <tofmap/unwrap/joint/count_model.hpp>
-#include <tofmap/unwrap/joint/count_propagation.hpp>
+#include <tofmap/unwrap/joint/wrap_count_model.hpp>
+#include <tofmap/unwrap/joint/wrap_count_propagation.hpp>
 
 namespace tofmap {
 namespace {
 
 constexpr double noise_cycles = 0.03;
 
-BeatLimits limits_up_to(double range_m) {
+UnwrapLimits limits_up_to(double range_m) {
   SensorModel sensor;
   sensor.modulation = {29e6, 31e6};
-  return beat_limits(sensor, range_m);
+  return unwrap_limits(sensor, range_m);
 }
 
 /// Two noisy walls, one behind the other, and a few pixels without a return.
-DualFrequencyFrame noisy_walls(int rows, int cols, const BeatLimits& limits, int seed) {
+DualFrequencyFrame noisy_walls(int rows, int cols, const UnwrapLimits& limits, int seed) {
   std::mt19937 random(static_cast<unsigned>(seed));
   std::normal_distribution<double> normal(0, noise_cycles);
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -54,8 +54,8 @@ DualFrequencyFrame noisy_walls(int rows, int cols, const BeatLimits& limits, int
   return frame;
 }
 
-CountModel model_of(const DualFrequencyFrame& frame, const BeatLimits& limits) {
-  CountModel model;
+WrapCountModel model_of(const DualFrequencyFrame& frame, const UnwrapLimits& limits) {
+  WrapCountModel model;
   model.assign(frame, limits, PhaseSigma(frame, {noise_cycles * 100, noise_cycles * 100}), 0, {});
   return model;
 }
@@ -103,8 +103,8 @@ struct GridSize {
   int cols;
 };
 
-class CountPropagationOn : public testing::TestWithParam<GridSize> {};
-INSTANTIATE_TEST_SUITE_P(Grids, CountPropagationOn,
+class WrapCountPropagationOn : public testing::TestWithParam<GridSize> {};
+INSTANTIATE_TEST_SUITE_P(Grids, WrapCountPropagationOn,
                          testing::Values(GridSize{1, 1}, GridSize{1, 9}, GridSize{9, 1},
                                          GridSize{13, 17}, GridSize{40, 11}, GridSize{170, 165}),
                          [](const auto& grid) {
@@ -112,15 +112,15 @@ INSTANTIATE_TEST_SUITE_P(Grids, CountPropagationOn,
                                   std::to_string(grid.param.cols);
                          });
 
-TEST_P(CountPropagationOn, GivesTheBeliefsOfThePlainVersion) {
-  const BeatLimits limits = limits_up_to(25);
-  CountPropagation propagation;
+TEST_P(WrapCountPropagationOn, GivesTheBeliefsOfThePlainVersion) {
+  const UnwrapLimits limits = limits_up_to(25);
+  WrapCountPropagation propagation;
   for (int seed = 0; seed < 3; ++seed) {
     const DualFrequencyFrame frame = noisy_walls(GetParam().rows, GetParam().cols, limits, seed);
-    const CountModel model = model_of(frame, limits);
-    const CountBeliefs fast = propagation.run(model, 3);
-    const test::PlainCountModel plain_model(model);
-    const auto plain = test::PlainCountPropagation(plain_model).run(3);
+    const WrapCountModel model = model_of(frame, limits);
+    const WrapCountBeliefs fast = propagation.run(model, 3);
+    const test::PlainWrapCountModel plain_model(model);
+    const auto plain = test::PlainWrapCountPropagation(plain_model).run(3);
     for (std::size_t p = 0; p < plain.size(); ++p) {
       const auto best = std::ranges::max_element(plain[p]);
       // Messages are rounded to 8 binary digits, 0.2 %; a belief is a product of four, and each
@@ -132,16 +132,16 @@ TEST_P(CountPropagationOn, GivesTheBeliefsOfThePlainVersion) {
   }
 }
 
-TEST(CountPropagation, AgreesWithExactEnumerationWhereThatIsSure) {
-  const BeatLimits limits = limits_up_to(15);
-  CountPropagation propagation;
+TEST(WrapCountPropagation, AgreesWithExactEnumerationWhereThatIsSure) {
+  const UnwrapLimits limits = limits_up_to(15);
+  WrapCountPropagation propagation;
   int sure = 0;
   int agreed = 0;
   for (int seed = 0; seed < 40; ++seed) {
     const DualFrequencyFrame frame = noisy_walls(3, 4, limits, seed);
-    const CountModel model = model_of(frame, limits);
-    const CountBeliefs beliefs = propagation.run(model, 10);
-    const auto exact = test::exact_marginals(test::PlainCountModel(model));
+    const WrapCountModel model = model_of(frame, limits);
+    const WrapCountBeliefs beliefs = propagation.run(model, 10);
+    const auto exact = test::exact_marginals(test::PlainWrapCountModel(model));
     for (std::size_t p = 0; p < exact.size(); ++p) {
       const auto best = std::ranges::max_element(exact[p]);
       if (*best < 0.9) continue;
@@ -154,31 +154,31 @@ TEST(CountPropagation, AgreesWithExactEnumerationWhereThatIsSure) {
   EXPECT_GT(agreed, 0.97 * sure);
 }
 
-TEST(CountPropagation, ForgetsTheFrameBefore) {
-  const BeatLimits limits = limits_up_to(25);
-  const CountModel first = model_of(noisy_walls(30, 20, limits, 1), limits);
-  const CountModel second = model_of(noisy_walls(30, 20, limits, 2), limits);
-  CountPropagation used;
+TEST(WrapCountPropagation, ForgetsTheFrameBefore) {
+  const UnwrapLimits limits = limits_up_to(25);
+  const WrapCountModel first = model_of(noisy_walls(30, 20, limits, 1), limits);
+  const WrapCountModel second = model_of(noisy_walls(30, 20, limits, 2), limits);
+  WrapCountPropagation used;
   used.run(first, 2);
-  const CountBeliefs after_another = used.run(second, 2);
-  const CountBeliefs fresh = CountPropagation().run(second, 2);
+  const WrapCountBeliefs after_another = used.run(second, 2);
+  const WrapCountBeliefs fresh = WrapCountPropagation().run(second, 2);
   EXPECT_TRUE((after_another.count == fresh.count).all());
   EXPECT_TRUE((after_another.probability == fresh.probability).all());
 }
 
-TEST(CountPropagation, SettlesWithIterations) {
-  const BeatLimits limits = limits_up_to(25);
-  const CountModel model = model_of(noisy_walls(40, 40, limits, 5), limits);
-  CountPropagation propagation;
+TEST(WrapCountPropagation, SettlesWithIterations) {
+  const UnwrapLimits limits = limits_up_to(25);
+  const WrapCountModel model = model_of(noisy_walls(40, 40, limits, 5), limits);
+  WrapCountPropagation propagation;
   EXPECT_LT(propagation.run(model, 30).largest_message_change,
             0.5 * propagation.run(model, 2).largest_message_change);
 }
 
-TEST(CountModel, KeepsPixelsWithoutAReturnOutOfIt) {
-  const BeatLimits limits = limits_up_to(25);
+TEST(WrapCountModel, KeepsPixelsWithoutAReturnOutOfIt) {
+  const UnwrapLimits limits = limits_up_to(25);
   DualFrequencyFrame frame = noisy_walls(5, 5, limits, 3);
   frame.phase_a(2, 2) = frame.phase_b(2, 2) = NAN;
-  const CountModel model = model_of(frame, limits);
+  const WrapCountModel model = model_of(frame, limits);
   const DiagonalLayout& layout = model.layout();
   for (const double value : model.evidence_of(2, 2)) EXPECT_EQ(value, 1);
   for (const auto& [v, u] : {std::pair{2, 2}, {2, 1}}) {
