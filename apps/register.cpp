@@ -139,7 +139,7 @@ ordered_json pair_json(const Input& input, const CloudPair& pair) {
   json["free_space_violation"] = pair.free_space_violation;
   json["runner_up"] = pair.runner_up;
   json["direction_share"] = pair.direction_share;
-  json["deviations"] = pair.deviations;
+  json["mahalanobis_distance"] = pair.mahalanobis_distance;
   json["target_from_source"] = matrix_json(pair.target_from_source.matrix());
   return json;
 }

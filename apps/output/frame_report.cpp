@@ -38,7 +38,7 @@ Json loops_json(const RoomMap& map) {
     loops.push_back({{"from", loop.from_frame},
                      {"to", loop.to_frame},
                      {"error_m", loop.error_m},
-                     {"deviations", loop.deviations},
+                     {"mahalanobis_distance", loop.mahalanobis_distance},
                      {"is_used", loop.is_used}});
   }
   return loops;

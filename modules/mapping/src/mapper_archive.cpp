@@ -63,7 +63,7 @@ void serialize(Archive& archive, tofmap::Keyframe& keyframe, unsigned version) {
 
 template <class Archive>
 void serialize(Archive& archive, tofmap::Loop& loop, unsigned) {
-  archive& loop.from_frame& loop.to_frame& loop.error_m& loop.deviations& loop.is_used;
+  archive& loop.from_frame& loop.to_frame& loop.error_m& loop.mahalanobis_distance& loop.is_used;
 }
 
 }  // namespace boost::serialization

@@ -247,8 +247,8 @@ void RoomMapper::fit() {
   auto loop = loops_.begin();
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     if (!edges_[i].may_be_wrong) continue;
-    loop->deviations = fitted.edge_mahalanobis[i];
-    loop->is_used = !is_outvoted(loop->deviations, loop_options_.kernel_width);
+    loop->mahalanobis_distance = fitted.edge_mahalanobis[i];
+    loop->is_used = !is_outvoted(loop->mahalanobis_distance, loop_options_.kernel_width);
     // Now both ends are where the loop says, and frames may be registered against either.
     if (loop->is_used) keyframes_.tie(edges_[i].from, edges_[i].to);
     ++loop;

@@ -89,8 +89,8 @@ std::vector<Pose> fitted_poses(std::vector<Pose> poses, std::vector<CloudPair>& 
   }
   PoseGraphResult fitted = optimise_pose_graph(std::move(poses), edges, kernel_width);
   for (std::size_t i = 0; i < used.size(); ++i) {
-    used[i]->deviations = fitted.edge_mahalanobis[i];
-    if (is_outvoted(used[i]->deviations, kernel_width)) {
+    used[i]->mahalanobis_distance = fitted.edge_mahalanobis[i];
+    if (is_outvoted(used[i]->mahalanobis_distance, kernel_width)) {
       used[i]->verdict = PairVerdict::disagrees;
     }
   }

@@ -97,7 +97,7 @@ NormalEquations build_equations(const std::vector<Correspondence>& pairs, double
     tilts.add(pair, weight, jacobian);
   }
   fill_upper(equations.information);
-  equations.feigned = tilts.sum();
+  equations.noise_induced = tilts.sum();
   return equations;
 }
 
@@ -143,7 +143,8 @@ std::vector<int> open_directions(const Observability& seen, const NormalEquation
   for (int i = 0; i < seen.directions.cols(); ++i) {
     const Vector6d twist = seen.scale.cwiseProduct(seen.directions.col(i));
     const double of_prior = twist.cwiseQuotient(prior_sigmas).squaredNorm();
-    const double of_surfaces = twist.dot((equations.information - 2 * equations.feigned) * twist);
+    const double of_surfaces =
+        twist.dot((equations.information - 2 * equations.noise_induced) * twist);
     if (of_surfaces < of_prior) open.push_back(i);
   }
   return open;

@@ -19,7 +19,7 @@ struct NormalEquations {
   Vector6d gradient = Vector6d::Zero();
   double weight_sum = 0;  ///< of confidence / variance, kernel included
   /// What of that information is expected to come from the noise of the normals alone.
-  Matrix6d feigned = Matrix6d::Zero();
+  Matrix6d noise_induced = Matrix6d::Zero();
 };
 
 /// How well the residuals fit at one pose.

@@ -85,7 +85,7 @@ System build_system(const std::vector<Correspondence>& pairs, const Pose& pose, 
   system.equations.information *= independent;
   system.equations.gradient *= independent;
   system.equations.weight_sum *= independent;
-  system.equations.feigned *= independent;
+  system.equations.noise_induced *= independent;
 
   system.seen = observability(system.equations, lever_m);
   const Vector6d sigmas = prior_sigmas(prior);

@@ -54,17 +54,17 @@ template <std::size_t lanes>
 
 /// The upper half of a float, for numbers of which 8 binary digits are enough: half the memory to
 /// pass through.
-using HalfFloat = std::uint16_t;
+using BFloat16 = std::uint16_t;
 
-[[gnu::always_inline]] inline float widened(HalfFloat half) {
+[[gnu::always_inline]] inline float to_float(BFloat16 half) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(half) << 16U);
 }
 
 /// Rounded to nearest; for positive numbers.
-[[gnu::always_inline]] inline HalfFloat halved(float value) {
-  return static_cast<HalfFloat>((std::bit_cast<std::uint32_t>(value) + 0x8000U) >> 16U);
+[[gnu::always_inline]] inline BFloat16 to_bfloat16(float value) {
+  return static_cast<BFloat16>((std::bit_cast<std::uint32_t>(value) + 0x8000U) >> 16U);
 }
 
-inline constexpr HalfFloat half_one = 0x3f80;
+inline constexpr BFloat16 bfloat16_one = 0x3f80;
 
 }  // namespace tofmap

@@ -45,8 +45,8 @@ std::uint8_t nearest_count(float block_cycles, float phase, int counts) {
 }
 
 /// What the counts of a block, which the pixel is in, say of the pixel's: a factor for each.
-void set_hint(const WrapCountBeliefs& coarse, Eigen::Index row, Eigen::Index col, float block_phase,
-              float phase, std::vector<float>& factors) {
+void set_factors(const WrapCountBeliefs& coarse, Eigen::Index row, Eigen::Index col,
+                 float block_phase, float phase, std::vector<float>& factors) {
   // Blocks and pixels see the same light: little of what blocks say is news.
   constexpr float news = 0.15F;
   constexpr float least_share = 1e-3F;
@@ -65,13 +65,15 @@ void set_hint(const WrapCountBeliefs& coarse, Eigen::Index row, Eigen::Index col
 }
 
 /// Lets noisy pixels hear what the blocks of 2 x 2 that they are in have found out.
-void hint(const DualFrequencyFrame& pixels, const PhaseSigma& sigma,
-          const DualFrequencyFrame& blocks, const WrapCountBeliefs& coarse, WrapCountModel& model) {
+void apply_coarse_prior(const DualFrequencyFrame& pixels, const PhaseSigma& sigma,
+                        const DualFrequencyFrame& blocks, const WrapCountBeliefs& coarse,
+                        WrapCountModel& model) {
   std::vector<float> factors(static_cast<std::size_t>(model.counts()));
   for (Eigen::Index v = 0; v < pixels.phase_a.rows(); ++v) {
     for (Eigen::Index u = 0; u < pixels.phase_a.cols(); ++u) {
       if (std::isnan(pixels.phase_a(v, u)) || sigma.a_cycles(v, u) < loud_cycles) continue;
-      set_hint(coarse, v / 2, u / 2, blocks.phase_a(v / 2, u / 2), pixels.phase_a(v, u), factors);
+      set_factors(coarse, v / 2, u / 2, blocks.phase_a(v / 2, u / 2), pixels.phase_a(v, u),
+                  factors);
       model.weigh_evidence(static_cast<int>(v), static_cast<int>(u), factors);
     }
   }
@@ -84,8 +86,8 @@ float joint_probability(float coarse, float fine, bool agree) {
 }
 
 /// Takes over what the blocks know better: where pixels are loud and the block is surer.
-void adopt(const DualFrequencyFrame& pixels, const NoisyFrame& blocks, int block_px,
-           const WrapCountBeliefs& coarse, int counts, WrapCountBeliefs& fine) {
+void take_coarse_counts(const DualFrequencyFrame& pixels, const NoisyFrame& blocks, int block_px,
+                        const WrapCountBeliefs& coarse, int counts, WrapCountBeliefs& fine) {
   for (Eigen::Index v = 0; v < pixels.phase_a.rows(); ++v) {
     for (Eigen::Index u = 0; u < pixels.phase_a.cols(); ++u) {
       const Eigen::Index row = v / block_px;
@@ -98,9 +100,9 @@ void adopt(const DualFrequencyFrame& pixels, const NoisyFrame& blocks, int block
       const auto count = [&](std::uint8_t n) {
         return nearest_count(block_phase + static_cast<float>(n), phase, counts);
       };
-      const std::uint8_t adopted = count(coarse.count(row, col));
-      const bool agree = adopted == fine.count(v, u);
-      fine.count(v, u) = adopted;
+      const std::uint8_t coarse_count = count(coarse.count(row, col));
+      const bool agree = coarse_count == fine.count(v, u);
+      fine.count(v, u) = coarse_count;
       fine.probability(v, u) =
           joint_probability(coarse.probability(row, col), fine.probability(v, u), agree);
       fine.other_probability(v, u) =
@@ -206,7 +208,7 @@ WrapCountBeliefs WrapCountEstimator::estimate(const DualFrequencyFrame& frame,
     scale.model.assign(seen_at(s), limits, its_sigma, residual_sigma_m, prior);
     if (static_cast<int>(s) + 1 < count) {
       const Scale& coarser = scales_[s + 1];
-      hint(seen_at(s), its_sigma, coarser.blocks.frame, coarser.beliefs, scale.model);
+      apply_coarse_prior(seen_at(s), its_sigma, coarser.blocks.frame, coarser.beliefs, scale.model);
     }
     scale.beliefs = scale.propagation.run(scale.model, options.iterations);
   }
@@ -214,7 +216,7 @@ WrapCountBeliefs WrapCountEstimator::estimate(const DualFrequencyFrame& frame,
   WrapCountBeliefs beliefs = std::move(scales_[0].beliefs);
   for (std::size_t s = 1; s < static_cast<std::size_t>(count); ++s) {
     const Scale& coarse = scales_[s];
-    adopt(frame, coarse.blocks, 1 << s, coarse.beliefs, limits.count_a, beliefs);
+    take_coarse_counts(frame, coarse.blocks, 1 << s, coarse.beliefs, limits.count_a, beliefs);
     beliefs.iterations += coarse.beliefs.iterations;
     beliefs.largest_message_change =
         std::max(beliefs.largest_message_change, coarse.beliefs.largest_message_change);

@@ -78,7 +78,7 @@ TOFMAP_VECTOR_CLONES float fill_sharpness(const Pixels& pixels_, const EvidenceS
 template <bool passes>
 [[gnu::always_inline]] inline void fill_evidence_of(const Pixels& pixels,
                                                     const EvidenceScale& scale, int counts,
-                                                    const Sharpness& sharpness, HalfFloat* evidence,
+                                                    const Sharpness& sharpness, BFloat16* evidence,
                                                     std::size_t step) {
   const int rows = pixels.rows;
   const float* precision = sharpness.precision.data();
@@ -86,7 +86,7 @@ template <bool passes>
   std::array<float, evidence_rows> best{};
   const auto ratio = static_cast<float>(scale.wavelength_ratio);
   for (int k = 0; k < counts; ++k) {
-    HalfFloat* at = evidence + static_cast<std::size_t>(k) * step;
+    BFloat16* at = evidence + static_cast<std::size_t>(k) * step;
     // Cycles of B in k wavelengths of A, without the whole ones: counts that the pair cannot tell
     // apart get the same evidence to the last bit.
     const auto shift = static_cast<float>(residual_shift_cycles(scale.wavelength_ratio, k));
@@ -105,7 +105,7 @@ template <bool passes>
       const float likelihood = outlier + (1 - outlier) * height[i] * density;
       const float within = pixels.phase_a[i] <= farthest ? 1.0F : 0.0F;
       const float value = within * likelihood;
-      at[i] = halved(value);
+      at[i] = to_bfloat16(value);
       best[static_cast<std::size_t>(i)] =
           value > best[static_cast<std::size_t>(i)] ? value : best[static_cast<std::size_t>(i)];
     }
@@ -114,26 +114,26 @@ template <bool passes>
     best[static_cast<std::size_t>(i)] = 1 / best[static_cast<std::size_t>(i)];
   }
   for (int k = 0; k < counts; ++k) {
-    HalfFloat* at = evidence + static_cast<std::size_t>(k) * step;
+    BFloat16* at = evidence + static_cast<std::size_t>(k) * step;
 #pragma GCC ivdep
     for (int i = 0; i < rows; ++i) {
-      const float share = widened(at[i]) * best[static_cast<std::size_t>(i)];
+      const float share = to_float(at[i]) * best[static_cast<std::size_t>(i)];
       const float squared = share * share;
-      const float bold = squared * squared;
-      at[i] = halved(bold > impossible ? bold : impossible);
+      const float tempered = squared * squared;
+      at[i] = to_bfloat16(tempered > impossible ? tempered : impossible);
     }
   }
 }
 
 TOFMAP_VECTOR_CLONES void fill_evidence(const Pixels& pixels, const EvidenceScale& scale,
-                                        int counts, const Sharpness& sharpness, HalfFloat* evidence,
+                                        int counts, const Sharpness& sharpness, BFloat16* evidence,
                                         std::size_t step) {
   fill_evidence_of<true>(Pixels(pixels), EvidenceScale(scale), counts, sharpness, evidence, step);
 }
 
 TOFMAP_VECTOR_CLONES void fill_sharp_evidence(const Pixels& pixels, const EvidenceScale& scale,
                                               int counts, const Sharpness& sharpness,
-                                              HalfFloat* evidence, std::size_t step) {
+                                              BFloat16* evidence, std::size_t step) {
   fill_evidence_of<false>(Pixels(pixels), EvidenceScale(scale), counts, sharpness, evidence, step);
 }
 
@@ -209,8 +209,8 @@ TOFMAP_VECTOR_CLONES void fill_edges(const Pixels& from, const Pixels& to, const
       const float surface = exp_of_negative(-deviation) / (2 * spread_m);
       const float r = ((1 - edge) * surface + other) / other;
       const float squared = r * r;
-      const float bold = squared * squared;
-      return (bold < largest_ratio ? bold : largest_ratio) - 1;
+      const float tempered = squared * squared;
+      return (tempered < largest_ratio ? tempered : largest_ratio) - 1;
     };
     const float ratio_same = ratio(difference);
     const float ratio_next = ratio(difference + toward);
@@ -308,7 +308,7 @@ void WrapCountModel::assign(const DualFrequencyFrame& frame, const UnwrapLimits&
     const int count = DiagonalLayout::whole_vectors(layout_.end(d) - first);
     for (int done = 0; done < count; done += evidence_rows) {
       const Pixels block = pixels(d, first + done, std::min(evidence_rows, count - done));
-      HalfFloat* evidence = &evidence_[layout_.place(d, first + done, counts)];
+      BFloat16* evidence = &evidence_[layout_.place(d, first + done, counts)];
       // From here on half a cycle is seven standard deviations: what passes it is lost in rounding.
       constexpr float sharp = 200;
       const bool is_sharp = fill_sharpness(block, evidence_scale, sharpness) > sharp;
@@ -329,12 +329,12 @@ void WrapCountModel::weigh_evidence(int row, int col, std::span<const float> fac
   const std::size_t place = layout_.place(row + col, row, static_cast<std::size_t>(counts_));
   const std::size_t step = layout_.plane_step(row + col);
   const auto weighed = [&](std::size_t n) {
-    return widened(evidence_[place + n * step]) * factors[n];
+    return to_float(evidence_[place + n * step]) * factors[n];
   };
   float best = 0;
   for (std::size_t n = 0; n < factors.size(); ++n) best = std::max(best, weighed(n));
   for (std::size_t n = 0; n < factors.size(); ++n) {
-    evidence_[place + n * step] = halved(std::max(weighed(n) / best, impossible));
+    evidence_[place + n * step] = to_bfloat16(std::max(weighed(n) / best, impossible));
   }
 }
 
@@ -343,7 +343,7 @@ std::vector<double> WrapCountModel::evidence_of(int row, int col) const {
   std::size_t at = layout_.place(row + col, row, counts);
   std::vector<double> evidence;
   for (std::size_t n = 0; n < counts; ++n, at += layout_.plane_step(row + col)) {
-    evidence.push_back(widened(evidence_[at]));
+    evidence.push_back(to_float(evidence_[at]));
   }
   return evidence;
 }

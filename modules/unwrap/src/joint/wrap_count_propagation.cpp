@@ -42,8 +42,8 @@ struct Planes {
 
 /// One edge of each pixel of a block, to a neighbour on the next diagonal of the sweep.
 struct Edge {
-  Planes<const HalfFloat> back;  ///< the last message the other way
-  Planes<HalfFloat> out;         ///< in the same place, but before anything was sent
+  Planes<const BFloat16> back;  ///< the last message the other way
+  Planes<BFloat16> out;         ///< in the same place, but before anything was sent
   const float* same;
   const float* next;
 };
@@ -53,9 +53,9 @@ struct Block {
   int rows;
   int lanes;  ///< rows of whole vectors, of which the last ones have no pixel
   int counts;
-  Planes<const HalfFloat> evidence;
-  Planes<const HalfFloat> in_first;  ///< messages from both neighbours on the diagonal before
-  Planes<const HalfFloat> in_second;
+  Planes<const BFloat16> evidence;
+  Planes<const BFloat16> in_first;  ///< messages from both neighbours on the diagonal before
+  Planes<const BFloat16> in_second;
   Edge first;
   Edge second;
   float direction;  ///< −1 where the edges are stored the other way: their steps change sign
@@ -64,11 +64,11 @@ struct Block {
 
 /// What a block's pixels have for one count: their evidence, and the messages of all neighbours.
 struct Factors {
-  const HalfFloat* evidence;
-  const HalfFloat* in_first;
-  const HalfFloat* in_second;
-  const HalfFloat* back_first;
-  const HalfFloat* back_second;
+  const BFloat16* evidence;
+  const BFloat16* in_first;
+  const BFloat16* in_second;
+  const BFloat16* back_first;
+  const BFloat16* back_second;
 
   Factors(const Block& block, int count)
       : evidence(block.evidence[count]),
@@ -81,7 +81,7 @@ struct Factors {
   /// itself.
   [[gnu::always_inline]] void prefetch(int row) const {
     constexpr int ahead = 64;
-    for (const HalfFloat* plane : {evidence, in_first, in_second, back_first, back_second}) {
+    for (const BFloat16* plane : {evidence, in_first, in_second, back_first, back_second}) {
       __builtin_prefetch(plane + row + ahead);
     }
   }
@@ -90,8 +90,8 @@ struct Factors {
 /// What persists between blocks. A message along an edge has its place at the right or lower pixel
 /// of the edge, whichever way it goes: the next one the other way takes it, after it was heard.
 struct Buffers {
-  std::array<std::vector<HalfFloat>, 2>& messages;
-  const HalfFloat* ones;
+  std::array<std::vector<BFloat16>, 2>& messages;
+  const BFloat16* ones;
   float* scratch;
 };
 
@@ -107,19 +107,19 @@ Block block_at(const WrapCountModel& model, const Buffers& buffers, Sweep sweep,
   // Messages to and from earlier pixels are kept here, those to and from later ones there.
   const std::size_t here = layout.place(d, row, counts);
   const std::size_t there = layout.place(d + 1, row, counts);
-  const Planes<HalfFloat> to_left{&buffers.messages[left][here], layout.plane_step(d)};
-  const Planes<HalfFloat> to_above{&buffers.messages[above][here], layout.plane_step(d)};
-  const Planes<HalfFloat> to_right{&buffers.messages[left][there], layout.plane_step(d + 1)};
-  const Planes<HalfFloat> to_below{&buffers.messages[above][there + 1], layout.plane_step(d + 1)};
-  const auto read_only = [](const Planes<HalfFloat>& planes) {
-    return Planes<const HalfFloat>{planes.data, planes.step};
+  const Planes<BFloat16> to_left{&buffers.messages[left][here], layout.plane_step(d)};
+  const Planes<BFloat16> to_above{&buffers.messages[above][here], layout.plane_step(d)};
+  const Planes<BFloat16> to_right{&buffers.messages[left][there], layout.plane_step(d + 1)};
+  const Planes<BFloat16> to_below{&buffers.messages[above][there + 1], layout.plane_step(d + 1)};
+  const auto read_only = [](const Planes<BFloat16>& planes) {
+    return Planes<const BFloat16>{planes.data, planes.step};
   };
   // Edges are stored at their left or upper pixel.
   const std::size_t edge_right = layout.place(forward ? d : d - 1, row, 1);
   const std::size_t edge_down = forward ? edge_right : edge_right - 1;
-  const auto edge = [&](const Planes<HalfFloat>& slot, const WrapCountModel::Edges& edges,
+  const auto edge = [&](const Planes<BFloat16>& slot, const WrapCountModel::Edges& edges,
                         std::size_t place) {
-    return Edge{has_back ? read_only(slot) : Planes<const HalfFloat>{buffers.ones, 0}, slot,
+    return Edge{has_back ? read_only(slot) : Planes<const BFloat16>{buffers.ones, 0}, slot,
                 &edges.same[place], &edges.next[place]};
   };
   const int rows = std::min(block_rows, layout.end(d) - row);
@@ -143,7 +143,7 @@ constexpr float large = 0x1p40F;
 /// loops go through the counts.
 using Lanes [[gnu::vector_size(DiagonalLayout::lanes * sizeof(float))]] = float;
 using LaneBits [[gnu::vector_size(sizeof(Lanes))]] = std::uint32_t;
-using LaneHalves [[gnu::vector_size(sizeof(Lanes) / 2)]] = HalfFloat;
+using LaneHalves [[gnu::vector_size(sizeof(Lanes) / 2)]] = BFloat16;
 
 template <class Vector, class Number>
 [[gnu::always_inline]] inline Vector load(const Number* from) {
@@ -157,7 +157,7 @@ template <class Vector, class Number>
   std::memcpy(to, &vector, sizeof(vector));
 }
 
-[[gnu::always_inline]] inline Lanes widened_lanes(const HalfFloat* from) {
+[[gnu::always_inline]] inline Lanes widened_lanes(const BFloat16* from) {
   std::array<std::uint32_t, DiagonalLayout::lanes> bits;
   for (std::size_t k = 0; k < bits.size(); ++k) {
     bits[k] = static_cast<std::uint32_t>(from[k]) << 16U;
@@ -165,7 +165,7 @@ template <class Vector, class Number>
   return std::bit_cast<Lanes>(bits);
 }
 
-[[gnu::always_inline]] inline void store_halved(const Lanes& lanes, HalfFloat* to) {
+[[gnu::always_inline]] inline void store_halved(const Lanes& lanes, BFloat16* to) {
   const LaneBits rounded = (std::bit_cast<LaneBits>(lanes) + 0x8000U) >> 16U;
   store(__builtin_convertvector(rounded, LaneHalves), to);
 }
@@ -231,15 +231,15 @@ TOFMAP_VECTOR_CLONES void send_block(const Block& block_) {
 }
 
 /// The largest difference between messages along one edge of each pixel and what they were.
-TOFMAP_VECTOR_CLONES float largest_change(const Block& block, const Planes<const HalfFloat>& now,
-                                          const Planes<const HalfFloat>& before) {
+TOFMAP_VECTOR_CLONES float largest_change(const Block& block, const Planes<const BFloat16>& now,
+                                          const Planes<const BFloat16>& before) {
   Row largest{};
   for (int n = 0; n < block.counts; ++n) {
-    const HalfFloat* one = now[n];
-    const HalfFloat* other = before[n];
+    const BFloat16* one = now[n];
+    const BFloat16* other = before[n];
 #pragma GCC ivdep
     for (int i = 0; i < block.lanes; ++i) {
-      const float change = std::abs(std::sqrt(widened(one[i])) - std::sqrt(widened(other[i])));
+      const float change = std::abs(std::sqrt(to_float(one[i])) - std::sqrt(to_float(other[i])));
       largest[i] = change > largest[i] ? change : largest[i];
     }
   }
@@ -301,7 +301,7 @@ TOFMAP_VECTOR_CLONES void read_block(const Block& block_, BlockBeliefs& out) {
 void WrapCountPropagation::reset(const WrapCountModel& model) {
   const std::size_t size = model.layout().size(static_cast<std::size_t>(model.counts()));
   scratch_.assign(2 * static_cast<std::size_t>((model.counts() + 1) * DiagonalLayout::lanes), 0.0F);
-  ones_.assign(block_rows, half_one);
+  ones_.assign(block_rows, bfloat16_one);
   if (rows_ == model.layout().rows() && cols_ == model.layout().cols() &&
       counts_ == model.counts()) {
     return;
@@ -311,8 +311,8 @@ void WrapCountPropagation::reset(const WrapCountModel& model) {
   counts_ = model.counts();
   // Where there is no pixel nothing is known, and where there is no edge nothing is learned: these
   // messages stay 1, and are sent as 1 again.
-  for (auto& message : messages_) message.assign(size, half_one);
-  for (auto& message : before_) message.assign(size, half_one);
+  for (auto& message : messages_) message.assign(size, bfloat16_one);
+  for (auto& message : before_) message.assign(size, bfloat16_one);
 }
 
 void WrapCountPropagation::sweep_forward(const WrapCountModel& model, bool is_first) {
@@ -361,7 +361,7 @@ void WrapCountPropagation::read_backward(const WrapCountModel& model, WrapCountB
       const std::size_t here = layout.place(d, row, counts);
       for (const Neighbour to : {left, above}) {
         const Edge& edge = to == left ? block.first : block.second;
-        const Planes<const HalfFloat> before{&before_[to][here], layout.plane_step(d)};
+        const Planes<const BFloat16> before{&before_[to][here], layout.plane_step(d)};
         change = std::max(change, largest_change(block, edge.back, before));
       }
     }
@@ -378,11 +378,11 @@ void WrapCountPropagation::remember_watched(const WrapCountModel& model, bool wa
     const std::size_t first = layout.place(d, layout.begin(d) - 1, counts);
     const std::size_t size = layout.plane_step(d) * counts;
     for (const Neighbour to : {left, above}) {
-      HalfFloat* before = before_[to].data() + first;
+      BFloat16* before = before_[to].data() + first;
       if (was_sent) {
         std::copy_n(messages_[to].data() + first, size, before);
       } else {
-        std::fill_n(before, size, half_one);
+        std::fill_n(before, size, bfloat16_one);
       }
     }
   }

@@ -20,11 +20,11 @@ namespace tofmap {
 
 /// A place that was recognised.
 struct Loop {
-  int from_frame = 0;     ///< index of the earlier frame
-  int to_frame = 0;       ///< index of the later one
-  double error_m = 0;     ///< by how much the path was off when the loop was found
-  double deviations = 0;  ///< how far the edge is off in the end, in standard deviations
-  bool is_used = false;   ///< false: it disagrees with all others, and has lost its say
+  int from_frame = 0;               ///< index of the earlier frame
+  int to_frame = 0;                 ///< index of the later one
+  double error_m = 0;               ///< by how much the path was off when the loop was found
+  double mahalanobis_distance = 0;  ///< of the constraint from the final poses
+  bool is_used = false;             ///< false: it disagrees with all others, and has lost its say
 };
 
 /// What a mapper needs to know of a frame.

@@ -53,7 +53,7 @@ struct CloudPair {
       0;                       ///< share that contradicts what the other's sensor looked through
   double runner_up = 0;        ///< quality of the next best pose over that of this one
   double direction_share = 0;  ///< of the direction that is constrained least
-  double deviations = 0;       ///< off what all pairs together say, in standard deviations
+  double mahalanobis_distance = 0;  ///< of the pair from the poses that all pairs together give
 };
 
 /// Where a cloud lies.
