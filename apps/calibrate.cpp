@@ -15,6 +15,7 @@
 #include <memory>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include <tofmap/calibration/phase_error_fit.hpp>
 #include <tofmap/calibration/wall_reference.hpp>
@@ -71,8 +72,8 @@ WallDistances wall_distances(const std::filesystem::path& file, const SequenceRe
   for (const auto& [frame, distance_m] : distances_m) {
     if (distance_m <= farthest_m) continue;
     throw InputError(file.string() +
-                     formatted(": has a wall at %g m in frame %d; are its distances metres?",
-                               distance_m, frame));
+                     fmt::format(": has a wall at {:g} m in frame {}; are its distances metres?",
+                                 distance_m, frame));
   }
   const int last = distances_m.rbegin()->first;
   if (last < *source.frame_count()) return distances_m;
@@ -163,12 +164,12 @@ CollectedSamples collect_samples(const SequenceReader& source, ReferenceRanges& 
 void print_error(const char* name, const PhaseError& error, double offset_sigma_m) {
   std::vector<std::string> parts;
   if (offset_sigma_m > 0) {
-    parts.push_back(formatted("offset %+.1f mm (within %.1f mm)", 1000 * error.offset_m,
-                              1000 * offset_sigma_m));
+    parts.push_back(fmt::format("offset {:+.1f} mm (within {:.1f} mm)", 1000 * error.offset_m,
+                                1000 * offset_sigma_m));
   }
   for (const WiggleHarmonic& harmonic : error.harmonics) {
-    parts.push_back(formatted("harmonic %d %.1f mm", harmonic.order,
-                              1000 * std::hypot(harmonic.cosine_m, harmonic.sine_m)));
+    parts.push_back(fmt::format("harmonic {} {:.1f} mm", harmonic.order,
+                                1000 * std::hypot(harmonic.cosine_m, harmonic.sine_m)));
   }
   if (error.harmonics.empty()) parts.emplace_back("no wiggling above its uncertainty");
   std::printf("%s: %s\n", name, joined(parts, ", ").c_str());

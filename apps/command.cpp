@@ -30,7 +30,8 @@ OptionTable CommonArguments::resolve(const std::string& command, ProgramOptions&
 }
 
 void add_method_option(CLI::App& command, std::string& method, const std::string& meaning) {
-  command.add_option("--method", method, meaning)->type_name("{" + unwrap_method_names(",") + "}");
+  command.add_option("--method", method, meaning)
+      ->type_name("{" + all_names<UnwrapMethod>(",") + "}");
 }
 
 }  // namespace tofmap::app

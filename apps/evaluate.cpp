@@ -182,7 +182,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
   if (!quiet) say_what_is_missing(source, recorded, down_to_map);
   Evaluated evaluated = evaluate_methods(methods, out, [&](const std::string& method) {
     Progress progress("method " + method + ", frame", source.frame_count(), quiet);
-    const MethodRun run{.method = method,
+    const MethodRun run{.method = *find_named<UnwrapMethod>(method),
                         .options = options.pipeline,
                         .sample_frames = std::max(options.report.frames, options.pictures.frames),
                         .keep_going = [&](int done) {

@@ -129,7 +129,7 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
 void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput& output) {
   output.failures.attempt("consistency", [&] {
     finished.consistency = consistency_of(finished.map, output.sample, output.sensor,
-                                          unwrap_method(output.options.pipeline.unwrap));
+                                          output.options.pipeline.unwrap.method);
     std::ranges::move(warnings_about(finished.consistency), std::back_inserter(output.warnings));
   });
   const auto add_file = [&](const char* name, const auto& write) {

@@ -50,7 +50,7 @@ void unwrap_frames(benchmark::State& state, const std::string& method, const Siz
   omp_set_num_threads(1);
   const Example& e = example(size);
   UnwrapOptions options;
-  options.method = method;
+  options.method = *find_named<UnwrapMethod>(method);
   Unwrapper unwrapper(e.sensor, options);
   for (auto _ : state) benchmark::DoNotOptimize(unwrapper.unwrap(e.frame));
   state.SetItemsProcessed(state.iterations());
@@ -78,7 +78,7 @@ void pass_jump_messages(benchmark::State& state, const Size& size) {
   constexpr int iterations = 5;
   const Example& e = example(size);
   UnwrapOptions options;
-  options.method = "jump";
+  options.method = UnwrapMethod::jump;
   JumpEstimator estimator;
   const JumpEstimate& jumps =
       estimator.estimate(e.frame, PhaseSigma(e.frame, estimate_phase_noise(e.frame)),

@@ -11,7 +11,7 @@ packages=(
   libeigen3-dev libyaml-cpp-dev libpng-dev libembree-dev libpcl-dev libceres-dev libvtk9-dev
   libboost-serialization-dev libopenni2-dev
   libjs-three libegl-dev libegl1 libgl1-mesa-dri libx11-dev
-  nlohmann-json3-dev libcli11-dev
+  nlohmann-json3-dev libcli11-dev libfmt-dev
 )
 if (($# > 1)) || [[ ${1:---tests} != --tests ]]; then
   echo "usage: scripts/packages.sh [--tests]" >&2

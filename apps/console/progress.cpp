@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -23,7 +24,7 @@ constexpr std::chrono::milliseconds between_lines = 5s;
 
 /// "8 s", "3 min", "2 h 5 min"
 std::string duration(double seconds) {
-  const auto whole = [](double number) { return formatted("%.0f", number); };
+  const auto whole = [](double number) { return fmt::format("{:.0f}", number); };
   constexpr double minute = 60;
   constexpr double hour = 60 * minute;
   if (seconds < 2 * minute) return whole(std::ceil(seconds)) + " s";
@@ -65,7 +66,7 @@ std::string Progress::numbers(int done, double seconds) const {
   std::string text = " " + std::to_string(done);
   if (total_) text += " of " + std::to_string(*total_);
   const double rate = done / seconds;
-  text += formatted(", %.*f a second", rate < 10 ? 1 : 0, rate);
+  text += fmt::format(", {:.{}f} a second", rate, rate < 10 ? 1 : 0);
   if (total_ && done > 0 && done < *total_)
     text += ", " + duration((*total_ - done) / rate) + " left";
   return text;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include <tofmap/core/median.hpp>
 #include <tofmap/core/text.hpp>
 #include <tofmap/diagnostics/axial_depth.hpp>
@@ -51,10 +53,10 @@ std::optional<std::string> gap_warning(const std::vector<double>& times_s) {
   const auto gaps = static_cast<std::size_t>(std::ranges::count_if(
       periods_s, [&](double period_s) { return period_s > most_periods * usual_s; }));
   if (gaps == 0) return std::nullopt;
-  return counted(gaps, "gap") +
-         formatted(
-             " between frames, the longest of %.2f s after time %.3f s; a path across is less sure",
-             longest_s, before_s);
+  return counted(gaps, "gap") + fmt::format(
+                                    " between frames, the longest of {:.2f} s after time {:.3f} s; "
+                                    "a path across is less sure",
+                                    longest_s, before_s);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include <tofmap/core/text.hpp>
 
@@ -42,7 +43,7 @@ std::string roff(const std::string& text) {
     } else if (point < 0x80) {
       out += static_cast<char>(point);
     } else {
-      out += formatted("\\[u%04X]", point);
+      out += fmt::format("\\[u{:04X}]", point);
     }
   }
   return out;

@@ -14,7 +14,7 @@ namespace tofmap::app {
 std::vector<OptionField<EvaluationOptions>> EvaluationOptions::fields() {
   using O = EvaluationOptions;
   static const std::string methods_meaning =
-      "methods to compare, separated by spaces: " + unwrap_method_names(", ");
+      "methods to compare, separated by spaces: " + all_names<UnwrapMethod>(", ");
   return {
       {"methods", &O::methods, 0, 0, "", methods_meaning},
       {"down_to", &O::down_to, 0, 0, "", "how far to go", "unwrapping | map"},
@@ -25,9 +25,9 @@ std::vector<std::string> method_names(const EvaluationOptions& options) {
   std::vector<std::string> names;
   std::istringstream words(options.methods);
   for (std::string name; words >> name;) {
-    if (!find_unwrap_method(name)) {
+    if (!find_named<UnwrapMethod>(name)) {
       throw UsageError("option evaluation.methods: '" + name +
-                       "' is no method; allowed: " + unwrap_method_names(" "));
+                       "' is no method; allowed: " + all_names<UnwrapMethod>(" "));
     }
     if (std::ranges::find(names, name) != names.end()) {
       throw UsageError("option evaluation.methods: '" + name + "' is named twice");
@@ -36,7 +36,7 @@ std::vector<std::string> method_names(const EvaluationOptions& options) {
   }
   if (names.empty()) {
     throw UsageError("option evaluation.methods: names no method; allowed: " +
-                     unwrap_method_names(" "));
+                     all_names<UnwrapMethod>(" "));
   }
   return names;
 }

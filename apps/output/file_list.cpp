@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <boost/crc.hpp>
+#include <fmt/format.h>
 
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/text.hpp>
@@ -105,7 +106,7 @@ void FileList::write(const fs::path& file) const {
   std::ofstream out(file, std::ios::binary);
   out << first_line << '\n';
   for (const auto& [name, entry] : entries_) {
-    out << (entry.is_folder ? "- -" : formatted("%08x ", entry.checksum))
+    out << (entry.is_folder ? "- -" : fmt::format("{:08x} ", entry.checksum))
         << (entry.is_folder ? "" : std::to_string(entry.size_bytes)) << ' ' << name << '\n';
   }
   out.close();

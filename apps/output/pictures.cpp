@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include <fmt/format.h>
+
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/text.hpp>
 #include <tofmap/evaluation/range_score.hpp>
@@ -25,7 +27,7 @@ namespace {
 /// Each term by itself, fused, and after propagation; probabilities sum to one in all of them.
 Picture jump_stages_picture(const DualFrequencyFrame& frame, const SensorModel& sensor,
                             const UnwrapOptions& options) {
-  const JumpMethod method = jump_method(unwrap_method(options));
+  const JumpMethod method = jump_method(options.method);
   JumpEstimator estimator;
   const JumpEstimate& jumps =
       estimator.estimate(frame, PhaseSigma(frame, estimate_phase_noise(frame)),
@@ -65,7 +67,7 @@ void write_pictures_of(const PicturedFrame& frame, const SensorModel& sensor, co
   write("range", range_picture(wrapped_m, unwrapped.range_m));
   write("wraps", wrap_count_picture(unwrapped.wrap_count));
   write("confidence", confidence_picture(unwrapped));
-  if (finds_jumps(unwrap_method(options))) {
+  if (finds_jumps(options.method)) {
     write("jumps", jump_stages_picture(*frame.recorded, sensor, options));
   }
   write("cloud", cloud_picture(unwrapped, wrapped_m, rays));
@@ -92,7 +94,9 @@ FilteredRanges filtered_ranges(const std::string& method, const RangeImage& befo
   return {title, before.range_m, after.reason};
 }
 
-std::string stem_of(const SampledFrame& frame) { return formatted("%06d", frame.recorded.index); }
+std::string stem_of(const SampledFrame& frame) {
+  return fmt::format("{:06}", frame.recorded.index);
+}
 
 /// What every method made of one frame; null where a method has it not in its sample.
 std::vector<const SampledFrame*> frame_of_all(const std::vector<MethodResult>& results, int index) {
@@ -108,7 +112,7 @@ std::vector<const SampledFrame*> frame_of_all(const std::vector<MethodResult>& r
 /// The frame as a run without unwrapping has it.
 PreparedFrame wrapped_frame(const DualFrequencyFrame& frame, const SensorModel& sensor,
                             const PixelRays& rays, PipelineOptions pipeline) {
-  pipeline.unwrap.method = "none";
+  pipeline.unwrap.method = UnwrapMethod::none;
   FrameMeasurer measurer(sensor, pipeline.unwrap);
   Unwrapper unwrapper(sensor, pipeline.unwrap);
   return prepare_ranges(measure_frame(frame, measurer), unwrapper, sensor, rays, pipeline);

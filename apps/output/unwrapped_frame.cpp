@@ -57,9 +57,8 @@ UnwrappedFrame unwrap_frame(const MeasuredSource& source, const Modulation& modu
                 {"timestamp", sourced.timestamp_s},
                 {"milliseconds", milliseconds},
                 {"iterations", result.iterations},
-                {"converged", result.converged},
+                {"converged", result.converged ? Json(*result.converged) : Json(nullptr)},
                 {"curl_violations", result.curl_violations},
-                {"largest_message_change", result.largest_message_change},
                 {"phase_noise_cycles", result.phase_noise_cycles},
                 {"frequency_offset_m", result.errors.camera.offset_m()},
                 {"systematic_m", result.errors.camera.systematic_m},
@@ -116,6 +115,7 @@ Json unwrapping_summary(const Json& frames, int damaged, bool interrupted) {
   double milliseconds = 0;
   double iterations = 0;
   int converged = 0;
+  bool can_converge = false;
   int read = 0;
   int out_of_range = 0;
   for (const Json& frame : frames) {
@@ -123,14 +123,15 @@ Json unwrapping_summary(const Json& frames, int damaged, bool interrupted) {
     ++read;
     milliseconds += frame["milliseconds"].get<double>();
     iterations += frame["iterations"].get<double>();
-    converged += frame["converged"].get<bool>() ? 1 : 0;
+    converged += frame["converged"] == true ? 1 : 0;
+    can_converge = can_converge || frame["converged"].is_boolean();
     out_of_range += frame.value("out_of_range_pixels", 0);
   }
   const double count = std::max(1, read);
   return {{"frames", frames.size()},
           {"damaged", damaged},
           {"interrupted", interrupted},
-          {"converged", converged},
+          {"converged", can_converge ? Json(converged) : Json(nullptr)},
           {"out_of_range_pixels", out_of_range},
           {"milliseconds_per_frame", milliseconds / count},
           {"iterations_per_frame", iterations / count}};

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <iterator>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <tofmap/core/text.hpp>
@@ -21,7 +22,7 @@
 namespace tofmap::app {
 namespace {
 
-const MethodResult* find(const std::vector<MethodResult>& results, const std::string& name) {
+const MethodResult* find(const std::vector<MethodResult>& results, std::string_view name) {
   const auto found = std::ranges::find(results, name, &MethodResult::name);
   return found == results.end() ? nullptr : &*found;
 }
@@ -29,7 +30,8 @@ const MethodResult* find(const std::vector<MethodResult>& results, const std::st
 /// The method that stands for unwrapping: the one that `map` would use, or else the last that
 /// unwraps.
 const MethodResult& with_unwrapping(const EvaluationPageSubject& subject) {
-  const MethodResult* found = find(subject.results, subject.options.pipeline.unwrap.method);
+  const MethodResult* found =
+      find(subject.results, name_of(subject.options.pipeline.unwrap.method));
   if (found) return *found;
   const auto last =
       std::ranges::find_if(subject.results.rbegin(), subject.results.rend(),
@@ -55,19 +57,19 @@ std::vector<RangeScore> scores_of(const MethodResult& result) {
 std::string told(const MethodResult& result) {
   std::string text;
   if (result.scores.surface) {
-    text = formatted("the map is %.0f mm off the true surface and shows %.1f %% of what was seen",
-                     1000 * result.scores.surface->accuracy_m,
-                     result.scores.surface->completeness_percent);
+    text = fmt::format(
+        "the map is {:.0f} mm off the true surface and shows {:.1f} % of what was seen",
+        1000 * result.scores.surface->accuracy_m, result.scores.surface->completeness_percent);
   } else if (result.scores.trajectory) {
-    text = formatted("the path is %.0f mm off", 1000 * result.scores.trajectory->ate_rmse_m);
+    text = fmt::format("the path is {:.0f} mm off", 1000 * result.scores.trajectory->ate_rmse_m);
   } else if (result.map) {
     text = std::to_string(result.map->trajectory.size()) + " of " +
            counted(result.map->frames.size(), "frame") + " could be registered";
   } else {
     const std::vector<RangeScore> scores = scores_of(result);
     if (scores.empty()) return counted(result.frames.size(), "frame") + " went through";
-    text = formatted("%.2f %% of the ranges are off by more than half a wavelength",
-                     mean_score(scores).wrong_wrap_percent);
+    text = fmt::format("{:.2f} % of the ranges are off by more than half a wavelength",
+                       mean_score(scores).wrong_wrap_percent);
   }
   return text;
 }
@@ -103,7 +105,7 @@ Judgement judgement_of(const EvaluationPageSubject& subject) {
   const MethodResult& with = with_unwrapping(subject);
   if (with.map) {
     PipelineOptions pipeline = subject.options.pipeline;
-    pipeline.unwrap.method = with.name;
+    pipeline.unwrap.method = with.method;
     MapEvidence evidence = evidence_of(*with.map, pipeline);
     if (with.scores.surface) evidence.accuracy_m = with.scores.surface->accuracy_m;
     evidence.is_seen_twice = !std::isnan(with.consistency->contradicted_percent);

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <map>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace tofmap::app {
@@ -24,11 +25,13 @@ Json unwrapping_json(const MethodResult& result) {
   double milliseconds = 0;
   double iterations = 0;
   double converged = 0;
+  bool can_converge = false;
   for (const UnwrappingRecord& frame : result.frames) {
     if (frame.score) scores.push_back(*frame.score);
     milliseconds += frame.milliseconds;
     iterations += frame.iterations;
-    converged += frame.converged ? 1 : 0;
+    converged += frame.converged.value_or(false) ? 1 : 0;
+    can_converge = can_converge || frame.converged.has_value();
   }
   if (!scores.empty()) {
     const RangeScore mean = mean_score(scores);
@@ -37,7 +40,7 @@ Json unwrapping_json(const MethodResult& result) {
     json["range_rmse_m"] = json_number(mean.range_rmse_m);
   }
   const auto count = static_cast<double>(result.frames.size());
-  json["converged_percent"] = json_number(100 * converged / count);
+  if (can_converge) json["converged_percent"] = json_number(100 * converged / count);
   json["iterations_per_frame"] = json_number(iterations / count);
   json["milliseconds_per_frame"] = json_number(milliseconds / count);
   return json;
@@ -96,29 +99,27 @@ struct Column {
   const char* metric;
   const char* title;
   const char* unit;
-  const char* format;
+  int decimals;
 };
 
 constexpr std::array columns{
-    Column{"unwrapping", "wrong_wrap_percent", "wrong", "wraps %", "%.3f"},
-    Column{"unwrapping", "range_rmse_m", "range", "RMSE m", "%.3f"},
-    Column{"unwrapping", "milliseconds_per_frame", "unwrap", "ms/frame", "%.1f"},
-    Column{"filters", "removed_percent", "filters", "remove %", "%.1f"},
-    Column{"trajectory", "registered_frames", "frames", "registered", "%.0f"},
-    Column{"trajectory", "ate_rmse_m", "ATE", "RMSE m", "%.4f"},
-    Column{"trajectory", "rpe_rmse_m_per_m", "RPE", "m per m", "%.4f"},
-    Column{"map", "accuracy_m", "map", "error m", "%.4f"},
-    Column{"map", "completeness_percent", "map", "seen %", "%.1f"},
-    Column{"map", "milliseconds_per_frame", "all", "ms/frame", "%.1f"}};
+    Column{"unwrapping", "wrong_wrap_percent", "wrong", "wraps %", 3},
+    Column{"unwrapping", "range_rmse_m", "range", "RMSE m", 3},
+    Column{"unwrapping", "milliseconds_per_frame", "unwrap", "ms/frame", 1},
+    Column{"filters", "removed_percent", "filters", "remove %", 1},
+    Column{"trajectory", "registered_frames", "frames", "registered", 0},
+    Column{"trajectory", "ate_rmse_m", "ATE", "RMSE m", 4},
+    Column{"trajectory", "rpe_rmse_m_per_m", "RPE", "m per m", 4},
+    Column{"map", "accuracy_m", "map", "error m", 4},
+    Column{"map", "completeness_percent", "map", "seen %", 1},
+    Column{"map", "milliseconds_per_frame", "all", "ms/frame", 1}};
 
 std::string cell(const Json& report, const Column& column, const std::string& method) {
   const auto group = report.find(column.group);
   if (group == report.end() || !group->contains(method)) return "-";
   const Json& values = (*group)[method];
   if (!values.contains(column.metric) || !values[column.metric].is_number()) return "-";
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), column.format, values[column.metric].get<double>());
-  return text.data();
+  return fmt::format("{:.{}f}", values[column.metric].get<double>(), column.decimals);
 }
 
 }  // namespace

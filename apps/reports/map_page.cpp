@@ -15,6 +15,8 @@
 #include <cmath>
 #include <iterator>
 
+#include <fmt/format.h>
+
 #include <tofmap/core/text.hpp>
 #include <tofmap/evaluation/method_run.hpp>
 #include <tofmap/visualization/plot.hpp>
@@ -24,6 +26,10 @@ namespace {
 
 std::optional<ImageF> range_truth(const MapPageSubject& subject, int frame) {
   return subject.truth ? subject.truth->range_m(frame) : std::nullopt;
+}
+
+std::string method_name(const MapPageSubject& subject) {
+  return std::string(name_of(subject.options.pipeline.unwrap.method));
 }
 
 double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
@@ -58,7 +64,7 @@ struct WrappedSample {
 
 WrappedSample wrapped_sample(const MapPageSubject& subject, bool quiet) {
   PipelineOptions options = subject.options.pipeline;
-  options.unwrap.method = "none";
+  options.unwrap.method = UnwrapMethod::none;
   options.map.min_observations = 1;  // the sample is small
   FrameMeasurer measurer(subject.sensor, options.unwrap);
   Unwrapper unwrapper(subject.sensor, options.unwrap);
@@ -86,21 +92,21 @@ std::string sentence_of(const MapPageSubject& subject, const MapScores& scores,
   std::string text = std::to_string(map.trajectory.size()) + " of " +
                      counted(map.frames.size(), "frame") + " could be registered. ";
   if (map.interrupted) text += "Then the run was interrupted. ";
-  if (subject.options.pipeline.unwrap.method == "none") {
+  if (subject.options.pipeline.unwrap.method == UnwrapMethod::none) {
     text += "Nothing was unwrapped. ";
   } else {
-    text += formatted(
-        "Unwrapping moved %.0f %% of the ranges, to beyond the %.2f m that one frequency can "
+    text += fmt::format(
+        "Unwrapping moved {:.0f} % of the ranges, to beyond the {:.2f} m that one frequency can "
         "tell. ",
         moved_percent, subject.sensor.modulation.wavelength_a_m());
   }
   if (scores.surface) {
-    text +=
-        formatted("Against the truth, the map is %.0f mm off and shows %.1f %% of what was seen. ",
-                  1000 * scores.surface->accuracy_m, scores.surface->completeness_percent);
+    text += fmt::format(
+        "Against the truth, the map is {:.0f} mm off and shows {:.1f} % of what was seen. ",
+        1000 * scores.surface->accuracy_m, scores.surface->completeness_percent);
   }
   if (scores.trajectory) {
-    text += formatted("The path is %.0f mm off.", 1000 * scores.trajectory->ate_rmse_m);
+    text += fmt::format("The path is {:.0f} mm off.", 1000 * scores.trajectory->ate_rmse_m);
   } else if (!map.interrupted) {
     text += "The truth is not known.";
   }
@@ -124,21 +130,21 @@ PageTable summary_table(const RoomMap& map, const MapScores& scores) {
   add("damaged", std::to_string(map.damaged()));
   add("registered", std::to_string(map.trajectory.size()));
   add("degenerate (a direction that no surface held), %",
-      formatted("%.1f", percent(map.degenerate(), static_cast<double>(map.frames.size()))));
+      fmt::format("{:.1f}", percent(map.degenerate(), static_cast<double>(map.frames.size()))));
   add("keyframes", std::to_string(map.keyframes.size()));
   add("loops found, and believed", std::to_string(map.loops.size()) + ", " + std::to_string(used));
   add("points of the map", std::to_string(map.surface.size()));
   if (scores.trajectory) {
-    add("ATE, m (RMSE)", formatted("%.4f", scores.trajectory->ate_rmse_m));
-    add("ATE, m (greatest)", formatted("%.4f", scores.trajectory->ate_max_m));
-    add("RPE, m per m", formatted("%.4f", scores.trajectory->rpe_rmse_m_per_m));
-    add("RPE, degrees per m", formatted("%.3f", scores.trajectory->rpe_rmse_deg_per_m));
+    add("ATE, m (RMSE)", fmt::format("{:.4f}", scores.trajectory->ate_rmse_m));
+    add("ATE, m (greatest)", fmt::format("{:.4f}", scores.trajectory->ate_max_m));
+    add("RPE, m per m", fmt::format("{:.4f}", scores.trajectory->rpe_rmse_m_per_m));
+    add("RPE, degrees per m", fmt::format("{:.3f}", scores.trajectory->rpe_rmse_deg_per_m));
   }
   if (scores.surface) {
-    add("map error, m", formatted("%.4f", scores.surface->accuracy_m));
-    add("map points more than 0.2 m off, %", formatted("%.2f", scores.surface->far_percent));
+    add("map error, m", fmt::format("{:.4f}", scores.surface->accuracy_m));
+    add("map points more than 0.2 m off, %", fmt::format("{:.2f}", scores.surface->far_percent));
     add("surface shown of what was seen, %",
-        formatted("%.1f", scores.surface->completeness_percent));
+        fmt::format("{:.1f}", scores.surface->completeness_percent));
   }
   return table;
 }
@@ -163,7 +169,7 @@ Plot tracking_plot(const RoomMap& map) {
 void add_errors(ReportPage& page, const MapPageSubject& subject, const Truth& truth,
                 const MapScores& scores, const UnwrappedSample& sample,
                 const WrappedSample& wrapped) {
-  std::vector<MethodErrors> methods{{subject.options.pipeline.unwrap.method, {}, sample.frames}};
+  std::vector<MethodErrors> methods{{method_name(subject), {}, sample.frames}};
   if (scores.trajectory) {
     methods.back().path =
         pose_errors(subject.map.trajectory, truth.poses, scores.trajectory->truth_from_estimate);
@@ -175,8 +181,7 @@ void add_errors(ReportPage& page, const MapPageSubject& subject, const Truth& tr
 /// The map, and what the same path would have made of ranges as measured.
 std::vector<ShownMap> shown_maps(const MapPageSubject& subject, const Truth& truth,
                                  const MapScores& scores, const MapCloud& wrapped) {
-  std::vector<ShownMap> maps{
-      shown_map(name_of_map(subject.options.pipeline.unwrap.method), subject.map, scores)};
+  std::vector<ShownMap> maps{shown_map(name_of_map(method_name(subject)), subject.map, scores)};
   if (wrapped.empty()) return maps;
   ShownMap as_measured = maps.front();
   as_measured.name =
@@ -205,11 +210,11 @@ void write_map_page(const std::filesystem::path& result, const MapPageSubject& s
   }
   const MapScores scores = score_of(map, truth);
   const UnwrappedSample sample = unwrapped_sample(subject);
-  const bool is_unwrapped = subject.options.pipeline.unwrap.method != "none";
+  const bool is_unwrapped = subject.options.pipeline.unwrap.method != UnwrapMethod::none;
   const WrappedSample wrapped = is_unwrapped ? wrapped_sample(subject, quiet) : WrappedSample{};
 
   ReportPage page("Map of " + subject.source,
-                  "tofmap " TOFMAP_VERSION ", method " + subject.options.pipeline.unwrap.method);
+                  "tofmap " TOFMAP_VERSION ", method " + method_name(subject));
   MapEvidence evidence = evidence_of(map, subject.options.pipeline);
   if (scores.surface) evidence.accuracy_m = scores.surface->accuracy_m;
   evidence.is_seen_twice = !std::isnan(subject.consistency.contradicted_percent);

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <fstream>
 
+#include <fmt/format.h>
+
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/text.hpp>
 #include <tofmap/visualization/drawing.hpp>
@@ -20,7 +22,8 @@ namespace {
 
 StagedFrame staged_frame(const SampledFrame& frame, const Modulation& modulation) {
   StagedFrame staged;
-  staged.title = formatted("Frame %d, %.2f s", frame.recorded.index, frame.recorded.timestamp_s);
+  staged.title =
+      fmt::format("Frame {}, {:.2f} s", frame.recorded.index, frame.recorded.timestamp_s);
   staged.amplitude = frame.recorded.amplitude_a;
   staged.wrapped_m = frame.recorded.phase_a * static_cast<float>(modulation.wavelength_a_m());
   staged.unwrapped = frame.unwrapped.image;
@@ -60,23 +63,21 @@ void add_consistency(ReportPage& page, const std::vector<std::string>& names,
   PageTable table;
   table.header = {"without any truth"};
   table.header.insert(table.header.end(), names.begin(), names.end());
-  const auto add_row = [&](const char* measure, const char* format, double Consistency::*value) {
+  const auto add_row = [&](const char* measure, int decimals, double Consistency::*value) {
     std::vector<std::string> row{measure};
     for (const Consistency& run : runs) {
-      row.push_back(std::isfinite(run.*value) ? formatted(format, run.*value) : "-");
+      row.push_back(std::isfinite(run.*value) ? fmt::format("{:.{}f}", run.*value, decimals) : "-");
     }
     table.rows.push_back(std::move(row));
   };
-  add_row("points that other frames see through, %", "%.2f", &Consistency::contradicted_percent);
-  add_row("pixels that fit the residual better with another count, %", "%.2f",
+  add_row("points that other frames see through, %", 2, &Consistency::contradicted_percent);
+  add_row("pixels that fit the residual better with another count, %", 2,
           &Consistency::residual_misfit_percent);
-  add_row("residual of phase B after A's range, cycles (RMS)", "%.4f",
+  add_row("residual of phase B after A's range, cycles (RMS)", 4,
           &Consistency::residual_rms_cycles);
-  add_row("pixels whose count the frequencies cannot tell, %", "%.2f",
-          &Consistency::ambiguous_percent);
-  add_row("thickness of planes in the map, m (median)", "%.4f", &Consistency::plane_thickness_m);
-  add_row("curl violations per frame (jump, single)", "%.1f",
-          &Consistency::curl_violations_per_frame);
+  add_row("pixels whose count the frequencies cannot tell, %", 2, &Consistency::ambiguous_percent);
+  add_row("thickness of planes in the map, m (median)", 4, &Consistency::plane_thickness_m);
+  add_row("curl violations per frame (jump, single)", 1, &Consistency::curl_violations_per_frame);
   page.add_heading("Does it agree with itself?");
   page.add_table(table);
 }
@@ -90,7 +91,7 @@ void add_stage_times(ReportPage& page, const std::vector<std::string>& names,
   for (const RoomMap* run : runs) means.push_back(mean_times(*run));
   const auto add_row = [&](const char* stage, const auto& time_of) {
     std::vector<std::string> row{stage};
-    for (const StageTimes& mean : means) row.push_back(formatted("%.1f", time_of(mean)));
+    for (const StageTimes& mean : means) row.push_back(fmt::format("{:.1f}", time_of(mean)));
     table.rows.push_back(std::move(row));
   };
   add_row("unwrap", [](const StageTimes& times) { return times.unwrap_ms; });

@@ -93,9 +93,9 @@ std::unique_ptr<Viewed> view_map_or_mesh(const ViewRequest& request, const fs::p
 /// The maps of an evaluation's methods, the best method first; empty if the folder has none.
 std::vector<MapFile> maps_of_methods(const fs::path& folder) {
   std::vector<MapFile> files;
-  for (const std::string& method : unwrap_methods()) {
+  for (const auto& [method, value] : named_values(UnwrapMethod{})) {
     const fs::path file = folder / method / "map.ply";
-    if (fs::exists(file)) files.push_back({file, method});
+    if (fs::exists(file)) files.push_back({file, std::string(method)});
   }
   return files;
 }

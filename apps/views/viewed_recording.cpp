@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/text.hpp>
 #include <tofmap/filters/filter_chain.hpp>
@@ -68,7 +70,7 @@ class ViewedRecording final : public Viewed {
 
   std::string status() const override {
     std::string text =
-        formatted("frame %d of %d, %.2f s: ", index_, *source_.frame_count(), time_s_);
+        fmt::format("frame {} of {}, {:.2f} s: ", index_, *source_.frame_count(), time_s_);
     if (!damage_.empty()) return text + damage_;
     text += is_wrapped_ ? "ranges as measured" : "unwrapped";
     text += is_filtered_ ? ", filtered" : ", not filtered";

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <span>
 
+#include <fmt/format.h>
+
 #include <tofmap/acquisition/png_image.hpp>
 #include <tofmap/acquisition/sequence.hpp>
 
@@ -133,8 +135,8 @@ std::vector<Case> frozen_cases(int divisor) {
     options.frequency_a_hz = place.frequency_a_hz;
     options.frequency_b_hz = place.frequency_b_hz;
     const std::string name =
-        formatted("%s, %g/%g MHz, %.1f cm", place.scene, place.frequency_a_hz / 1e6,
-                  place.frequency_b_hz / 1e6, 100 * place.range_noise_m);
+        fmt::format("{}, {:g}/{:g} MHz, {:.1f} cm", place.scene, place.frequency_a_hz / 1e6,
+                    place.frequency_b_hz / 1e6, 100 * place.range_noise_m);
     cases.push_back(simulated_case(name, place.scene, options, seed, rooms / 2, divisor));
     if (std::string_view(place.scene) == "random") seed += rooms / 2;
   }
@@ -162,9 +164,9 @@ Case recorded_case(const std::filesystem::path& folder, int divisor) {
 }
 
 std::string describe_runs(int divisor) {
-  return formatted(
-      "Frames come as runs of consecutive frames, one camera each: %d runs of %d frames of each "
-      "scene, one of %d frames of each random room, %d of %d of each recording.",
+  return fmt::format(
+      "Frames come as runs of consecutive frames, one camera each: {} runs of {} frames of each "
+      "scene, one of {} frames of each random room, {} of {} of each recording.",
       divided(scene_plan, divisor).runs, scene_plan.frames, room_plan.frames,
       divided(recording_plan, divisor).runs, recording_plan.frames);
 }
@@ -178,7 +180,7 @@ void score_run(const Run& run, const SensorModel& sensor, const Variant& variant
     const std::chrono::duration<double, std::milli> taken =
         std::chrono::steady_clock::now() - start;
     add_frame(run.frames[i], result.image, run.truth_m[i], wavelength_m, score);
-    score.frames.back().is_converged = result.converged;
+    score.frames.back().is_converged = result.converged.value_or(false);
     score.frames.back().milliseconds = taken.count();
   }
 }

@@ -9,6 +9,8 @@
 #include <functional>
 #include <random>
 
+#include <fmt/format.h>
+
 namespace tofmap::accuracy {
 namespace {
 
@@ -23,7 +25,7 @@ struct Kind {
   std::vector<double> sizes;  ///< the last one is the largest
   std::function<void(CameraErrors&, double)> set;
 
-  std::string text(double size) const { return formatted("%g%s", size * unit_scale, unit); }
+  std::string text(double size) const { return fmt::format("{:g}{}", size * unit_scale, unit); }
 };
 
 /// Both frequencies have a periodic error of the same size, but not of the same shape. The error
@@ -68,8 +70,8 @@ void add_pairs(std::vector<Combination>& out) {
     for (std::size_t other = one + 1; other < all.size(); ++other) {
       Combination added{
           "two errors",
-          formatted("%s %s, %s %s", all[one].name, all[one].text(all[one].sizes.back()).c_str(),
-                    all[other].name, all[other].text(all[other].sizes.back()).c_str()),
+          fmt::format("{} {}, {} {}", all[one].name, all[one].text(all[one].sizes.back()).c_str(),
+                      all[other].name, all[other].text(all[other].sizes.back()).c_str()),
           {}};
       all[one].set(added.errors, all[one].sizes.back());
       all[other].set(added.errors, all[other].sizes.back());
@@ -149,7 +151,7 @@ std::vector<Combination> error_combinations(const GridPlan& plan) {
   for (int i = 0; i < plan.drawn; ++i) {
     const CameraErrors errors = drawn_errors(draw);
     const char* sun = errors.has_ambient() ? "drawn, ambient light" : "drawn";
-    out.push_back({sun, formatted("no. %d", i + 1), errors});
+    out.push_back({sun, fmt::format("no. {}", i + 1), errors});
   }
   return out;
 }

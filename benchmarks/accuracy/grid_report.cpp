@@ -12,13 +12,15 @@
 #include <fstream>
 #include <map>
 
+#include <fmt/format.h>
+
 #include <tofmap/core/error.hpp>
 
 namespace tofmap::accuracy {
 namespace {
 
 std::string mean_and_worst(const Score& score) {
-  return formatted("%.2f / %.1f", score.wrong_percent(), score.worst_percent());
+  return fmt::format("{:.2f} / {:.1f}", score.wrong_percent(), score.worst_percent());
 }
 
 /// How many rows keep a condition.
@@ -98,8 +100,8 @@ void print_groups(const std::vector<Group>& groups) {
 
 std::string full_name(const Grid& grid, const GridRow& row) {
   const Combination& combination = grid.combinations[row.combination];
-  return formatted("%s, seed %d: %s %s", row.scene.c_str(), row.seed, combination.kind.c_str(),
-                   combination.size.c_str());
+  return fmt::format("{}, seed {}: {} {}", row.scene.c_str(), row.seed, combination.kind.c_str(),
+                     combination.size.c_str());
 }
 
 void print_conditions(const std::vector<Checks>& checks) {
@@ -158,8 +160,8 @@ void print_failures(const Grid& grid, const std::vector<Checks>& checks) {
 }
 
 void write_score(std::ofstream& file, const Score& score) {
-  file << formatted(",%.4f,%.4f,%.4f,%.4f", score.wrong_percent(), score.worst_percent(),
-                    score.sure_wrong_percent(), score.calibration.error_percent());
+  file << fmt::format(",{:.4f},{:.4f},{:.4f},{:.4f}", score.wrong_percent(), score.worst_percent(),
+                      score.sure_wrong_percent(), score.calibration.error_percent());
 }
 
 constexpr std::array<const char*, condition_count> csv_conditions{
@@ -203,14 +205,14 @@ void write_grid_csv(const Grid& grid, const std::filesystem::path& path) {
     for (const double value :
          {e.offset_m, e.periodic_a_m, e.periodic_b_m, e.amplitude_error_a_m, e.amplitude_error_b_m,
           e.pattern_m, e.delay_share, e.ambient_noise, e.noise_m}) {
-      file << formatted(",%.5g", value);
+      file << fmt::format(",{:.5g}", value);
     }
     for (const Score* score : {&row.pixel, &row.jump, &row.joint, &row.joint_without_errors}) {
       write_score(file, *score);
     }
     for (const Check& check : check_row(grid, row)) {
       const char* verdict = !check.applies ? "" : check.holds() ? "yes" : "no";
-      file << ',' << verdict << formatted(",%.4f", check.limit + check.allowance);
+      file << ',' << verdict << fmt::format(",{:.4f}", check.limit + check.allowance);
     }
     file << '\n';
   }

@@ -10,6 +10,8 @@
 #include <functional>
 #include <string>
 
+#include <fmt/format.h>
+
 namespace tofmap::accuracy {
 namespace {
 
@@ -44,10 +46,12 @@ std::vector<Column> score_all(const std::vector<Case>& cases,
 }
 
 std::string wrong_wraps(const Score& s) {
-  return formatted("%.2f / %.1f", s.wrong_percent(), s.worst_percent());
+  return fmt::format("{:.2f} / {:.1f}", s.wrong_percent(), s.worst_percent());
 }
 
-std::string converged_frames(const Score& s) { return formatted("%.0f", s.converged_percent()); }
+std::string converged_frames(const Score& s) {
+  return fmt::format("{:.0f}", s.converged_percent());
+}
 
 }  // namespace
 
@@ -56,15 +60,15 @@ void print_method_tables(const std::vector<Case>& cases) {
   const std::vector<Column> scores = score_all(cases, all);
   print_table("wrong wraps, %, mean / worst frame", cases, all, scores, wrong_wraps);
   print_table("wrong among the surest 90 %, %", cases, all, scores,
-              [](const Score& s) { return formatted("%.3f", s.sure_wrong_percent()); });
+              [](const Score& s) { return fmt::format("{:.3f}", s.sure_wrong_percent()); });
   print_table("calibration error of the confidence, %", cases, all, scores,
-              [](const Score& s) { return formatted("%.1f", s.calibration.error_percent()); });
+              [](const Score& s) { return fmt::format("{:.1f}", s.calibration.error_percent()); });
   print_table("pixels with a range, %", cases, all, scores,
-              [](const Score& s) { return formatted("%.1f", s.coverage_percent()); });
+              [](const Score& s) { return fmt::format("{:.1f}", s.coverage_percent()); });
   print_table("error of right ranges, RMS, cm", cases, all, scores,
-              [](const Score& s) { return formatted("%.1f", 100 * s.range_rmse_m()); });
+              [](const Score& s) { return fmt::format("{:.1f}", 100 * s.range_rmse_m()); });
   print_table("milliseconds a frame, one core", cases, all, scores,
-              [](const Score& s) { return formatted("%.1f", s.milliseconds()); });
+              [](const Score& s) { return fmt::format("{:.1f}", s.milliseconds()); });
 }
 
 void print_ablation_table(const std::vector<Case>& cases) {

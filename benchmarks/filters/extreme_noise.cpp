@@ -296,7 +296,7 @@ void compare(const Sample& sample, const Noise& noise, unsigned seed,
   const Modulation& modulation = sample.sensor.modulation;
   const DualFrequencyFrame frame = noisy_frame(sample, noise, random);
   UnwrapOptions pixelwise;
-  pixelwise.method = "pixel";
+  pixelwise.method = UnwrapMethod::pixel;
   const RangeImage joint = unwrap(frame, sample.sensor, {}).image;
   FilterOptions options;
   options.chain = smoothing_chain();

@@ -230,10 +230,10 @@ TEST(ConsistencyWarnings, AreNoneAboutWhatIsNotKnown) {
 
 TEST(ConsistencyFrames, AreFewerOfLargeImagesButNotTooFew) {
   const auto frames_of = [](int width_px, int height_px) {
-    CameraModel camera;
-    camera.width_px = width_px;
-    camera.height_px = height_px;
-    return consistency_frames(camera);
+    CameraModel resized = camera;
+    resized.width_px = width_px;
+    resized.height_px = height_px;
+    return consistency_frames(resized);
   };
   EXPECT_EQ(frames_of(176, 144), 60);
   EXPECT_EQ(frames_of(500, 400), 30);

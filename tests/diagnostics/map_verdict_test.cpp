@@ -14,7 +14,13 @@ constexpr double voxel_m = 0.04;
 
 /// What is known of a map of 100 frames, all of them registered, where the truth is not known and
 /// there are no warnings.
-MapEvidence good_evidence() { return {.frames = 100, .registered = 100, .voxel_m = voxel_m}; }
+MapEvidence good_evidence() {
+  MapEvidence evidence;
+  evidence.frames = 100;
+  evidence.registered = 100;
+  evidence.voxel_m = voxel_m;
+  return evidence;
+}
 
 Verdict verdict_on(const MapEvidence& evidence) { return judge(evidence).verdict; }
 

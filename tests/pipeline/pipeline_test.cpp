@@ -252,8 +252,7 @@ TEST(MapRun, GoesOnToTheSameBitsAfterItWasPutAside) {
 
   EXPECT_FALSE(resumed.interrupted);
   ASSERT_EQ(resumed.frames.size(), at_once.frames.size());
-  EXPECT_EQ(resumed.frames[3].tracking.registration.covariance,
-            at_once.frames[3].tracking.registration.covariance);
+  EXPECT_EQ(resumed.frames[3].tracking.pose_covariance, at_once.frames[3].tracking.pose_covariance);
   ASSERT_EQ(resumed.trajectory.size(), at_once.trajectory.size());
   EXPECT_EQ(resumed.trajectory.back().world_from_camera.matrix(),
             at_once.trajectory.back().world_from_camera.matrix());

@@ -130,7 +130,7 @@ double largest_error_m(const TwoWalls& walls, const RangeImage& image) {
 
 UnwrapOptions jump_options() {
   UnwrapOptions options;
-  options.method = "jump";
+  options.method = UnwrapMethod::jump;
   return options;
 }
 
@@ -151,7 +151,7 @@ TEST(JumpMethod, TellsTheAbsoluteCountOfASceneBeyondOneWavelength) {
 
 UnwrapOptions paper_options() {
   UnwrapOptions options;
-  options.method = "paper";
+  options.method = UnwrapMethod::paper;
   return options;
 }
 
@@ -217,7 +217,7 @@ TEST(Unwrapping, OfAMeasuredFrameDoesNotDependOnTheFramesBefore) {
   }
   for (const char* method : {"joint", "jump", "paper", "single"}) {
     UnwrapOptions options;
-    options.method = method;
+    options.method = *find_named<UnwrapMethod>(method);
     FrameMeasurer measurer(near.sensor, options);
     Unwrapper unwrapper(near.sensor, options);
     for (const TwoWalls* walls : {&near, &far, &small, &near, &near}) {
@@ -236,7 +236,7 @@ TEST(Unwrapping, OfTheSameFramesInTheSameOrderGivesTheSameBits) {
   const TwoWalls far = two_walls(18, 7);
   for (const char* method : {"joint", "jump", "paper", "single", "pixel", "none"}) {
     UnwrapOptions options;
-    options.method = method;
+    options.method = *find_named<UnwrapMethod>(method);
     Unwrapper one(near.sensor, options);
     Unwrapper other(near.sensor, options);
     FrameMeasurer measurer(near.sensor, options);
@@ -281,7 +281,7 @@ TEST(Unwrapping, TakesImagesOfAnyShape) {
     }
     for (const char* method : {"none", "pixel", "single", "paper", "jump", "joint"}) {
       UnwrapOptions options;
-      options.method = method;
+      options.method = *find_named<UnwrapMethod>(method);
       const RangeImage image = unwrap(walls.frame, walls.sensor, options).image;
       EXPECT_EQ(image.count_valid(), rows * cols) << method;
       const bool knows_count = method == std::string("pixel") || method == std::string("jump") ||
@@ -297,7 +297,7 @@ TEST(Unwrapping, OfAnImageWithoutAnyReturnIsEmpty) {
   walls.frame.phase_a.setConstant(NAN);
   for (const char* method : {"none", "pixel", "single", "paper", "jump", "joint"}) {
     UnwrapOptions options;
-    options.method = method;
+    options.method = *find_named<UnwrapMethod>(method);
     EXPECT_EQ(unwrap(walls.frame, walls.sensor, options).image.count_valid(), 0) << method;
   }
 }

@@ -111,7 +111,7 @@ TEST_P(JointAt, UnwrapsAFlat) {
   simulation.frequency_b_hz = GetParam().frequency_b_hz;
   const Tally joint = unwrap_scene("flat", simulation);
   UnwrapOptions pixel;
-  pixel.method = "pixel";
+  pixel.method = UnwrapMethod::pixel;
   // Mixed pixels, whose truth is that of one of two surfaces, are 0.2 % here.
   EXPECT_LT(joint.wrong_percent(), 0.5);
   EXPECT_LT(joint.wrong_percent(), 0.6 * unwrap_scene("flat", simulation, pixel).wrong_percent());
@@ -121,7 +121,7 @@ TEST(Joint, UnwrapsACorridorOfSeveralWrapsWhereverItMayEnd) {
   SimulatorOptions simulation;
   const Tally joint = unwrap_scene("corridor", simulation);
   UnwrapOptions jump;
-  jump.method = "jump";
+  jump.method = UnwrapMethod::jump;
   EXPECT_LT(joint.wrong_percent(), 0.3);
   EXPECT_LT(joint.wrong_percent(), unwrap_scene("corridor", simulation, jump).wrong_percent());
   EXPECT_LT(joint.sure_and_wrong_percent(), 0.02);
@@ -175,7 +175,7 @@ TEST(Joint, UnwrapsWhereOnlyNeighbourhoodsCarryInformation) {
   UnwrapOptions pixels_alone;
   pixels_alone.scales = 1;
   UnwrapOptions jump;
-  jump.method = "jump";
+  jump.method = UnwrapMethod::jump;
   EXPECT_LT(percent, 3);
   EXPECT_LT(percent, 0.7 * unwrap_scene("flat", simulation, pixels_alone).wrong_percent());
   EXPECT_LT(percent, 0.5 * unwrap_scene("flat", simulation, jump).wrong_percent());

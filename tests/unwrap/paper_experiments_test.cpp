@@ -31,7 +31,7 @@ Outcome unwrap_scene(const char* scene, const char* method, int index = 5,
   const Simulator simulator(make_scene(scene), simulation);
   const SimulatedFrame simulated = simulator.simulate(index);
   UnwrapOptions options;
-  options.method = method;
+  options.method = *find_named<UnwrapMethod>(method);
   Outcome outcome;
   outcome.result = unwrap(simulated.frame, simulator.sensor(), options);
   const double half_wavelength_m = simulator.sensor().modulation.wavelength_a_m() / 2;
@@ -53,7 +53,7 @@ constexpr double nearly_none_percent = 1.5;
 
 /// "In the two experiments belief propagation converged in less than 5 iterations."
 void expect_convergence_as_in_the_paper(const Outcome& outcome) {
-  EXPECT_TRUE(outcome.result.converged);
+  EXPECT_EQ(outcome.result.converged, true);
   EXPECT_EQ(outcome.result.curl_violations, 0);
   EXPECT_LT(outcome.result.iterations, 5);
 }
@@ -99,14 +99,14 @@ TEST_P(Convergence, IsReachedInTheShareOfFramesThatTheDocumentationStates) {
   const int total = *simulator.frame_count();
   const auto share_percent = [&](const char* method) {
     UnwrapOptions options;
-    options.method = method;
+    options.method = *find_named<UnwrapMethod>(method);
     Unwrapper unwrapper(simulator.sensor(), options);
     int converged = 0;
     for (int i = 0; i < frames; ++i) {
       const UnwrapResult result =
           unwrapper.unwrap(simulator.simulate((2 * i + 1) * total / (2 * frames)).frame);
       EXPECT_EQ(result.converged, result.curl_violations == 0);
-      converged += result.converged ? 1 : 0;
+      converged += *result.converged ? 1 : 0;
     }
     return 100.0 * converged / frames;
   };
@@ -133,12 +133,12 @@ JumpShares jump_shares(const char* method) {
   const Simulator simulator(make_scene("slope"), without_mixed_pixels());
   const SimulatedFrame simulated = simulator.simulate(5);
   UnwrapOptions options;
-  options.method = method;
+  options.method = *find_named<UnwrapMethod>(method);
   const DualFrequencyFrame& frame = simulated.frame;
   JumpEstimator estimator;
   const JumpEstimate& jumps = estimator.estimate(
       frame, PhaseSigma(frame, estimate_phase_noise(frame)), unwrap_limits(simulator.sensor(), 0),
-      jump_method(unwrap_method(options)), options);
+      jump_method(options.method), options);
   const auto configurations = most_likely_configurations(jumps.beliefs.marginals);
   const auto wavelength_m = static_cast<float>(simulator.sensor().modulation.wavelength_a_m());
   const ImageF count = (simulated.range_truth_m / wavelength_m - frame.phase_a).round();

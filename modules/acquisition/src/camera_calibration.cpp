@@ -12,6 +12,8 @@
 #include <set>
 #include <sstream>
 
+#include <fmt/format.h>
+
 #include <tofmap/core/text.hpp>
 
 namespace tofmap {
@@ -139,8 +141,8 @@ std::string size_text(int width_px, int height_px) {
 }
 
 std::string frequencies_text(const Modulation& modulation) {
-  return formatted("%.9g and %.9g MHz", modulation.frequency_a_hz / 1e6,
-                   modulation.frequency_b_hz / 1e6);
+  return fmt::format("{:.9g} and {:.9g} MHz", modulation.frequency_a_hz / 1e6,
+                     modulation.frequency_b_hz / 1e6);
 }
 
 [[noreturn]] void refuse_other_camera(const std::string& calibrated, const std::string& recorded) {

@@ -65,6 +65,7 @@ std::string OptionTable::Entry::allowed() const {
   if (std::holds_alternative<std::string*>(value)) {
     return choices.empty() ? "any text" : choices;
   }
+  if (const auto* one_of = std::get_if<EnumReference>(&value)) return one_of->choices;
   const bool whole = std::holds_alternative<int*>(value);
   return (whole ? "whole number, " : "") + range_text(min, max);
 }
@@ -73,6 +74,7 @@ std::string OptionTable::Entry::text() const {
   if (const auto* flag = std::get_if<bool*>(&value)) return **flag ? "true" : "false";
   if (const auto* whole = std::get_if<int*>(&value)) return std::to_string(**whole);
   if (const auto* number = std::get_if<double*>(&value)) return number_text(**number);
+  if (const auto* one_of = std::get_if<EnumReference>(&value)) return std::string(one_of->name());
   return YAML::Dump(YAML::Node(*std::get<std::string*>(value)));
 }
 
@@ -93,6 +95,8 @@ void OptionTable::Entry::set(const std::string& value_text) {
     const auto parsed = parse_number<double>(value_text);
     if (!parsed || !std::isfinite(*parsed) || *parsed < min || *parsed > max) refuse();
     **number = *parsed;
+  } else if (auto* one_of = std::get_if<EnumReference>(&value)) {
+    if (!one_of->set(value_text)) refuse();
   } else {
     if (!choices.empty() && !is_choice(value_text, choices)) refuse();
     *std::get<std::string*>(value) = value_text;

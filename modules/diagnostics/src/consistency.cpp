@@ -9,6 +9,7 @@
 #include <limits>
 
 #include <Eigen/Eigenvalues>
+#include <fmt/format.h>
 #include <pcl/kdtree/impl/kdtree_flann.hpp>
 #include <pcl/kdtree/kdtree_flann.h>
 
@@ -240,16 +241,16 @@ std::vector<std::string> warnings_about(const Consistency& consistency) {
   constexpr double most_misfit_percent = 10;
   std::vector<std::string> warnings;
   if (consistency.contradicted_percent > most_contradicted_percent) {
-    warnings.push_back(formatted(
-        "frames contradict each other in %.1f %% of what they both see: ranges or path are wrong",
+    warnings.push_back(fmt::format(
+        "frames contradict each other in {:.1f} % of what they both see: ranges or path are wrong",
         consistency.contradicted_percent));
   }
   if (consistency.residual_misfit_percent > most_misfit_percent) {
     warnings.push_back(
-        formatted("%.0f %% of the pixels would fit both frequencies better with another "
-                  "wrap count: wraps are wrong, or the frequencies' offsets differ "
-                  "('tofmap info' tells)",
-                  consistency.residual_misfit_percent));
+        fmt::format("{:.0f} % of the pixels would fit both frequencies better with another "
+                    "wrap count: wraps are wrong, or the frequencies' offsets differ "
+                    "('tofmap info' tells)",
+                    consistency.residual_misfit_percent));
   }
   return warnings;
 }

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include <tofmap/core/median.hpp>
 #include <tofmap/core/text.hpp>
 
@@ -64,44 +66,45 @@ std::vector<std::string> remarks_about(const ErrorSurvey& survey) {
     const double periodic_m = survey.camera.periodic_rms_m;
     const double per_decade_m = survey.camera.per_decade_m();
     if (std::abs(offset_m) >= least_offset_m) {
-      remarks.push_back(
-          formatted("offset between the frequencies: A measures %.0f mm %s than B; allowed for in "
-                    "unwrapping, "
-                    "but ranges keep the error of A or B: 'tofmap calibrate' against known ranges "
-                    "tells which",
-                    millimetres(std::abs(offset_m)), offset_m < 0 ? "less" : "more"));
+      remarks.push_back(fmt::format(
+          "offset between the frequencies: A measures {:.0f} mm {} than B; allowed for in "
+          "unwrapping, "
+          "but ranges keep the error of A or B: 'tofmap calibrate' against known ranges "
+          "tells which",
+          millimetres(std::abs(offset_m)), offset_m < 0 ? "less" : "more"));
     }
     if (periodic_m >= least_periodic_m) {
-      remarks.push_back(formatted(
-          "the frequencies disagree periodically, by %.0f mm (RMS); allowed for in unwrapping",
+      remarks.push_back(fmt::format(
+          "the frequencies disagree periodically, by {:.0f} mm (RMS); allowed for in unwrapping",
           millimetres(periodic_m)));
     }
     if (std::abs(per_decade_m) >= least_per_decade_m) {
-      remarks.push_back(
-          formatted("A measures %.0f mm %s than B for every factor of ten in amplitude; allowed "
-                    "for in unwrapping",
-                    millimetres(std::abs(per_decade_m)), per_decade_m < 0 ? "less" : "more"));
+      remarks.push_back(fmt::format(
+          "A measures {:.0f} mm {} than B for every factor of ten in amplitude; allowed "
+          "for in unwrapping",
+          millimetres(std::abs(per_decade_m)), per_decade_m < 0 ? "less" : "more"));
     }
     if (survey.camera.systematic_m >= least_systematic_m) {
-      remarks.push_back(formatted(
-          "the frequencies disagree by %.0f mm (RMS) beyond noise, offset and periodic errors; "
+      remarks.push_back(fmt::format(
+          "the frequencies disagree by {:.0f} mm (RMS) beyond noise, offset and periodic errors; "
           "wrap counts are taken for less sure by as much",
           millimetres(survey.camera.systematic_m)));
     }
   }
   if (survey.flow_px >= least_flow_px) {
-    remarks.push_back(formatted(
-        "the image moves by %.1f pixels (median) from A's exposure to B's; B is brought back "
+    remarks.push_back(fmt::format(
+        "the image moves by {:.1f} pixels (median) from A's exposure to B's; B is brought back "
         "to where A was exposed",
         survey.flow_px));
   }
   if (survey.ambient_share >= least_ambient_share) {
     const char* compared =
         survey.has_amplitudes ? "as their amplitudes say, as under ambient light" : "as the others";
-    remarks.push_back(formatted(
-        "%.0f %% of the pixels are at least %.1f times as noisy %s; taken into account where they "
-        "are",
-        100 * survey.ambient_share, survey.ambient_factor, compared));
+    remarks.push_back(
+        fmt::format("{:.0f} % of the pixels are at least {:.1f} times as noisy {}; taken into "
+                    "account where they "
+                    "are",
+                    100 * survey.ambient_share, survey.ambient_factor, compared));
   }
   return remarks;
 }
@@ -111,11 +114,11 @@ std::vector<std::string> warnings_about(const ErrorSurvey& survey) {
   constexpr double most_periodic_m = 0.01;
   const double periodic_m = survey.camera.periodic_rms_m;
   if (survey.camera.frames == 0 || periodic_m < most_periodic_m) return {};
-  return {
-      formatted("ranges have a periodic error of about %.0f mm, and the map is wrong by as much "
-                "or more; 'tofmap calibrate' finds it. If a calibration is in use, it does not "
-                "fit this recording",
-                millimetres(periodic_m))};
+  return {fmt::format(
+      "ranges have a periodic error of about {:.0f} mm, and the map is wrong by as much "
+      "or more; 'tofmap calibrate' finds it. If a calibration is in use, it does not "
+      "fit this recording",
+      millimetres(periodic_m))};
 }
 
 }  // namespace tofmap

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include <tofmap/core/text.hpp>
 
 namespace tofmap {
@@ -24,7 +26,7 @@ Judgement judge(const MapEvidence& evidence) {
   if (registered_percent < nearly_all_percent) {
     hold_against(
         registered_percent < half_percent ? Verdict::bad : Verdict::doubtful,
-        formatted("%.0f %% of the frames could not be registered", 100 - registered_percent));
+        fmt::format("{:.0f} % of the frames could not be registered", 100 - registered_percent));
   }
   const Verdict of_surface = evidence.accuracy_m
                                  ? verdict_on_accuracy(*evidence.accuracy_m, evidence.voxel_m)
@@ -36,7 +38,7 @@ Judgement judge(const MapEvidence& evidence) {
   if (degenerate_percent > some_percent) {
     hold_against(
         Verdict::doubtful,
-        formatted("in %.0f %% of the frames no surface held a direction", degenerate_percent));
+        fmt::format("in {:.0f} % of the frames no surface held a direction", degenerate_percent));
   }
   if (!evidence.is_seen_twice) hold_against(Verdict::doubtful, "no place was seen by two frames");
   if (evidence.is_interrupted) hold_against(Verdict::doubtful, "the run was interrupted");

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <tofmap/core/median.hpp>
 #include <tofmap/core/text.hpp>
 #include <tofmap/diagnostics/axial_depth.hpp>
@@ -94,25 +96,25 @@ void warn_of_returns(const RecordingSurvey& survey, std::vector<std::string>& wa
                        " without any return; was the camera covered?");
   } else if (survey.no_return_share > most_without_return) {
     warnings.push_back(
-        formatted("%.0f %% of the pixels have no return; is the exposure too short, or the "
-                  "scene out of reach?",
-                  100 * survey.no_return_share));
+        fmt::format("{:.0f} % of the pixels have no return; is the exposure too short, or the "
+                    "scene out of reach?",
+                    100 * survey.no_return_share));
   }
   constexpr double most_saturated = 0.05;
   if (survey.saturated_share > most_saturated) {
     warnings.push_back(
-        formatted("%.0f %% of the pixels are saturated, and left out; a shorter exposure "
-                  "would keep them",
-                  100 * survey.saturated_share));
+        fmt::format("{:.0f} % of the pixels are saturated, and left out; a shorter exposure "
+                    "would keep them",
+                    100 * survey.saturated_share));
   }
 }
 
 void warn_of_images(const RecordingSurvey& survey, std::vector<std::string>& warnings) {
   if (!survey.constant_images.empty()) {
     warnings.push_back(
-        formatted("%zu images hold one phase everywhere, %s the first; they are no "
-                  "measurement",
-                  survey.constant_images.size(), survey.constant_images.front().c_str()));
+        fmt::format("{} images hold one phase everywhere, {} the first; they are no "
+                    "measurement",
+                    survey.constant_images.size(), survey.constant_images.front().c_str()));
   }
   if (const auto warning = repetition_warning(survey.repeated)) warnings.push_back(*warning);
   if (survey.repeated_single > 0) {
@@ -131,16 +133,17 @@ void warn_of_times(const RecordingSurvey& survey, std::vector<std::string>& warn
       survey.median_period_s > longest_period_s ||
       (survey.median_period_s > 0 && survey.median_period_s < shortest_period_s);
   if (is_none_of_a_camera) {
-    warnings.push_back(formatted("%.3g s from frame to frame; are the times in frames.txt seconds?",
-                                 survey.median_period_s));
+    warnings.push_back(
+        fmt::format("{:.3g} s from frame to frame; are the times in frames.txt seconds?",
+                    survey.median_period_s));
   }
   constexpr double most_periods = 5;
   if (survey.longest_gap_s > most_periods * survey.median_period_s) {
     warnings.push_back(
-        formatted("after frame %d nothing was recorded for %.2f s, %.0f frame periods; the "
-                  "camera may be lost there",
-                  survey.frame_before_gap, survey.longest_gap_s,
-                  survey.longest_gap_s / survey.median_period_s));
+        fmt::format("after frame {} nothing was recorded for {:.2f} s, {:.0f} frame periods; the "
+                    "camera may be lost there",
+                    survey.frame_before_gap, survey.longest_gap_s,
+                    survey.longest_gap_s / survey.median_period_s));
   }
 }
 

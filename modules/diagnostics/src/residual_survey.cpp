@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <tofmap/core/frequency_residual.hpp>
 #include <tofmap/core/median.hpp>
 #include <tofmap/core/modulation.hpp>
@@ -176,7 +178,7 @@ Agreement agreement(const std::vector<PhasePair>& pairs, const SensorModel& sens
 }
 
 std::string more_or_less(double offset_m) {
-  return formatted("%.0f mm %s", 1000 * std::abs(offset_m), offset_m < 0 ? "less" : "more");
+  return fmt::format("{:.0f} mm {}", 1000 * std::abs(offset_m), offset_m < 0 ? "less" : "more");
 }
 
 /// "133 mm more than B, or 200 mm less".
@@ -211,8 +213,8 @@ std::optional<ResidualSurvey> survey_residual(const std::vector<DualFrequencyFra
 std::optional<std::string> pairing_warning(const ResidualSurvey& residual) {
   constexpr double telling_ratio = 0.5;
   if (residual.swapped_spread_m < telling_ratio * residual.spread_m) {
-    return formatted(
-        "both frequencies agree within %.0f mm if they are swapped, and within %.0f mm as they "
+    return fmt::format(
+        "both frequencies agree within {:.0f} mm if they are swapped, and within {:.0f} mm as they "
         "are; are frequency_a_hz and frequency_b_hz mixed up, or the folders of A and B?",
         1000 * residual.swapped_spread_m, 1000 * residual.spread_m);
   }
@@ -220,8 +222,8 @@ std::optional<std::string> pairing_warning(const ResidualSurvey& residual) {
   // are known to be short.
   constexpr double no_agreement = 0.3;
   if (residual.spread_m > no_agreement * residual.ambiguity_m) {
-    return formatted(
-        "A and B agree within %.0f mm only, no better than images of different places: are "
+    return fmt::format(
+        "A and B agree within {:.0f} mm only, no better than images of different places: are "
         "their folders or files mixed up, does device.layout fit the device, or is there "
         "nothing but noise?",
         1000 * residual.spread_m);
@@ -253,9 +255,9 @@ std::optional<std::string> frequency_pair_warning(const Modulation& modulation) 
   constexpr double least_wavelengths = 1.5;
   const double combined_m = combined_range_m(modulation);
   if (combined_m >= least_wavelengths * modulation.wavelength_a_m()) return std::nullopt;
-  return formatted(
-      "this pair of frequencies tells no wrap counts apart: it is unambiguous up to %.2f m, one "
-      "frequency alone up to %.2f m; are frequency_a_hz and frequency_b_hz right?",
+  return fmt::format(
+      "this pair of frequencies tells no wrap counts apart: it is unambiguous up to {:.2f} m, one "
+      "frequency alone up to {:.2f} m; are frequency_a_hz and frequency_b_hz right?",
       combined_m, modulation.wavelength_a_m());
 }
 

@@ -87,7 +87,8 @@ ErrorsOverRange over_range(std::span<const UnwrappingRecord> frames) {
 MethodResult run_down_to_map(const MethodRun& run, const SequenceReader& recording,
                              const RecordedTruth& recorded, const Truth& truth) {
   MethodResult result;
-  result.name = run.method;
+  result.method = run.method;
+  result.name = name_of(run.method);
   PipelineOptions options = run.options;
   options.unwrap.method = run.method;
   SequenceReader source(recording.folder(), recording.calibration());
@@ -104,7 +105,7 @@ MethodResult run_down_to_map(const MethodRun& run, const SequenceReader& recordi
   refuse_mostly_damaged(*result.map);
   result.interrupted = result.map->interrupted;
   if (result.interrupted) return result;
-  result.consistency = consistency_of(*result.map, sample, sensor, unwrap_method(options.unwrap));
+  result.consistency = consistency_of(*result.map, sample, sensor, options.unwrap.method);
   sample.thin_out(run.sample_frames);
   result.sample = sample.frames();
   result.scores = score_of(*result.map, truth);
@@ -114,7 +115,8 @@ MethodResult run_down_to_map(const MethodRun& run, const SequenceReader& recordi
 MethodResult run_unwrapping(const MethodRun& run, const SequenceReader& recording,
                             const RecordedTruth& recorded) {
   MethodResult result;
-  result.name = run.method;
+  result.method = run.method;
+  result.name = name_of(run.method);
   PipelineOptions options = run.options;
   options.unwrap.method = run.method;
   const PipelineOptions unfiltered = without_filters(options);

@@ -139,16 +139,17 @@ bool is_verified(const RegistrationResult& result, const LoopOptions& options) {
          result.inlier_ratio >= options.min_inlier_ratio && result.degenerate_directions == 0;
 }
 
-PoseEdge edge_of(const Keyframe& from, int to, const RegistrationResult& registration) {
+PoseEdge edge_of(const Keyframe& from, int to, const Pose& world_from_camera,
+                 const Eigen::Matrix<double, 6, 6>& covariance) {
   PoseEdge edge;
   edge.from = from.id;
   edge.to = to;
-  edge.from_from_to = from.world_from_camera.inverse() * registration.world_from_camera;
+  edge.from_from_to = from.world_from_camera.inverse() * world_from_camera;
   // Registration's twist is along the world's axes.
   Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
   turn.topLeftCorner<3, 3>() = from.world_from_camera.linear().transpose();
   turn.bottomRightCorner<3, 3>() = turn.topLeftCorner<3, 3>();
-  edge.covariance = turn * registration.covariance * turn.transpose();
+  edge.covariance = turn * covariance * turn.transpose();
   widen(edge, shared_sigma_rad, shared_sigma_m);
   return edge;
 }
@@ -192,7 +193,8 @@ LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyf
     candidate = *alike;
   }
   const Keyframe& from = keyframes[static_cast<std::size_t>(candidate.from)];
-  candidate.edge = edge_of(from, keyframe.id, candidate.registration);
+  candidate.edge = edge_of(from, keyframe.id, candidate.registration.world_from_camera,
+                           candidate.registration.covariance);
   candidate.edge->may_be_wrong = true;
   return candidate;
 }

@@ -118,7 +118,7 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
     const double periods = std::max(1.0, periods_since_registered(timestamp_s));
     uncertainty_.learn(static_cast<int>(std::lround(periods)),
                        result.registration.surface_information);
-    result.registration.covariance = uncertainty_.of_pose();
+    result.pose_covariance = uncertainty_.of_pose();
     accept({timestamp_s, result.world_from_camera});
   }
   return result;

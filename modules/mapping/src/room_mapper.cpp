@@ -211,7 +211,8 @@ void RoomMapper::add_keyframe(const NewFrame& frame, std::span<const Keyframe* c
   // Targets are registered against together: each edge says its share of what all of them say.
   const auto shares = static_cast<double>(result.targets.size());
   for (const int target : result.targets) {
-    PoseEdge edge = edge_of(keyframes_[target], id, result.registration);
+    PoseEdge edge =
+        edge_of(keyframes_[target], id, result.world_from_camera, result.pose_covariance);
     edge.covariance *= shares;
     edges_.push_back(edge);
     keyframes_.tie(target, id);

@@ -143,7 +143,7 @@ MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options) {
           .degenerate = map.degenerate(),
           .is_empty = map.surface.empty(),
           .is_interrupted = map.interrupted,
-          .is_unwrapped = options.unwrap.method != "none",
+          .is_unwrapped = options.unwrap.method != UnwrapMethod::none,
           .accuracy_m = std::nullopt,
           .voxel_m = options.map.voxel_m};
 }
@@ -182,7 +182,7 @@ PreparedFrame prepare_ranges(TimedMeasurement measured, Unwrapper& unwrapper,
                          options.filters);
   });
   // Without unwrapping, registration must not learn from the confidence which ranges are wrapped.
-  if (options.unwrap.method == "none") out.filtered.image.confidence.setOnes();
+  if (options.unwrap.method == UnwrapMethod::none) out.filtered.image.confidence.setOnes();
   return out;
 }
 

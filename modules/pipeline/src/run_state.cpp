@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* file_name = "state.bin";
 // The number after the comma is raised whenever what is stored changes between releases.
-constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 5";
+constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 6";
 
 /// What a run must have in common with the one it goes on from, a fact a line.
 std::vector<std::string> identity(const SensorModel& sensor, PipelineOptions options) {

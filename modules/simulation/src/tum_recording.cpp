@@ -121,13 +121,19 @@ constexpr std::string_view used_options[] = {"frequency_a_hz",
                                              "seed"};
 
 /// An option that is set would otherwise be silently without effect.
-void refuse_unused(const SimulatorOptions& options) {
-  const SimulatorOptions defaults;
-  for (const OptionField<SimulatorOptions>& field : SimulatorOptions::fields()) {
-    const bool is_set =
-        std::visit([&](auto member) { return options.*member != defaults.*member; }, field.member);
-    if (!is_set || std::ranges::find(used_options, field.name) != std::end(used_options)) continue;
-    throw UsageError("simulator." + std::string(field.name) +
+void refuse_unused(SimulatorOptions options) {
+  SimulatorOptions defaults;
+  OptionTable given;
+  OptionTable unset;
+  given.bind("simulator", options);
+  unset.bind("simulator", defaults);
+  const std::vector<OptionText> given_texts = given.texts();
+  const std::vector<OptionText> unset_texts = unset.texts();
+  for (std::size_t i = 0; i < given_texts.size(); ++i) {
+    const OptionText& option = given_texts[i];
+    const bool is_used = std::ranges::find(used_options, option.name) != std::end(used_options);
+    if (is_used || option.value == unset_texts[i].value) continue;
+    throw UsageError(option.key() +
                      " needs a scene, and has no effect on recorded depth; leave it out");
   }
 }

@@ -28,7 +28,7 @@ ImageU8 wrapped_counts(const ImageU8& valid) {
 
 Unwrapper::Unwrapper(const SensorModel& sensor, const UnwrapOptions& options)
     : options_(options),
-      method_(unwrap_method(options)),
+      method_(options.method),
       limits_(unwrap_limits(sensor, options.max_range_m)),
       measurer_(sensor, options) {}
 

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <set>
 
+#include <fmt/format.h>
+
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/text.hpp>
 
@@ -118,8 +120,8 @@ std::string remark_on(const StagedFrame& frame) {
   const int kept = frame.filtered.count_valid();
   const double whole = std::max(1, valid) / 100.0;
   return counted(static_cast<std::size_t>(valid), "pixel") +
-         formatted(" with a range; unwrapping moved %.1f %% of them, filters removed %.1f %%.",
-                   wrapped / whole, (valid - kept) / whole);
+         fmt::format(" with a range; unwrapping moved {:.1f} % of them, filters removed {:.1f} %.",
+                     wrapped / whole, (valid - kept) / whole);
 }
 
 std::vector<PageFigure> legends_of(const Scales& scales) {

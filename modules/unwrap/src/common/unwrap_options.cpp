@@ -5,31 +5,21 @@
 
 #include <array>
 
-#include <tofmap/core/error.hpp>
-#include <tofmap/core/text.hpp>
-
 namespace tofmap {
 namespace {
 
-struct NamedMethod {
-  std::string_view name;
-  UnwrapMethod method;
-};
-
-constexpr std::array<NamedMethod, 6> methods{{{"joint", UnwrapMethod::joint},
-                                              {"jump", UnwrapMethod::jump},
-                                              {"paper", UnwrapMethod::paper},
-                                              {"single", UnwrapMethod::single},
-                                              {"pixel", UnwrapMethod::pixel},
-                                              {"none", UnwrapMethod::none}}};
+using Method = NamedValue<UnwrapMethod>;
+constexpr std::array methods{
+    Method{"joint", UnwrapMethod::joint}, Method{"jump", UnwrapMethod::jump},
+    Method{"paper", UnwrapMethod::paper}, Method{"single", UnwrapMethod::single},
+    Method{"pixel", UnwrapMethod::pixel}, Method{"none", UnwrapMethod::none}};
 
 }  // namespace
 
 std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
-  static const std::string method_choices = unwrap_method_names(" | ");
   using O = UnwrapOptions;
   return {
-      {"method", &O::method, 0, 0, "", "how wraps are found", method_choices},
+      {"method", &O::method, 0, 0, "", "how wraps are found"},
       {"max_range_m", &O::max_range_m, 0, 100000, "m",
        "farthest range that the scene can hold; 0: the recording's, else what the pair can tell "
        "apart; paper has two counts, whatever it is"},
@@ -72,32 +62,11 @@ std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
   };
 }
 
-std::vector<std::string> unwrap_methods() {
-  std::vector<std::string> names;
-  for (const NamedMethod& named : methods) names.emplace_back(named.name);
-  return names;
-}
-
-std::string unwrap_method_names(const std::string& separator) {
-  return joined(unwrap_methods(), separator);
-}
+std::span<const NamedValue<UnwrapMethod>> named_values(UnwrapMethod) { return methods; }
 
 bool finds_jumps(UnwrapMethod method) {
   return method == UnwrapMethod::paper || method == UnwrapMethod::jump ||
          method == UnwrapMethod::single;
-}
-
-std::optional<UnwrapMethod> find_unwrap_method(std::string_view name) {
-  for (const NamedMethod& named : methods) {
-    if (name == named.name) return named.method;
-  }
-  return std::nullopt;
-}
-
-UnwrapMethod unwrap_method(const UnwrapOptions& options) {
-  if (const auto method = find_unwrap_method(options.method)) return *method;
-  throw UsageError("option unwrap.method: '" + options.method +
-                   "' is not allowed; allowed: " + unwrap_method_names(" | "));
 }
 
 }  // namespace tofmap

@@ -97,7 +97,7 @@ void match_exposures(ErrorTracker& tracker, const UnwrapLimits& limits, Measured
 FrameMeasurer::FrameMeasurer(const SensorModel& sensor, const UnwrapOptions& options)
     : limits_(unwrap_limits(sensor, options.max_range_m)),
       saturation_amplitude_(sensor.saturation_amplitude) {
-  const UnwrapMethod method = unwrap_method(options);
+  const UnwrapMethod method = options.method;
   const bool compares_frequencies = method == UnwrapMethod::joint || method == UnwrapMethod::jump;
   if (compares_frequencies && options.systematic_errors) {
     tracker_.emplace(limits_, options.correct_exposure ? sensor.camera : CameraModel());

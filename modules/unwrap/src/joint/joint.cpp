@@ -53,7 +53,6 @@ UnwrapResult unwrap_jointly(WrapCountEstimator& estimator, const MeasuredFrame& 
   }
   drop_ambiguous(beliefs, limits, result.image);
   result.iterations = beliefs.iterations;
-  result.largest_message_change = beliefs.largest_message_change;
   return result;
 }
 

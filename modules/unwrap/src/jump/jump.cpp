@@ -69,7 +69,6 @@ UnwrapResult unwrap_by_jumps(JumpEstimator& estimator, const MeasuredFrame& fram
   result.iterations = jumps.beliefs.iterations;
   result.curl_violations = jumps.beliefs.curl_violations;
   result.converged = jumps.beliefs.converged;
-  result.largest_message_change = jumps.beliefs.largest_message_change;
   result.regions = found.regions;
   return result;
 }

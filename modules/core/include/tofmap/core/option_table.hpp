@@ -3,13 +3,50 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
+#include <tofmap/core/named_value.hpp>
+
 namespace tofmap {
+
+/// A bound option whose value is one of an enumeration.
+struct EnumReference {
+  std::function<std::string_view()> name;          ///< of the present value
+  std::function<bool(std::string_view name)> set;  ///< false if no value has that name
+  std::string choices;                             ///< "a | b | c"
+};
+
+/// A member of a struct whose type is an enumeration with named values (named_value.hpp).
+template <class Struct>
+class EnumMember {
+ public:
+  template <class Enum>
+  requires std::is_enum_v<Enum> EnumMember(
+      Enum Struct::*member)  // NOLINT(google-explicit-constructor): stands in field tables
+      : bind_([member](Struct& options) {
+          Enum* value = &(options.*member);
+          return EnumReference{.name = [value] { return name_of(*value); },
+                               .set =
+                                   [value](std::string_view name) {
+                                     const std::optional<Enum> found = find_named<Enum>(name);
+                                     if (found) *value = *found;
+                                     return found.has_value();
+                                   },
+                               .choices = all_names<Enum>(" | ")};
+        }) {}
+
+  EnumReference bind(Struct& options) const { return bind_(options); }
+
+ private:
+  std::function<EnumReference(Struct&)> bind_;
+};
 
 /// One row of an options struct's field table: the single place where the name, allowed
 /// values, unit and meaning of an option are written. YAML, command line, checks, printed
@@ -20,7 +57,9 @@ namespace tofmap {
 template <class Struct>
 struct OptionField {
   std::string_view name;
-  std::variant<bool Struct::*, int Struct::*, double Struct::*, std::string Struct::*> member;
+  std::variant<bool Struct::*, int Struct::*, double Struct::*, std::string Struct::*,
+               EnumMember<Struct>>
+      member;
   double min = -std::numeric_limits<double>::infinity();  ///< numbers only
   double max = std::numeric_limits<double>::infinity();   ///< numbers only
   std::string_view unit;                                  ///< empty if it has none
@@ -64,7 +103,15 @@ class OptionTable {
       entry.unit = field.unit;
       entry.meaning = field.meaning;
       entry.choices = field.choices;
-      std::visit([&](auto member) { entry.value = &(options.*member); }, field.member);
+      std::visit(
+          [&](const auto& member) {
+            if constexpr (std::is_member_pointer_v<std::decay_t<decltype(member)>>) {
+              entry.value = &(options.*member);
+            } else {
+              entry.value = member.bind(options);
+            }
+          },
+          field.member);
       add(std::move(entry));
     }
   }
@@ -95,7 +142,7 @@ class OptionTable {
     std::string unit;
     std::string meaning;
     std::string choices;
-    std::variant<bool*, int*, double*, std::string*> value;
+    std::variant<bool*, int*, double*, std::string*, EnumReference> value;
 
     std::string key() const { return group.empty() ? name : group + "." + name; }
     std::string allowed() const;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdio>
 #include <string>
 #include <string_view>
 
@@ -17,14 +16,6 @@ std::string joined(const Words& words, std::string_view separator) {
     text += word;
   }
   return text;
-}
-
-/// As printf; longer texts are cut off.
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-  char buffer[512];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
 }
 
 /// The same text where it is valid UTF-8; each byte that is not, as in names of files of old

@@ -44,7 +44,7 @@ struct UnwrappingRecord {
   ErrorsOverRange over_range;       ///< empty if they are unknown
   double milliseconds = 0;
   int iterations = 0;
-  bool converged = false;
+  std::optional<bool> converged;  ///< UnwrapResult::converged
 };
 
 /// Throws UsageError if truth and image differ in size.
@@ -56,6 +56,7 @@ ErrorsOverRange over_range(std::span<const UnwrappingRecord> frames);
 
 /// What a method of unwrapping makes of a recording.
 struct MethodResult {
+  UnwrapMethod method = UnwrapMethod::joint;
   std::string name;                        ///< of the method
   std::vector<UnwrappingRecord> frames;    ///< frames that could be read and repeat none
   std::vector<SampledFrame> sample;        ///< some of them, spread evenly
@@ -67,7 +68,7 @@ struct MethodResult {
 
 /// How a method is run.
 struct MethodRun {
-  std::string method;
+  UnwrapMethod method = UnwrapMethod::joint;
   PipelineOptions options;  ///< `options.unwrap.method` is replaced by `method`
   int sample_frames = 0;    ///< size of MethodResult::sample
   /// Called before each batch of frames with the number of frames done. False ends the run. May be

@@ -67,7 +67,7 @@ void serialize(Archive& archive, tofmap::RegistrationResult& result, unsigned) {
 template <class Archive>
 void serialize(Archive& archive, tofmap::TrackingResult& result, unsigned) {
   archive& result.status& result.world_from_camera& result.is_keyframe& result.targets;
-  archive& result.registration;
+  archive& result.registration& result.pose_covariance;
 }
 
 }  // namespace boost::serialization

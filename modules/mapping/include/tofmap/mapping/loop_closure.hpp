@@ -77,6 +77,7 @@ bool is_verified(const RegistrationResult& result, const LoopOptions& options);
 
 /// The edge that a registration against `from` measures, with what registration cannot know of its
 /// own errors added to its covariance.
-PoseEdge edge_of(const Keyframe& from, int to, const RegistrationResult& registration);
+PoseEdge edge_of(const Keyframe& from, int to, const Pose& world_from_camera,
+                 const Eigen::Matrix<double, 6, 6>& covariance);
 
 }  // namespace tofmap

@@ -52,6 +52,11 @@ struct TrackingResult {
   bool is_keyframe = false;                   ///< it has become one (RoomMapper decides)
   std::vector<int> targets;  ///< ids of the keyframes it was registered against, best overlap first
   RegistrationResult registration;
+  /// Covariance of the error of world_from_camera, if the status is `tracked`: rotation vector in
+  /// radians, then translation in metres, along the axes of the world. It is that of a filter over
+  /// the frames so far (MotionUncertainty), and not registration.covariance, which takes the motion
+  /// prior of this frame for independent of the frames before it.
+  Eigen::Matrix<double, 6, 6> pose_covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
   bool registered() const {
     return status == TrackingStatus::first || status == TrackingStatus::tracked ||

@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
-#include <string>
-#include <string_view>
+#include <span>
 #include <vector>
 
 #include <tofmap/core/option_table.hpp>
@@ -21,17 +19,14 @@ enum class UnwrapMethod {
 };
 
 /// The names of all methods, the best first.
-std::vector<std::string> unwrap_methods();
-
-/// The same as a text, with `separator` between them.
-std::string unwrap_method_names(const std::string& separator);
+std::span<const NamedValue<UnwrapMethod>> named_values(UnwrapMethod);
 
 /// Whether the method goes by phase jumps: `paper`, `jump` and `single` do.
 bool finds_jumps(UnwrapMethod method);
 
 /// The options of unwrapping, group `unwrap`. docs/unwrapping.md has the effect of each.
 struct UnwrapOptions {
-  std::string method = "joint";
+  UnwrapMethod method = UnwrapMethod::joint;
   double max_range_m = 0;
   // Of joint.
   int count_iterations = 3;
@@ -54,11 +49,5 @@ struct UnwrapOptions {
 
   static std::vector<OptionField<UnwrapOptions>> fields();
 };
-
-/// The method of this name, if there is one.
-std::optional<UnwrapMethod> find_unwrap_method(std::string_view name);
-
-/// The method that the options name. Throws UsageError if there is none of that name.
-UnwrapMethod unwrap_method(const UnwrapOptions& options);
 
 }  // namespace tofmap
