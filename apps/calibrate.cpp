@@ -34,7 +34,7 @@ struct CalibrateArguments {
   CommonArguments common;
 };
 
-/// Where the ranges come from that measured ones are compared with.
+/// Where the reference ranges come from.
 enum class Reference : std::uint8_t { truth, wall, residual };
 
 Reference reference_of(const CalibrationOptions& options, const SequenceReader& source,
@@ -82,7 +82,7 @@ WallDistances wall_distances(const std::filesystem::path& file, const SequenceRe
                    " frames, counted from 0");
 }
 
-/// The ranges of a reference, frame by frame.
+/// The reference ranges of each frame.
 class ReferenceRanges {
  public:
   ReferenceRanges(Reference reference, const SequenceReader& source, const RecordedTruth& truth,
@@ -96,14 +96,15 @@ class ReferenceRanges {
     }
   }
 
-  /// Nothing if there is none for the frame.
+  /// The reference range of each pixel, metres. Empty if the frame has no reference.
   std::optional<ImageF> of(const DualFrequencyFrame& frame) {
     if (reference_ == Reference::truth) return truth_.range_m(frame.index);
     if (reference_ == Reference::residual) return unwrapper_.unwrap(frame).image.range_m;
     const auto distance = wall_distances_m_.find(frame.index);
     if (distance == wall_distances_m_.end()) return std::nullopt;
     auto range_m = wall_range(frame, source_.sensor(), distance->second);
-    if (!range_m) std::fprintf(stderr, "frame %d: no flat wall fills it; left out\n", frame.index);
+    if (!range_m)
+      std::fprintf(stderr, "frame %d: left out, since no flat wall fills the image\n", frame.index);
     return range_m;
   }
 
@@ -115,18 +116,19 @@ class ReferenceRanges {
   WallDistances wall_distances_m_;
 };
 
-/// Pixels of the frames that were looked at.
+/// Pixel samples of a recording, and how many of its frames could be used.
 struct CollectedSamples {
   std::vector<RangeSample> samples;
-  std::size_t frames = 0;
-  std::vector<DualFrequencyFrame> first;  ///< of the frames
-  int read = 0;
-  int damaged = 0;
-  std::string first_damage;
-  std::size_t repeated = 0;  ///< frames that say what the one before said, and were left out
+  std::size_t frames = 0;                 ///< number of frames that samples were taken from
+  std::vector<DualFrequencyFrame> first;  ///< the first few of these frames
+  int read = 0;                           ///< number of frames that were tried, damaged or not
+  int damaged = 0;                        ///< number of frames that could not be read
+  std::string first_damage;               ///< why the first of them could not be read
+  std::size_t repeated = 0;               ///< frames left out because they repeat the one before
 };
 
-/// As many as tell enough; fewer if the user ends it.
+/// Takes at most about two million samples, spread evenly over frames and pixels. Ends early if the
+/// user interrupts it.
 CollectedSamples collect_samples(const SequenceReader& source, ReferenceRanges& reference,
                                  int every_frame, bool quiet) {
   constexpr long most_samples = 2'000'000;
@@ -171,7 +173,7 @@ void print_error(const char* name, const PhaseError& error, double offset_sigma_
     parts.push_back(fmt::format("harmonic {} {:.1f} mm", harmonic.order,
                                 1000 * std::hypot(harmonic.cosine_m, harmonic.sine_m)));
   }
-  if (error.harmonics.empty()) parts.emplace_back("no wiggling above its uncertainty");
+  if (error.harmonics.empty()) parts.emplace_back("no periodic error above its uncertainty");
   std::printf("%s: %s\n", name, joined(parts, ", ").c_str());
 }
 
@@ -184,7 +186,7 @@ void print_samples(const CollectedSamples& collected, const SensorModel& sensor)
                 collected.first_damage.c_str());
   }
   if (collected.repeated > 0) {
-    std::printf("warning: %s repeated the one before, and told nothing\n",
+    std::printf("warning: %s left out for repeating the frame before\n",
                 counted(collected.repeated, "frame").c_str());
   }
   const std::optional<ResidualSurvey> residual = survey_residual(collected.first, sensor);
@@ -192,17 +194,17 @@ void print_samples(const CollectedSamples& collected, const SensorModel& sensor)
     print_warnings({*warning});
   constexpr std::size_t some = 5;
   if (collected.frames < some) {
-    std::printf("warning: in so few frames errors of single surfaces do not average out\n");
+    std::printf("warning: with so few frames, errors of single surfaces do not average out\n");
   }
 }
 
 void print_fit(const PhaseErrorFit& fit, Reference reference) {
   print_error("A", fit.error_a, fit.offset_sigma_a_m);
   print_error("B", fit.error_b, fit.offset_sigma_b_m);
-  std::printf("A measures %.1f mm %s than B (within %.1f mm)%s\n",
-              1000 * std::abs(fit.offset_m.value), fit.offset_m.value < 0 ? "less" : "more",
-              1000 * fit.offset_m.sigma,
-              reference == Reference::residual ? "; motion between both images is in it" : "");
+  std::printf(
+      "A measures %.1f mm %s than B (within %.1f mm)%s\n", 1000 * std::abs(fit.offset_m.value),
+      fit.offset_m.value < 0 ? "less" : "more", 1000 * fit.offset_m.sigma,
+      reference == Reference::residual ? "; this includes motion between the two exposures" : "");
 }
 
 PhaseErrorFit fit_samples(const std::vector<RangeSample>& samples, Reference reference,
@@ -214,14 +216,15 @@ PhaseErrorFit fit_samples(const std::vector<RangeSample>& samples, Reference ref
   });
 }
 
-/// Whether a file is a calibration that holds nothing that `calibrate` does not find.
+/// Whether a file is a calibration with nothing in it but what `calibrate` writes, so that it may
+/// be replaced. True for a calibration file that cannot be read.
 bool holds_nothing_else(const std::filesystem::path& file) {
   if (!is_calibration(file)) return false;
   try {
     const CameraCalibration calibration = read_calibration(file);
     return !calibration.camera && calibration.saturation_amplitude == 0;
   } catch (const InputError&) {
-    return true;  // damaged, and of no use to anybody
+    return true;  // a damaged calibration is of no use
   }
 }
 

@@ -12,11 +12,11 @@ namespace tofmap::app {
 
 void CommonArguments::add_to(CLI::App& command) {
   command.add_option("--config", config, "YAML file with options, see 'tofmap config'");
-  command.add_option("--set", assignments, "options as group.name=value, one or more, after SEQ")
+  command.add_option("--set", assignments, "set an option, as group.name=value; may be repeated")
       ->expected(1)
       ->take_all();
-  command.add_option("--threads", threads, "threads to use, 0: all")->check(CLI::Range(0, 1024));
-  command.add_flag("--quiet", quiet, "no progress and no summary");
+  command.add_option("--threads", threads, "number of threads; 0: all")->check(CLI::Range(0, 1024));
+  command.add_flag("--quiet", quiet, "print neither progress nor summary");
 }
 
 OptionTable CommonArguments::resolve(const std::string& command, ProgramOptions& options) const {

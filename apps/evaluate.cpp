@@ -40,7 +40,8 @@ struct EvaluateArguments {
   CommonArguments common;
 };
 
-/// The map of every method from above, all in the frame of the last one.
+/// Writes a picture from above of each method's map, all in the gravity-aligned frame of the last
+/// map.
 void write_comparison(const std::filesystem::path& folder, const std::vector<MethodResult>& results,
                       const PictureOptions& options) {
   const RoomMap& last = *results.back().map;
@@ -55,11 +56,13 @@ void write_comparison(const std::filesystem::path& folder, const std::vector<Met
 void say_what_is_missing(const SequenceReader& source, const RecordedTruth& truth,
                          bool down_to_map) {
   if (down_to_map && truth.poses().empty()) {
-    std::fprintf(stderr, "tofmap: %s has no poses in groundtruth.txt: no trajectory or map error\n",
-                 source.folder().c_str());
+    std::fprintf(
+        stderr,
+        "tofmap: %s has no poses in groundtruth.txt: trajectory and map errors are unknown\n",
+        source.folder().c_str());
   }
   if (!truth.has_ranges()) {
-    std::fprintf(stderr, "tofmap: %s has no range_truth: no wrap or map error\n",
+    std::fprintf(stderr, "tofmap: %s has no range_truth: wrap and map errors are unknown\n",
                  source.folder().c_str());
   }
 }
@@ -76,17 +79,17 @@ void write_method(const OutputFolder& out, const MethodResult& result) {
   write_trajectory(out.path() / result.name / "trajectory.txt", result.map->trajectory);
 }
 
-/// What became of the methods that were asked for.
+/// The results of the methods that were to be compared.
 struct Evaluated {
   Json report;
-  std::vector<MethodResult> results;  ///< of the methods that could be run
-  Failures failures;                  ///< of the others
-  std::size_t done = 0;               ///< methods that ended, one way or the other
+  std::vector<MethodResult> results;  ///< of the methods that succeeded
+  Failures failures;                  ///< of the methods that failed
+  std::size_t done = 0;               ///< number of methods that succeeded or failed
   bool interrupted = false;
 };
 
-/// Runs one method after the other. One that fails does not end the others; if all do, throws what
-/// the first did.
+/// Runs one method after the other. If a method fails, the others are run all the same. If all
+/// fail, throws the exception of the first.
 Evaluated evaluate_methods(const std::vector<std::string>& methods, const OutputFolder& out,
                            const std::function<MethodResult(const std::string& method)>& run) {
   Evaluated evaluated;
@@ -114,7 +117,7 @@ void write_report(const OutputFolder& out, Evaluated& evaluated, const RecordedT
   out.write_text("report.json", json_text(report));
 }
 
-/// Pictures and page of the methods that have results.
+/// The pictures and the page of the methods that succeeded.
 std::vector<OptionalPart> report_parts(const std::filesystem::path& result,
                                        const EvaluationPageSubject& subject, bool interrupted,
                                        bool quiet) {
@@ -142,7 +145,7 @@ std::vector<OptionalPart> report_parts(const std::filesystem::path& result,
   return parts;
 }
 
-/// Tells its progress. Throws Interrupted.
+/// Reads the truth of a recording and shows progress. Throws Interrupted.
 Truth truth_of(const SequenceReader& source, const RecordedTruth& recorded, bool quiet) {
   Progress progress("reading truth, frame", source.frame_count(), quiet);
   return read_truth(source, recorded, [&](int index) {
@@ -151,7 +154,7 @@ Truth truth_of(const SequenceReader& source, const RecordedTruth& recorded, bool
   });
 }
 
-/// What the page warns of.
+/// The warnings for the page.
 std::vector<std::string> warnings_of(const SequenceReader& source, const Evaluated& evaluated,
                                      const std::vector<std::string>& methods) {
   const CameraErrors* camera = nullptr;
@@ -162,7 +165,7 @@ std::vector<std::string> warnings_of(const SequenceReader& source, const Evaluat
   if (evaluated.interrupted)
     warnings.push_back("the run was interrupted; " + what_is_missing(methods, evaluated.done));
   for (const std::string& text : evaluated.failures.texts()) {
-    warnings.push_back("it failed and is missing: " + text);
+    warnings.push_back("failed, and is missing here: " + text);
   }
   return warnings;
 }
@@ -196,7 +199,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit(evaluated.interrupted ? Completeness::interrupted : Completeness::whole);
   for (const std::string& text : evaluated.failures.texts()) {
-    std::fprintf(stderr, "tofmap: %s; the other methods are there\n", text.c_str());
+    std::fprintf(stderr, "tofmap: %s; the other methods are in the result\n", text.c_str());
   }
   if (!evaluated.results.empty()) print_table(evaluated.report);
   if (evaluated.interrupted && !evaluated.results.empty()) {

@@ -33,10 +33,11 @@ void print_sensor(const SensorModel& sensor) {
   std::printf("B: %.3f MHz, non-ambiguity range %.3f m\n", modulation.frequency_b_hz / 1e6,
               modulation.wavelength_b_m());
   std::printf("combined unambiguous range: %.2f m\n", combined_range_m(modulation));
-  if (sensor.max_range_m > 0) std::printf("the scene reaches to: %.2f m\n", sensor.max_range_m);
+  if (sensor.max_range_m > 0)
+    std::printf("largest range of the scene: %.2f m\n", sensor.max_range_m);
 }
 
-/// What of the truth can be used; reads all of it.
+/// Prints which parts of the ground truth can be used. Reads all of it.
 void print_truth(const SequenceReader& source) {
   const RecordedTruth truth(source);
   bool has_ranges = false;
@@ -56,14 +57,15 @@ void print_frames(const SequenceReader& source, const RecordingSurvey& survey) {
               100 * survey.no_return_share, 100 * survey.saturated_share);
   print_truth(source);
   if (survey.without_amplitude > 0) {
-    std::printf("frames without amplitudes: %d (noise is taken as uniform)\n",
+    std::printf("frames without amplitudes: %d (noise is assumed to be uniform)\n",
                 survey.without_amplitude);
   }
   if (survey.residual) {
-    std::printf("both frequencies: single pixels agree within %.0f mm\n",
+    std::printf("inter-frequency residual: standard deviation %.0f mm per pixel\n",
                 1000 * survey.residual->spread_m);
   } else {
-    std::printf("both frequencies: too few pixels with returns at both to compare\n");
+    std::printf(
+        "inter-frequency residual: unknown, too few pixels have returns at both frequencies\n");
   }
   for (const std::string& remark : remarks_about(survey.errors)) {
     std::printf("  %s\n", remark.c_str());
@@ -96,7 +98,8 @@ int run_info(const InfoArguments& arguments) {
 
 void add_info_command(CLI::App& program, Outcome& outcome) {
   auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* app = program.add_subcommand("info", "tell what is in a recording, and what is wrong");
+  CLI::App* app =
+      program.add_subcommand("info", "print what a recording contains, and what is wrong with it");
   arguments->recording.add_to(*app);
   arguments->common.add_to(*app);
   app->callback([arguments, &outcome] { outcome.status = run_info(*arguments); });

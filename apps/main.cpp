@@ -22,7 +22,8 @@ int fail(int status, const std::string& message) {
   return status;
 }
 
-/// What was to be printed may be the result, as of `config`.
+/// Throws InputError if standard output could not be written, since it may be the result, as for
+/// `config`.
 void flush_output() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
     throw tofmap::InputError("standard output cannot be written; is the disk full?");

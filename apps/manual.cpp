@@ -17,7 +17,9 @@ void add_manual_command(CLI::App& program, Outcome& /*outcome*/) {
   auto what = std::make_shared<std::string>("page");
   CLI::App* app = program.add_subcommand(
       "manual", "print the manual page, the completion for bash, or the table of all options");
-  app->add_option("WHAT", *what, "page: for 'man -l -'; bash: for 'source'; options: Markdown")
+  app->add_option(
+         "WHAT", *what,
+         "page: manual page for 'man -l -'; bash: completion for 'source'; options: Markdown table")
       ->check(CLI::IsMember({"page", "bash", "options"}));
   app->callback([what, &program] {
     const std::string text = *what == "page"   ? manual_page(program)

@@ -53,37 +53,37 @@ void check_result(const RoomMap& map) {
   refuse_mostly_damaged(map);
   if (map.trajectory.empty() && !map.interrupted) {
     throw InputError(
-        "no frame has enough surface to start a map from; is the camera covered, or "
-        "the phase images mislabelled? 'tofmap info' tells more");
+        "no frame has enough surface to start a map from; is the camera covered, or are the phase "
+        "images mislabelled? 'tofmap info' prints more about the recording");
   }
   if (map.surface.empty() && !map.interrupted) {
     const auto warning = repetition_warning(map.repeated());
     throw InputError(
-        "no point was seen often and surely enough to enter the map; lower "
-        "map.min_observations or raise map.max_sigma_m" +
+        "no point was seen often enough, and with little enough uncertainty, to enter the map; "
+        "lower map.min_observations or raise map.max_sigma_m" +
         (warning ? ". " + *warning : ""));
   }
 }
 
-/// What a run writes beside the map, and how.
+/// What is needed to write the result of a run besides the map itself.
 struct MapOutput {
   const MapArguments& arguments;
   const ProgramOptions& options;
   std::string options_yaml;
   SensorModel sensor;
   FrameSample sample;
-  std::vector<std::string> warnings = {};   ///< about what was recorded, and then about the map
-  nlohmann::ordered_json acquisition = {};  ///< of a device; else null
-  Failures failures = {};                   ///< of what the map can do without
+  std::vector<std::string> warnings = {};   ///< about the recording, then about the map
+  nlohmann::ordered_json acquisition = {};  ///< report of a device; null for a recording
+  Failures failures = {};                   ///< failures of optional parts
 };
 
-/// A map, and what tells whether it is right.
+/// A map and its consistency measures.
 struct FinishedMap {
   RoomMap map;
   Consistency consistency;
 };
 
-/// What a run is for comes first: if what follows fails, this is kept.
+/// Writes the map and the trajectories, which are kept even if a later step fails.
 void write_map_and_path(OutputFolder& out, const RoomMap& map) {
   write_map(out.path() / "map.ply", map.surface);
   write_trajectory(out.path() / "trajectory.txt", map.trajectory);
@@ -106,7 +106,8 @@ void write_report(const OutputFolder& out, const FinishedMap& finished, const Ma
   out.write_text("options.yaml", output.options_yaml);
 }
 
-/// Runs a step after map and path were written. If it fails, says where these are.
+/// Runs a step after the map and the path were written. If the step fails, throws InputError with a
+/// message that says where they are kept.
 template <class Step>
 void keeping_map(const OutputFolder& out, const Step& step) {
   try {
@@ -120,12 +121,13 @@ void keeping_map(const OutputFolder& out, const Step& step) {
 void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
   std::printf("%zu of %zu frames registered, %zu keyframes, %zu map points\n",
               map.trajectory.size(), map.frames.size(), map.keyframes.size(), map.surface.size());
-  if (map.damaged() > 0) std::printf("%d frames were damaged, see report.json\n", map.damaged());
+  if (map.damaged() > 0) std::printf("%d frames were damaged; see report.json\n", map.damaged());
   for (const std::string& remark : remarks_about(map.errors)) std::printf("%s\n", remark.c_str());
   std::printf("map: %s, mesh beside it\n", (folder / "map.ply").c_str());
 }
 
-/// What tells whether a map is right, and its mesh: a map without them is one, too.
+/// Adds consistency measures, mesh and map.pcd. A failure of one of them is stored, and the others
+/// are added all the same.
 void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput& output) {
   output.failures.attempt("consistency", [&] {
     finished.consistency = consistency_of(finished.map, output.sample, output.sensor,
@@ -147,7 +149,7 @@ void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput&
   }
 }
 
-/// Puts the map in place; what it is doubted for comes to the warnings.
+/// Finishes the map, writes the result and moves it into place. Adds the warnings about the map.
 FinishedMap finish_map(MapRun& run, OutputFolder& out, MapOutput& output) {
   FinishedMap finished{run.finish(), unknown_consistency()};
   check_result(finished.map);
@@ -172,7 +174,8 @@ FinishedMap finish_map(MapRun& run, OutputFolder& out, MapOutput& output) {
   return finished;
 }
 
-/// Adds report.html to a map that is in place. Of a whole recording it shows the truth, if known.
+/// Adds report.html to a result that is in place. The page shows the truth of `recording` if that
+/// is not null and has one.
 void add_page(const OutputFolder& out, const FinishedMap& finished, const MapOutput& output,
               const MapInput& input, const SequenceReader* recording) {
   std::vector<std::string> warnings = output.warnings;
@@ -210,7 +213,7 @@ int add_reports(const OutputFolder& out, const FinishedMap& finished, const MapO
        {"report.html", [&] { add_page(out, finished, output, input, recording); }}});
 }
 
-/// A window for the map, if it is wanted.
+/// Opens a window for the map. Null if --view is not given.
 std::unique_ptr<LiveView> open_view(const MapArguments& arguments) {
   if (!arguments.view) return nullptr;
   return std::make_unique<LiveView>("tofmap " + arguments.recording.sequence.string());
@@ -218,8 +221,8 @@ std::unique_ptr<LiveView> open_view(const MapArguments& arguments) {
 
 void refuse_to_resume_device(const std::string& source) {
   if (!is_device_uri(source)) return;
-  throw UsageError("--resume goes on with a recording; " + source +
-                   " does not come again. 'tofmap record' makes a recording of it");
+  throw UsageError("--resume needs a recording, and " + source +
+                   " is a device. 'tofmap record' records a device");
 }
 
 /// An empty sample, large enough for the page, the pictures and the consistency measures.
@@ -230,7 +233,7 @@ FrameSample sample_for(MapInput& input, const ProgramOptions& options) {
   return FrameSample(camera, wanted, input.frames().frame_count());
 }
 
-/// How mapping goes, in a few words.
+/// The state of mapping, as a phrase. Empty before the first frame.
 std::string status_line(const MapRun& run, const MapInput& input) {
   if (run.frames().empty()) return "";
   const std::string losses = input.losses();
@@ -239,7 +242,8 @@ std::string status_line(const MapRun& run, const MapInput& input) {
          (losses.empty() ? "" : ", " + losses);
 }
 
-/// Maps frames until the input ends, or the user ends it. Some of them are kept in the sample.
+/// Maps frames until the input ends or the user interrupts. Some of the frames are kept in the
+/// sample.
 void map_frames(MapRun& run, MapInput& input, FrameSample& sample, bool quiet, LiveView* view) {
   Progress progress("mapping frame", input.frames().frame_count(), quiet);
   MapHooks hooks;
@@ -255,8 +259,8 @@ void map_frames(MapRun& run, MapInput& input, FrameSample& sample, bool quiet, L
   run.advance(input.frames(), hooks);
 }
 
-/// Resumes the run of an earlier result. Frames of it that belong to the sample are prepared again,
-/// since they are not kept with it.
+/// Resumes the run of an earlier result. The frames of the sample are not stored with a result, so
+/// those of the earlier run are unwrapped and filtered again.
 void resume(MapRun& run, SequenceReader& recording, const std::filesystem::path& folder,
             FrameSample& sample, const PipelineOptions& options) {
   resume_run(folder, run, recording, options);
@@ -276,7 +280,7 @@ void resume(MapRun& run, SequenceReader& recording, const std::filesystem::path&
 void print_end(const RoomMap& map, const MapInput& input, const OutputFolder& out) {
   const bool can_be_resumed = map.interrupted && input.is_recording();
   if (can_be_resumed) {
-    std::printf("interrupted; --resume goes on from %s\n", out.final_path().c_str());
+    std::printf("interrupted; --resume continues from %s\n", out.final_path().c_str());
   }
   if (!input.losses().empty()) {
     std::printf("not mapped: %s; see report.json\n", input.losses().c_str());
@@ -331,10 +335,9 @@ void add_map_command(CLI::App& program, Outcome& outcome) {
   arguments->recording.add_to(*app, "folder of the recording, OpenNI2 device or .oni file");
   app->add_option("--out", arguments->out, "folder for the result")->required();
   add_method_option(*app, arguments->method);
-  app->add_flag("--resume", arguments->resume,
-                "go on where an interrupted run with this --out ended");
+  app->add_flag("--resume", arguments->resume, "continue an interrupted run with the same --out");
   app->add_flag("--view", arguments->view, "show the map in a window as it grows");
-  app->add_flag("--pcd", arguments->pcd, "write map.pcd, too");
+  app->add_flag("--pcd", arguments->pcd, "also write map.pcd");
   arguments->common.add_to(*app);
   app->callback([arguments, &outcome] { outcome.status = run_map(*arguments); });
 }

@@ -34,13 +34,13 @@ struct RecordArguments {
   CommonArguments common;
 };
 
-/// What became of the frames of a device.
+/// How many frames of a device were written, and which were not.
 struct RecordedFrames {
   int written = 0;
-  std::vector<std::string> left_out;  ///< what was wrong with frames that no recording can hold
+  std::vector<std::string> left_out;  ///< reasons why frames could not be written
 };
 
-/// Writes frames until the device ends, the user ends it, or there are enough.
+/// Writes frames until the device ends, the user interrupts, or `arguments.frames` are written.
 RecordedFrames write_frames(LiveInput& input, SequenceWriter& writer,
                             const RecordArguments& arguments) {
   RecordedFrames frames;
@@ -59,19 +59,22 @@ RecordedFrames write_frames(LiveInput& input, SequenceWriter& writer,
   return frames;
 }
 
-/// The folder is replaced as a whole at the end.
+/// Throws UsageError if the .oni file would be inside the output folder, which is replaced as a
+/// whole at the end.
 void refuse_inside(const std::filesystem::path& oni, const OutputFolder& out) {
   if (oni.empty()) return;
   const auto file = std::filesystem::weakly_canonical(std::filesystem::absolute(oni));
   const auto inside = file.lexically_relative(out.final_path());
   if (inside.empty() || *inside.begin() == "..") return;
-  throw UsageError("--oni " + oni.string() + " lies in the folder of --out; put it elsewhere");
+  throw UsageError("--oni " + oni.string() +
+                   " is inside the folder of --out; choose another place");
 }
 
-/// OpenNI2 does not tell when it could not write its file, so that is read once more.
+/// Plays the .oni file once to check that it is complete, since OpenNI2 does not report write
+/// errors.
 void check_oni(const std::filesystem::path& file, const DeviceOptions& options, int frames) {
   int played = 0;
-  naming("the recording cannot be read back, was the disk full?", [&] {
+  naming("the recording cannot be read back; was the disk full?", [&] {
     OpenNi2Source copy(file.string(), {.options = options});
     while (played < frames && copy.next()) ++played;
   });
@@ -103,10 +106,10 @@ int run_record(const RecordArguments& arguments) {
       return exit_status::interrupted;
     }
     const std::string losses = input->losses();
-    throw InputError(arguments.uri + ": delivered no whole frame" +
+    throw InputError(arguments.uri + ": delivered no complete frame" +
                      (losses.empty() ? "" : " (" + losses + ")") +
-                     "; nothing was written. Do device.layout, device.depth, device.first and the "
-                     "frequencies fit the device?");
+                     "; nothing was written. Are device.layout, device.depth, device.first and the "
+                     "frequencies right for the device?");
   }
   const nlohmann::ordered_json report = {{"frames", written},
                                          {"interrupted", is_interrupted()},
@@ -148,10 +151,11 @@ void add_record_command(CLI::App& program, Outcome& outcome) {
                   "simulated cameras")
       ->required();
   app->add_option("--out", arguments->out, "folder for the recording")->required();
-  app->add_option("--oni", arguments->oni, ".oni file to record to, too");
-  app->add_option("--calibration", arguments->calibration,
-                  "what 'tofmap calibrate' found of the camera; the recording needs none then");
-  app->add_option("--frames", arguments->frames, "end after so many frames; 0: at the end")
+  app->add_option("--oni", arguments->oni, "also record to this .oni file");
+  app->add_option(
+      "--calibration", arguments->calibration,
+      "calibration of the camera, as 'tofmap calibrate' writes it; applied to the recorded frames");
+  app->add_option("--frames", arguments->frames, "stop after this number of frames; 0: no limit")
       ->check(CLI::Range(0, 100'000'000));
   arguments->common.add_to(*app);
   app->callback([arguments, &outcome] { outcome.status = run_record(*arguments); });

@@ -31,14 +31,13 @@ struct RegisterArguments {
   CommonArguments common;
 };
 
-/// The clouds that could be read with what they are called, and the files that could not.
+/// The clouds that could be read, with their names, and the files that could not.
 struct Input {
   std::vector<PointSet> clouds;
   std::vector<std::string> names;
-  std::vector<std::size_t> places;  ///< of the clouds among all files
-  std::vector<std::pair<std::size_t, std::string>>
-      damages;                     ///< place among all files, what is wrong
-  std::vector<std::string> files;  ///< all, in the order given
+  std::vector<std::size_t> places;  ///< index of each cloud among all files
+  std::vector<std::pair<std::size_t, std::string>> damages;  ///< index among all files, and reason
+  std::vector<std::string> files;                            ///< all files, in the order given
 };
 
 void read_cloud(const std::filesystem::path& file, Input& input) {
@@ -52,17 +51,18 @@ void read_cloud(const std::filesystem::path& file, Input& input) {
   }
   const std::size_t strays = remove_strays(input.clouds.back().points);
   if (strays > 0) {
-    std::fprintf(stderr, "tofmap: %s: %zu points far off all others are left out\n", file.c_str(),
+    std::fprintf(stderr, "tofmap: %s: %zu points far from all others are left out\n", file.c_str(),
                  strays);
   }
   input.names.push_back(file.string());
   input.places.push_back(place);
 }
 
-/// Files that cannot be read are left out; if they are more than half, or fewer than two are left,
-/// throws what is wrong with the first.
+/// Reads all clouds. Files that cannot be read are left out and named on stderr. Throws InputError,
+/// with the reason for the first, if these are more than half, or if fewer than two clouds are
+/// left.
 Input read_clouds(const std::vector<std::filesystem::path>& files) {
-  if (files.size() < 2) throw UsageError("register: takes two clouds at least");
+  if (files.size() < 2) throw UsageError("register: needs at least two clouds");
   Input input;
   for (const std::filesystem::path& file : files) read_cloud(file, input);
   if (2 * input.damages.size() > files.size() || input.clouds.size() < 2) {
@@ -74,7 +74,7 @@ Input read_clouds(const std::vector<std::filesystem::path>& files) {
   return input;
 }
 
-/// Row by row.
+/// The elements of a matrix, row by row.
 ordered_json matrix_json(const Eigen::Matrix4d& matrix) {
   ordered_json numbers = ordered_json::array();
   for (int row = 0; row < 4; ++row) {
@@ -83,7 +83,7 @@ ordered_json matrix_json(const Eigen::Matrix4d& matrix) {
   return numbers;
 }
 
-/// With the scale of the cloud's unit.
+/// The transform of a cloud into the common frame, including the scale of its unit.
 Eigen::Matrix4d scaled_transform(const RegisteredCloud& cloud) {
   Eigen::Matrix4d matrix = cloud.common_from_cloud.matrix();
   matrix.topLeftCorner<3, 3>() *= cloud.unit_m;
@@ -107,14 +107,15 @@ ordered_json registered_json(const Input& input, std::size_t i, const Registered
   return one;
 }
 
-/// Of a file that could not be read, in the form of one that could not be registered.
+/// The entry of a file that could not be read, with the keys of a cloud that could not be
+/// registered.
 ordered_json damaged_json(const std::string& file, const std::string& damage) {
   return {{"path", file},      {"transform", nullptr}, {"inlier_share", 0.0},
           {"rmse_m", nullptr}, {"converged", false},   {"tied_to", ordered_json::array()},
           {"damage", damage}};
 }
 
-/// One entry a file, in the order given.
+/// One entry per file, in the order given.
 ordered_json transforms_json(const Input& input, const CloudRegistration& registration) {
   std::vector<ordered_json> by_place(input.files.size());
   for (std::size_t i = 0; i < input.names.size(); ++i) {
@@ -159,8 +160,8 @@ ordered_json report_json(const Input& input, const CloudRegistration& registrati
   return report;
 }
 
-/// The points of registered clouds in the common frame, by their place among all files; none of the
-/// others.
+/// The points of the registered clouds in the common frame, by index of the file. Empty for the
+/// other files.
 std::vector<std::vector<Eigen::Vector3d>> merged(const Input& input,
                                                  const CloudRegistration& registration) {
   std::vector<std::vector<Eigen::Vector3d>> out(input.files.size());
@@ -174,7 +175,7 @@ std::vector<std::vector<Eigen::Vector3d>> merged(const Input& input,
   return out;
 }
 
-/// On stderr, so that they are seen when the output goes elsewhere.
+/// Prints the remarks about clouds on stderr, so that they are seen if stdout is redirected.
 void print_remarks(const Input& input, const CloudRegistration& registration) {
   for (std::size_t i = 0; i < input.names.size(); ++i) {
     const RegisteredCloud& cloud = registration.clouds[i];
@@ -219,8 +220,8 @@ int run_register(const RegisterArguments& arguments) {
     return exit_status::interrupted;
   }
   if (registration.registered() == 0) {
-    throw InputError("no two of the clouds fit; report.json in " + out.final_path().string() +
-                     " says how near they came");
+    throw InputError("no two of the clouds could be registered; report.json in " +
+                     out.final_path().string() + " has the measures of each pair");
   }
   return exit_status::done;
 }
@@ -229,8 +230,10 @@ int run_register(const RegisterArguments& arguments) {
 
 void add_register_command(CLI::App& program, Outcome& outcome) {
   auto arguments = std::make_shared<RegisterArguments>();
-  CLI::App* app = program.add_subcommand("register", "place clouds of one scene in a common frame");
-  app->add_option("CLOUD", arguments->clouds, "PLY, PCD or VTK files, in any order")->required();
+  CLI::App* app =
+      program.add_subcommand("register", "register clouds of one scene in a common frame");
+  app->add_option("CLOUD", arguments->clouds, "PLY, PCD or VTK files, at least two, in any order")
+      ->required();
   app->add_option("--out", arguments->out, "folder for the result")->required();
   arguments->common.add_to(*app);
   app->callback([arguments, &outcome] { outcome.status = run_register(*arguments); });

@@ -32,12 +32,14 @@ struct SimulateArguments {
   CommonArguments common;
 };
 
+/// How many frames were written, and which were not.
 struct Written {
   int frames = 0;
-  std::vector<std::string> left_out = {};  ///< what was wrong with frames that could not be made
+  std::vector<std::string> left_out = {};  ///< reasons why frames could not be made
 };
 
-/// What is recorded, and how: frame after frame is written, until keep_going(done) says no.
+/// A recording to be made. `write` writes its frames into a folder until all are written or
+/// `keep_going`, which gets the number of frames done, returns false.
 struct Recording {
   int frame_count = 0;
   std::string name;
@@ -57,7 +59,8 @@ Recording simulated(const std::string& scene, const ProgramOptions& options) {
           }};
 }
 
-/// Images that cannot be read are left out.
+/// Writes the first `count` frames of a TUM recording. Frames whose images cannot be read are left
+/// out.
 Written write_wrapped(const TumRecording& source, int count, const std::filesystem::path& folder,
                       const std::function<bool(int done)>& keep_going) {
   SequenceWriter writer(folder, source.sensor());
@@ -99,7 +102,7 @@ int run_simulate(const SimulateArguments& arguments) {
   if (!arguments.seed.empty()) table.set("simulator.seed", arguments.seed);
   if (!arguments.frames.empty()) table.set("simulator.frames", arguments.frames);
   if (arguments.scene.empty() == arguments.tum.empty()) {
-    throw UsageError("simulate takes a SCENE, or --from-tum DIR");
+    throw UsageError("simulate needs either a SCENE or --from-tum DIR");
   }
   const Recording recording = arguments.tum.empty() ? simulated(arguments.scene, options)
                                                     : wrapped_again(arguments.tum, options);
@@ -135,14 +138,15 @@ int run_simulate(const SimulateArguments& arguments) {
 
 void add_simulate_command(CLI::App& program, Outcome& outcome) {
   auto arguments = std::make_shared<SimulateArguments>();
-  CLI::App* app = program.add_subcommand("simulate", "record a simulated camera in a scene");
-  app->add_option("SCENE", arguments->scene, "a built-in scene, or a PLY or OBJ mesh");
+  CLI::App* app =
+      program.add_subcommand("simulate", "make a recording of a simulated camera in a scene");
+  app->add_option("SCENE", arguments->scene, "name of a built-in scene, or a PLY or OBJ mesh file");
   app->add_option("--from-tum", arguments->tum,
-                  "instead of a scene: a recording of the TUM RGB-D benchmark, whose depth is "
-                  "wrapped");
+                  "use the depth images of a TUM RGB-D benchmark recording instead of a scene");
   app->add_option("--out", arguments->out, "folder for the recording")->required();
-  app->add_option("--seed", arguments->seed, "seed of the noise");
-  app->add_option("--frames", arguments->frames, "how many frames, 0: the scene's own");
+  app->add_option("--seed", arguments->seed, "seed of the random noise");
+  app->add_option("--frames", arguments->frames,
+                  "number of frames; 0: the default of the scene, or all of the TUM recording");
   arguments->common.add_to(*app);
   app->callback([arguments, &outcome] { outcome.status = run_simulate(*arguments); });
 }

@@ -45,8 +45,8 @@ struct UnwrapArguments {
   CommonArguments common;
 };
 
-/// Where neither options nor recording tell how far the scene reaches, no farther than 16 bits of
-/// millimetres do, with room for the noise.
+/// Limits the range to what 16-bit millimetres can hold, with a margin for noise, if neither the
+/// options nor the recording state the largest range of the scene.
 void limit_to_image_format(UnwrapOptions& options, const SensorModel& sensor) {
   constexpr double reach_m = 65;
   const bool is_told = options.max_range_m > 0 || sensor.max_range_m > 0;
@@ -62,16 +62,16 @@ Trajectory poses_of(const SequenceReader& source, const std::filesystem::path& f
   if (fits) return poses;
   throw InputError(file.string() + ": has no pose within " + std::to_string(max_pose_gap_s) +
                    " s of any frame of " + source.folder().string() +
-                   "; is it of another recording?");
+                   "; does it belong to another recording?");
 }
 
-/// What became of the frames, in their order.
+/// The reports of all frames, in order, and how many were damaged or had pixels out of range.
 struct UnwrappedRecording {
   Json frames = Json::array();
   int damaged = 0;
   std::string first_damage;
-  int out_of_range = 0;         ///< pixels
-  int frames_out_of_range = 0;  ///< that have such pixels
+  int out_of_range = 0;         ///< number of pixels out of range
+  int frames_out_of_range = 0;  ///< number of frames with such pixels
 
   void add(const UnwrappedFrame& frame) {
     damaged += frame.damage.empty() ? 0 : 1;
@@ -87,7 +87,7 @@ struct UnwrappedRecording {
   }
 };
 
-/// A frame that is kept for the pictures.
+/// A frame that is kept in memory for the pictures.
 struct KeptFrame {
   std::filesystem::path stem;
   DualFrequencyFrame recorded;
@@ -112,7 +112,8 @@ class FrameWriter {
         pictured_(spread_indices(*source.frame_count(), options.pictures.frames)),
         out_(out) {}
 
-  /// The frames begin … end − 1, which follow those of the call before.
+  /// Unwraps the frames begin … end − 1, and writes those that are ready. `begin` must be the `end`
+  /// of the call before.
   void add(int begin, int end) {
     const std::vector<MeasuredSource> sources = measured_.read(begin, end);
     auto frames = side_by_side(end - begin, unwrappers_, [&](Unwrapper& unwrapper, int i) {
@@ -132,7 +133,7 @@ class FrameWriter {
     finish(false);
   }
 
-  /// Fuses and writes the frames that have no later neighbours.
+  /// Fuses and writes the remaining frames, after the last add().
   void finish() { finish(true); }
 
   const UnwrappedRecording& result() const { return result_; }
@@ -185,12 +186,12 @@ class FrameWriter {
   std::vector<std::filesystem::path> names_;
   std::vector<int> pictured_;
   const OutputFolder& out_;
-  std::deque<UnwrappedFrame> waiting_;  ///< for their later neighbours
+  std::deque<UnwrappedFrame> waiting_;  ///< frames that wait for later neighbours to be fused with
   UnwrappedRecording result_;
   std::vector<KeptFrame> kept_;
 };
 
-/// Unwraps frames until the recording ends, or the user ends it.
+/// Unwraps frames until the recording ends or the user interrupts.
 void unwrap_all(FrameWriter& writer, int total, bool quiet) {
   Progress progress("unwrapping frame", total, quiet);
   for (int begin = 0; begin < total && !is_interrupted();) {
@@ -201,16 +202,16 @@ void unwrap_all(FrameWriter& writer, int total, bool quiet) {
   writer.finish();
 }
 
-/// On stderr, what a user may not see in the images.
+/// Prints messages on stderr if no pixel has a range, or pixels were out of range.
 void say_what_is_missing(const UnwrappedRecording& result) {
   if (result.is_empty()) {
-    std::fprintf(stderr, "tofmap: no pixel has a range; 'tofmap info' tells what is wrong\n");
+    std::fprintf(stderr, "tofmap: no pixel has a range; 'tofmap info' prints what is wrong\n");
   }
   if (result.out_of_range == 0) return;
   std::fprintf(
       stderr,
-      "tofmap: %s in %s had ranges that images of 0.001 m to 65.535 m cannot hold; they are "
-      "invalid (out_of_range). unwrap.max_range_m limits how far the scene reaches\n",
+      "tofmap: %s in %s had ranges outside the 0.001 m to 65.535 m that images can store; they are "
+      "invalid (out_of_range). unwrap.max_range_m limits the range of the scene\n",
       counted(static_cast<std::size_t>(result.out_of_range), "pixel").c_str(),
       counted(static_cast<std::size_t>(result.frames_out_of_range), "frame").c_str());
 }
@@ -220,7 +221,7 @@ int run_unwrap(const UnwrapArguments& arguments) {
   OptionTable table = arguments.common.resolve("unwrap", options);
   arguments.recording.apply(table);
   if (!arguments.method.empty()) table.set("unwrap.method", arguments.method);
-  if (std::isnan(arguments.min_confidence)) throw UsageError("--min-confidence: is no number");
+  if (std::isnan(arguments.min_confidence)) throw UsageError("--min-confidence: is not a number");
 
   const SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
   const Trajectory poses =
@@ -264,12 +265,12 @@ int run_unwrap(const UnwrapArguments& arguments) {
 
 void add_unwrap_command(CLI::App& program, Outcome& outcome) {
   auto arguments = std::make_shared<UnwrapArguments>();
-  CLI::App* app = program.add_subcommand("unwrap", "make unwrapped range images of a recording");
+  CLI::App* app = program.add_subcommand("unwrap", "make unwrapped range images from a recording");
   arguments->recording.add_to(*app);
   app->add_option("--out", arguments->out, "folder for the result")->required();
   add_method_option(*app, arguments->method);
   app->add_option("--min-confidence", arguments->min_confidence,
-                  "pixels less sure than this become invalid")
+                  "invalidate pixels of lower confidence, 0 to 1")
       ->check(CLI::Range(0.0, 1.0));
   app->add_flag("--filters", arguments->with_filters, "apply the filter chain");
   app->add_option("--poses", arguments->poses,

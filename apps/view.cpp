@@ -33,7 +33,7 @@ struct ViewArguments {
   double aspect() const { return static_cast<double>(width_px) / height_px; }
 };
 
-/// What is viewed in a window, with its keys.
+/// The window that shows a Viewed, with its keys.
 class ViewWindow {
  public:
   ViewWindow(Viewed& viewed, const ViewArguments& arguments)
@@ -45,7 +45,7 @@ class ViewWindow {
     show();
   }
 
-  /// Until it is closed, or the program interrupted.
+  /// Returns when the window is closed or the user interrupts.
   void run() {
     constexpr std::chrono::milliseconds a_screen_refresh(16);
     while (!is_interrupted() && window_.handle_events()) {
@@ -65,8 +65,8 @@ class ViewWindow {
     if (has_help_) {
       const std::string own = viewed_.help();
       help =
-          "left button: turn, middle: shift, wheel: zoom; 1, 2, 3: from outside, above, inside\n" +
-          (own.empty() ? "" : own + "\n") + "c: colour, h: no help, q: close";
+          "left button: rotate, middle: pan, wheel: zoom; 1, 2, 3: from outside, above, inside\n" +
+          (own.empty() ? "" : own + "\n") + "c: colour, h: hide help, q: close";
     }
     window_.set_text(viewed_.status(), help);
   }
@@ -96,14 +96,15 @@ void open_window(Viewed& viewed, const ViewArguments& arguments) {
   try {
     ViewWindow(viewed, arguments).run();
   } catch (const DrawingError& error) {
-    throw UsageError(std::string(error.what()) + "; --screenshot FILE.png needs none");
+    throw UsageError(std::string(error.what()) + "; --screenshot FILE.png works without a display");
   }
 }
 
-/// Of the size that is asked for, with the legend in its corner.
+/// Writes a PNG picture of the requested size, with the legend in its corner.
 void write_screenshot(const Viewed& viewed, const ViewArguments& arguments) {
   Drawing drawing = viewed.drawing();
-  if (arguments.from == "inside") drawing.lines.clear();  // the path would go through the picture
+  if (arguments.from == "inside")
+    drawing.lines.clear();  // the path would pass through the viewpoint
   Picture picture = draw(drawing, viewed.viewpoint(arguments.from, arguments.aspect()),
                          arguments.width_px, arguments.height_px);
   constexpr int margin_px = 10;
@@ -118,7 +119,8 @@ int run_view(const ViewArguments& arguments) {
   const ViewRequest& request = arguments.request;
   if (!request.method.empty()) table.set("unwrap.method", request.method);
   if (!arguments.screenshot.empty() && arguments.screenshot.extension() != ".png") {
-    throw UsageError(arguments.screenshot.string() + ": pictures are PNG; name it .png");
+    throw UsageError(arguments.screenshot.string() +
+                     ": pictures are written as PNG; the name must end in .png");
   }
   const std::unique_ptr<Viewed> viewed = open_viewed(request, options);
   if (!request.color.empty()) viewed->color_by(request.color);
@@ -131,7 +133,7 @@ int run_view(const ViewArguments& arguments) {
   return exit_status::done;
 }
 
-/// Each once.
+/// All names of colourings, without repetition.
 std::set<std::string> all_color_names() {
   std::set<std::string> names;
   for (const auto& of : {color_names::map, color_names::frame, color_names::mesh}) {
@@ -146,29 +148,32 @@ void add_view_command(CLI::App& program, Outcome& outcome) {
   auto arguments = std::make_shared<ViewArguments>();
   ViewRequest& request = arguments->request;
   CLI::App* app = program.add_subcommand(
-      "view", "look at a map, cloud, mesh or recording, or the maps of an evaluation");
-  app->add_option("PATH", request.path,
-                  "result of map, register or evaluate, a PLY, PCD or OBJ file, or a recording")
+      "view", "show a map, cloud, mesh or recording, or the maps of an evaluation");
+  app->add_option(
+         "PATH", request.path,
+         "result folder of map, register or evaluate, a PLY, PCD or OBJ file, or a recording")
       ->required();
   app->add_option("--screenshot", arguments->screenshot,
                   "write a PNG picture instead of opening a window; needs no display");
   app->add_option("--from", arguments->from, "viewpoint: outside, above, inside")
       ->check(CLI::IsMember({"outside", "above", "inside"}));
   app->add_option("--color", request.color,
-                  "what a map is coloured by (" + joined(color_names::map, ", ") + "), a frame (" +
-                      joined(color_names::frame, ", ") + ") or a mesh (" +
+                  "colouring of a map (" + joined(color_names::map, ", ") + "), of a frame (" +
+                      joined(color_names::frame, ", ") + ") or of a mesh (" +
                       joined(color_names::mesh, ", ") + ")")
       ->type_name("{" + joined(all_color_names(), ",") + "}");
-  app->add_flag("--cameras", request.cameras, "show what the camera saw from keyframes");
-  app->add_flag("--wrapped", request.wrapped, "show a frame's ranges as measured");
+  app->add_flag("--cameras", request.cameras,
+                "show the field of view of the camera at the keyframes");
+  app->add_flag("--wrapped", request.wrapped,
+                "show the ranges of a frame as measured, without unwrapping");
   add_method_option(*app, request.method,
-                    "how to unwrap a recording (default: unwrap.method), or whose map of an "
-                    "evaluation is the first");
-  app->add_option("--frame", request.frame, "frame of a recording, from 0")
+                    "how to unwrap a recording (default: unwrap.method), or which map of an "
+                    "evaluation to show first");
+  app->add_option("--frame", request.frame, "index of the frame of a recording, counted from 0")
       ->check(CLI::Range(0, 1000000));
-  app->add_option("--width", arguments->width_px, "of the picture or window, pixels")
+  app->add_option("--width", arguments->width_px, "width of the picture or window, pixels")
       ->check(CLI::Range(16, 8000));
-  app->add_option("--height", arguments->height_px, "of the picture or window, pixels")
+  app->add_option("--height", arguments->height_px, "height of the picture or window, pixels")
       ->check(CLI::Range(16, 8000));
   arguments->common.add_to(*app);
   app->callback([arguments, &outcome] { outcome.status = run_view(*arguments); });

@@ -1,14 +1,14 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Trajectory error and time of Open3D's registration beside `tofmap map`, given the same ranges.
+"""Compares trajectory error and time of Open3D's registration with `tofmap map` on the same ranges.
 
     benchmarks/against_open3d.py [BUILD_DIR] SEQ...
 
-Ranges are those of `tofmap unwrap --filters` without smoothing, unwrapped (`joint`) and wrapped
-(`none`). Open3D aligns each frame to the one before it, from constant velocity, on voxels of 5 cm.
-Needs Debian's python3-open3d, python3-numpy, python3-opencv and python3-yaml, and recordings with
-ground truth and an undistorted camera.
+The ranges come from `tofmap unwrap --filters` without smoothing, with (`joint`) and without
+(`none`) unwrapping. Open3D aligns each frame with the one before it, starting from constant
+velocity, on voxels of 5 cm. Needs Debian's python3-open3d, python3-numpy, python3-opencv and
+python3-yaml, and recordings with ground truth and an undistorted camera.
 """
 import os
 import subprocess
@@ -45,7 +45,7 @@ def cloud(file, directions):
 
 
 def positions(clouds, align):
-    """Camera positions of a chain, and milliseconds a frame."""
+    """The camera positions from aligning successive clouds, and milliseconds per frame."""
     pose, step, path = numpy.eye(4), numpy.eye(4), [numpy.zeros(3)]
     start = time.perf_counter()
     for before, after in zip(clouds, clouds[1:]):
@@ -56,7 +56,7 @@ def positions(clouds, align):
 
 
 def ate_m(path, truth):
-    """Root mean square after the best rigid alignment (Umeyama 1991)."""
+    """The absolute trajectory error (RMSE) after the best rigid alignment (Umeyama 1991)."""
     centred, wanted = path - path.mean(0), truth - truth.mean(0)
     u, _, vt = numpy.linalg.svd(wanted.T @ centred)
     flip = numpy.diag([1, 1, numpy.sign(numpy.linalg.det(u @ vt))])
@@ -77,8 +77,8 @@ def our_path(tofmap, sequence, method, folder):
 def main():
     build, sequences = sys.argv[1], sys.argv[2:]
     tofmap = f"{build}/apps/tofmap"
-    print("| ATE, m, unwrapped / wrapped | ours, frames placed | "
-          + " | ".join(f"Open3D, {name} | ms a frame" for name in METHODS) + " |")
+    print("| ATE, m, unwrapped / wrapped | ours, frames registered | "
+          + " | ".join(f"Open3D, {name} | ms per frame" for name in METHODS) + " |")
     print("|---|---|" + "---|---|" * len(METHODS))
     for sequence in sequences:
         directions = recording.rays(sequence)

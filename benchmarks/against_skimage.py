@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Time of `joint` and `jump` beside scikit-image's unwrap_phase, on the same frames in one run.
+"""Compares the time of `joint` and `jump` with scikit-image's unwrap_phase on the same scene.
 
     benchmarks/against_skimage.py [BUILD_DIR]
 
-One core, CPU time, the best of several. unwrap_phase does less: it smooths one image into a
-continuous one, without absolute counts, a second frequency, or confidence. Needs Debian's
-python3-skimage.
+Prints CPU times on one core, each the best of several runs. unwrap_phase does less: it makes one
+phase image continuous, without absolute wrap counts, a second frequency or confidence. Needs
+Debian's python3-skimage.
 """
 import json
 import math
@@ -25,7 +25,7 @@ SIZES = [(176, 144), (640, 480)]
 
 
 def skimage_milliseconds(stored, repetitions):
-    """CPU time of one call, the best of several; missing pixels are masked."""
+    """CPU time of one call, the best of several. Pixels without a return are masked."""
     angle = numpy.ma.array(2 * math.pi * stored / 65536 - math.pi, mask=stored == 65535)
     best = math.inf
     for _ in range(repetitions):
@@ -51,7 +51,7 @@ def main():
     print("|---|---|---|---|---|---|")
     for width, height in SIZES:
         with tempfile.TemporaryDirectory() as folder:
-            # As many frames as the benchmark's recording has would take long; a few show the same.
+            # Two frames are enough, and take less time than a whole recording.
             subprocess.run(
                 [f"{build}/apps/tofmap", "simulate", "room", "--out", f"{folder}/room", "--frames", "2",
                  "--quiet", "--set", f"simulator.width_px={width}",

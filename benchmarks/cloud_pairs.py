@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""How `tofmap register` does on single frames of recordings with ground truth, as a table.
+"""Prints a table of results of `tofmap register` on single frames of recordings with ground truth.
 
     benchmarks/cloud_pairs.py BUILD_DIR SEQ...
 
-Every 20th frame becomes a cloud: its true ranges with a noise of 2 cm at 5 m. A pair is right if a
-point three metres before the camera comes within 10 cm of its place. Needs Debian's python3-numpy,
-python3-opencv and python3-yaml, and an undistorted camera.
+Every 20th frame becomes a cloud: its true ranges with a noise of 2 cm at 5 m. A pair counts as
+right if a point three metres in front of the camera is off by less than 10 cm. Needs Debian's
+python3-numpy, python3-opencv and python3-yaml, and an undistorted camera.
 """
 import json
 import os
@@ -39,7 +39,7 @@ def pose(row):
 
 
 def write_clouds(sequence, folder):
-    """The files, and the true pose of each."""
+    """Writes the clouds and returns the true pose of each by file name."""
     directions = recording.rays(sequence)
     truth = numpy.loadtxt(f"{sequence}/groundtruth.txt")
     random = numpy.random.default_rng(1)
@@ -85,8 +85,9 @@ def score(build, sequence):
 
 
 def main():
-    print("| recording | clouds | pairs | registered rightly | wrongly | right, but refused "
-          "| clouds placed | RMS error, mm |\n|---|---|---|---|---|---|---|---|")
+    print("| recording | clouds | pairs | registered, right | registered, wrong "
+          "| rejected, but right | clouds registered | RMS error, mm |\n"
+          "|---|---|---|---|---|---|---|---|")
     for sequence in sys.argv[2:]:
         score(sys.argv[1], sequence)
 

@@ -1,15 +1,16 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""How far measures that need no truth tell what only the truth knows.
+"""Measures how well consistency measures, which need no truth, predict wrong wraps and map errors.
 
     benchmarks/consistency.py BUILD_DIR RUNS [FRAMES]
     benchmarks/consistency.py --table RUNS
 
-Every method maps simulated recordings of several rooms, with more and more noise and with a phase
-offset that nobody knows of; RUNS gets a line a map, as they are made. The measures of consistency are
-set against wrong wraps and the map's error: as rank correlation (Spearman), and by how surely a limit
-tells maps that are wrong by more than 5 cm. Needs Debian's python3-numpy and python3-scipy.
+Every method maps simulated recordings of several rooms, with several noises, and with and without
+an offset of frequency B that is unknown to it. A line per map is written to the file RUNS as soon
+as the map is made. The tables show, for each consistency measure, the rank correlation (Spearman)
+with wrong wraps and with the map error, and how well a limit separates maps with an error above 5
+cm from the others. Needs Debian's python3-numpy and python3-scipy.
 """
 import itertools
 import json
@@ -28,7 +29,7 @@ MEASURES = ("contradicted_percent", "residual_misfit_percent", "residual_rms_cyc
             "ambiguous_percent", "plane_thickness_m", "curl_violations_per_frame")
 WRONG_MAP_M = 0.05
 
-# What `map` and `evaluate` doubt (apps/reports/consistency_report.cpp).
+# The limits above which `map` and `evaluate` warn (modules/diagnostics/src/consistency.cpp).
 MOST_CONTRADICTED_PERCENT = 3
 MOST_MISFIT_PERCENT = 10
 
@@ -62,8 +63,9 @@ def rows_of(report):
 
 
 def best_limit(values, is_wrong):
-    """The limit that tells wrong maps from right ones most surely, and how surely: the mean of the shares
-    of both that are told rightly, so that saying the same of all maps is worth 50 %."""
+    """The limit that best separates wrong maps from right ones, and its balanced accuracy: the mean
+    of the shares of wrong and of right maps that it classifies correctly. It is 50 % for a constant
+    answer."""
     def told(limit):
         return (numpy.mean(values[is_wrong] > limit) + numpy.mean(values[~is_wrong] <= limit)) / 2
     limit = max((-numpy.inf, *numpy.unique(values)), key=told)
@@ -73,8 +75,8 @@ def best_limit(values, is_wrong):
 def print_tables(rows):
     measures, wraps, errors = rows[:, :-2], rows[:, -2], rows[:, -1]
     is_wrong = errors > WRONG_MAP_M
-    print(f"{len(errors)} maps, {is_wrong.sum()} of them wrong by more than {100 * WRONG_MAP_M:g} cm\n")
-    print("| measure | with wrong wraps | with map error | limit | told apart |")
+    print(f"{len(errors)} maps, {is_wrong.sum()} of them with an error above {100 * WRONG_MAP_M:g} cm\n")
+    print("| measure | with wrong wraps | with map error | limit | balanced accuracy |")
     print("|---|---|---|---|---|")
     for i, name in enumerate(MEASURES):
         known = numpy.isfinite(measures[:, i])
@@ -84,7 +86,7 @@ def print_tables(rows):
         print(f"| `{name}` | {by_wraps:.2f} | {by_error:.2f} | {limit:.2g} | {100 * share:.0f} % |")
     has_warnings = ((measures[:, MEASURES.index("contradicted_percent")] > MOST_CONTRADICTED_PERCENT)
                   | (measures[:, MEASURES.index("residual_misfit_percent")] > MOST_MISFIT_PERCENT))
-    print(f"\ndoubted: {100 * has_warnings[is_wrong].mean():.0f} % of the wrong maps, "
+    print(f"\nwith warnings: {100 * has_warnings[is_wrong].mean():.0f} % of the wrong maps, "
           f"{100 * has_warnings[~is_wrong].mean():.0f} % of the others")
 
 

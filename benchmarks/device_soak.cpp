@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Reads frames from an OpenNI2 device for a long time, and prints how fast they come, what is lost,
-// and how much memory is used:
+// Reads frames from an OpenNI2 device for a long time, and prints frame rate, losses and memory:
 //
 //     bench_device_soak [URI [FRAMES]]
 
@@ -36,8 +35,8 @@ void soak(const std::string& uri, int frames) {
   tofmap::OpenNi2Source source(uri, {});
   const int lines = 10;
   auto last = Clock::now();
-  std::printf("%s\n%8s %10s %12s %12s %10s\n", uri.c_str(), "frames", "a second", "unpaired",
-              "not seen", "memory MB");
+  std::printf("%s\n%8s %10s %12s %12s %10s\n", uri.c_str(), "frames", "per second", "unpaired",
+              "lost", "memory MB");
   for (int i = 1; i <= frames; ++i) {
     if (!source.next()) {
       std::printf("the device ended after %d frames\n", i - 1);

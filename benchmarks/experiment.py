@@ -1,15 +1,15 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the experiment that a file describes, and prints its table.
+"""Runs the experiment that a file describes, and prints its tables.
 
     benchmarks/experiment.py FILE BUILD_DIR OUT_DIR [--jobs N] [--plot PICTURE]
     benchmarks/experiment.py --check FILE ...
 
-Every combination of scenes, variants and seeds is a run of `tofmap simulate` and `tofmap evaluate`, of
-which OUT_DIR keeps report.json alone. Runs that are there are not run again, so that an interrupted
-experiment goes on where it ended. configs/experiments/README.md describes the files. Needs Debian's
-python3-yaml, and python3-matplotlib for plots.
+Every combination of scenes, variants and seeds is a run of `tofmap simulate` and `tofmap evaluate`.
+OUT_DIR keeps only the report.json of each run. Runs whose report exists are skipped, so that an
+interrupted experiment can be continued. configs/experiments/README.md describes the files. Needs
+Debian's python3-yaml, and python3-matplotlib for plots.
 """
 import argparse
 import concurrent.futures
@@ -34,14 +34,14 @@ KEYS = {"title", "scenes", "seeds", "frames", "vary", "fixed", "methods", "basel
 
 
 class Wrong(Exception):
-    """The file is no experiment."""
+    """The file does not describe an experiment."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Run:
     """One recording, and how it is evaluated."""
     scene: str
-    variant: tuple[str, ...]  # a label an axis
+    variant: tuple[str, ...]  # one label per axis
     seed: int
     options: tuple[tuple[str, object], ...]
 
@@ -57,29 +57,29 @@ class Experiment:
             self.content = yaml.safe_load(text)
         content = self.content
         if not isinstance(content, dict) or set(content) - KEYS:
-            raise Wrong(f"{file}: known are {', '.join(sorted(KEYS))}")
+            raise Wrong(f"{file}: keys must be some of {', '.join(sorted(KEYS))}")
         for key in ("title", "scenes", "seeds", "methods", "measures"):
             if not content.get(key):
-                raise Wrong(f"{file}: names no {key}")
+                raise Wrong(f"{file}: {key} is missing")
         self.title = content["title"]
         self.methods = content["methods"]
-        measures = content["measures"]  # by name, or what tables call them by name
+        measures = content["measures"]  # a list of names, or a mapping from names to labels
         self.measures = ({name: str(label) for name, label in measures.items()}
                          if isinstance(measures, dict) else {name: name for name in measures})
         self.baseline = content.get("baseline")
         self.axes = content.get("vary") or {}
         if self.baseline and self.baseline not in self.methods:
-            raise Wrong(f"{file}: baseline {self.baseline} is none of the methods")
+            raise Wrong(f"{file}: baseline {self.baseline} is not one of the methods")
         for measure in self.measures:
             if not re.fullmatch(r"\w+\.\w+", measure):
-                raise Wrong(f"{file}: measure {measure} is no group.metric of report.json")
+                raise Wrong(f"{file}: measure {measure} is not a group.metric of report.json")
         for axis, variants in self.axes.items():
             if not isinstance(variants, dict) or not all(
                     isinstance(options, dict) for options in variants.values()):
-                raise Wrong(f"{file}: {axis} has no options by label")
+                raise Wrong(f"{file}: {axis} must map labels to options")
 
     def variants(self):
-        """Labels, and the options of all of them."""
+        """Yields the labels of each combination of variants, and its options."""
         fixed = self.content.get("fixed") or {}
         for labels in itertools.product(*(list(variants) for variants in self.axes.values())):
             options = dict(fixed)
@@ -103,13 +103,13 @@ class Experiment:
                  "report.frames=0", *run.settings(of_simulator=False)])
 
     def report_file(self, run, out):
-        """Named after what was run: what changes is run anew."""
+        """The report file of a run. Its name depends on the options, so changed runs run anew."""
         words = itertools.chain.from_iterable(self.commands(run, "tofmap", ""))
         return out / (hashlib.sha256("\0".join(words).encode()).hexdigest()[:16] + ".json")
 
 
 def carry_out(experiment, run, tofmap, out):
-    """The report of one run; what went wrong if there is none."""
+    """Carries out a run unless its report exists. Returns the report, or None, and the error."""
     kept = experiment.report_file(run, out)
     if not kept.exists():
         with tempfile.TemporaryDirectory(dir=out) as folder:
@@ -155,7 +155,7 @@ def known(values):
 
 
 def cell(values):
-    """Three digits of the mean, the spread to the same decimals, and how many seeds have no value."""
+    """The mean with three digits, standard deviation, and number of seeds without a value."""
     there = known(values)
     if not there:
         return "-"
@@ -168,7 +168,7 @@ def cell(values):
 
 
 def rows_of(experiment, reports):
-    """Scene and variant, and the reports of its seeds in their order."""
+    """The reports by scene and variant, in the order of the seeds."""
     rows = {}
     for run in experiment.runs():
         if run in reports:
@@ -193,7 +193,7 @@ def print_rows(head, rows):
 
 
 def print_tables(experiment, reports):
-    """A table a measure; where there is one scene and no variant of it, one of all measures."""
+    """Prints a table per measure or, for a single scene without variants, one for all measures."""
     print(f"{experiment.title}. Mean and standard deviation over {len(experiment.content['seeds'])} "
           "seeds" + (f"; in brackets the difference from `{experiment.baseline}`, seed by seed"
                      if experiment.baseline else "") + ".\n")
@@ -214,7 +214,7 @@ def print_tables(experiment, reports):
 
 
 def plot(experiment, reports, picture):
-    """A panel a measure: the mean of each method, and a line from its least seed to its greatest."""
+    """Draws a panel per measure: the mean of each method, and a bar from least to greatest value."""
     import matplotlib
     matplotlib.use("Agg")
     from matplotlib import pyplot
@@ -255,7 +255,7 @@ def plot(experiment, reports, picture):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("--check", nargs="+", metavar="FILE", help="read files, and run nothing")
+    parser.add_argument("--check", nargs="+", metavar="FILE", help="check these files without running them")
     parser.add_argument("file", nargs="?")
     parser.add_argument("build_dir", nargs="?", type=pathlib.Path)
     parser.add_argument("out_dir", nargs="?", type=pathlib.Path)
@@ -277,7 +277,7 @@ def main():
         print(f"experiment: {error}", file=sys.stderr)
         return 3
     except KeyboardInterrupt:
-        print("experiment: interrupted; the same command goes on", file=sys.stderr)
+        print("experiment: interrupted; the same command continues", file=sys.stderr)
         return 130
     print_tables(experiment, reports)
     if arguments.plot:

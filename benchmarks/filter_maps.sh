@@ -2,10 +2,9 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# What each filter does to the map: trajectory error, map error and the share of the surface that
-# is seen, with filters taken away from the default chain and added to it, as a table in Markdown.
-# Recordings are simulated; more can be named as arguments. BUILD_DIR names the build folder
-# (default: build).
+# Measures the effect of each filter on the map: prints a Markdown table of trajectory error, map
+# error and completeness, with filters removed from the default chain or added to it. Recordings are
+# simulated; more can be given as arguments. BUILD_DIR is the build folder (default: build).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source benchmarks/scene_tables.sh
@@ -13,19 +12,19 @@ source benchmarks/scene_tables.sh
 for scene in room corridor hall; do simulate "$scene" "$scene"; done
 recordings+=("$@")
 
-figure() {  # NAME of a figure in the last report; a dash if there is none
+figure() {  # NAME: prints this figure of the last report, or a dash if it has none
   local value
   value=$(sed -n "s/.*\"$1\": \([0-9.e-]*\).*/\1/p" "$work/result/report.json")
   printf '%s' "${value:-–}"
 }
 
-scaled() {  # FACTOR DIGITS NAME
+scaled() {  # FACTOR DIGITS NAME: prints a figure times FACTOR
   local value
   value=$(figure "$3")
   [[ $value == – ]] && printf '–' || awk "BEGIN { printf \"%.$2f\", $1 * $value }"
 }
 
-line() {  # LABEL CHAIN [SETTING…]: a line of the table
+line() {  # LABEL CHAIN [SETTING…]: prints a line of the table
   local label=$1 settings=(--set "filters.chain=$2")
   shift 2
   for setting in "$@"; do settings+=(--set "$setting"); done
@@ -39,7 +38,7 @@ line() {  # LABEL CHAIN [SETTING…]: a line of the table
   printf '\n'
 }
 
-table_head "trajectory, mm / map, mm / seen, % (frames placed)"
+table_head "trajectory, mm / map, mm / seen, % (frames registered)"
 line "no filter" ""
 line "the default: isolated_wrap plane_edge" "isolated_wrap plane_edge"
 line "without isolated_wrap" "plane_edge"

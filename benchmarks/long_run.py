@@ -1,14 +1,14 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Time a frame and memory of `tofmap map` over a long recording, as a table and a plot.
+"""Measures time per frame and memory of `tofmap map` over a long recording, as a table and a plot.
 
     benchmarks/long_run.py [BUILD_DIR] [PLOT.png] [FRAMES] [RECORDING]
 
-The camera goes round the simulated room again and again, each time elsewhere: up to 30 cm to the
-side, up or down, and turned by up to 12 degrees. Needs Debian's python3-numpy and
-python3-matplotlib; the recording takes some 150 MB a thousand frames under $TMPDIR, or stays in the
-folder RECORDING, from where another run takes it.
+The camera goes round the simulated room many times, on slightly different paths: displaced by up to
+30 cm in each direction and rotated by up to 12 degrees. Needs Debian's python3-numpy and
+python3-matplotlib. The recording takes about 150 MB per thousand frames under $TMPDIR. If the
+folder RECORDING is given, the recording is kept there, and later runs use it again.
 """
 import json
 import os
@@ -32,13 +32,13 @@ def quaternion_about_up(angle):
 
 
 def multiplied(a, b):
-    """Of quaternions as x y z w."""
+    """The product of two quaternions, each x y z w."""
     axis = a[3] * b[:3] + b[3] * a[:3] + numpy.cross(a[:3], b[:3])
     return numpy.append(axis, a[3] * b[3] - a[:3] @ b[:3])
 
 
 def write_laps(lap_file, out_file, frames):
-    """Repeats a closed path; offsets change slowly, so that laps differ and motion stays smooth."""
+    """Repeats a closed path with slowly changing offsets, so that laps differ."""
     lap = numpy.loadtxt(lap_file)
     with open(out_file, "w", encoding="ascii") as out:
         for i in range(frames):
@@ -67,7 +67,7 @@ def resident_mb(pid):
 
 
 def map_and_watch(tofmap, sequence, out):
-    """Seconds since the start and resident memory, twice a second."""
+    """Maps a recording. Returns time since the start and resident memory (s, MB), every 0.5 s."""
     run = subprocess.Popen([tofmap, "map", sequence, "--out", out, "--quiet",
                             "--set", "pictures.frames=0"])
     start, samples = time.monotonic(), []
@@ -97,15 +97,15 @@ def main():
     stages = list(report["frames"][0]["milliseconds"])
     times = numpy.array([[f["milliseconds"][s] for s in stages] for f in report["frames"]])
     per_frame = times.sum(axis=1)
-    # Frames are prepared two at a time and placed one after the other; what comes after the last
-    # one (the surface of the whole map, files) is no frame's.
+    # Two frames are prepared at a time, and registered one after the other. The time after the
+    # last frame, for the whole map and for files, does not count for any frame.
     in_turn = times[:, [stages.index(s) for s in ("register", "map", "loops")]].sum(axis=1)
     done_s = numpy.cumsum(in_turn + (per_frame - in_turn) / 2) / 1000
     frame_of = numpy.interp(memory[:, 0], done_s, numpy.arange(frames))
     of_frames = memory[:, 0] < done_s[-1]
     keyframes = numpy.cumsum([f.get("tracking", {}).get("is_keyframe", False)
                               for f in report["frames"]])
-    print("| frames | ms a frame, all stages | register | loops | keyframes | memory, MB |")
+    print("| frames | ms per frame, all stages | register | loops | keyframes | memory, MB |")
     print("|---|---|---|---|---|---|")
     for part in range(BINS):
         chosen = slice(part * frames // BINS, (part + 1) * frames // BINS)
@@ -114,12 +114,12 @@ def main():
         print(f"| {chosen.start}-{chosen.stop} | {per_frame[chosen].mean():.1f} | "
               f"{mean[stages.index('register')]:.1f} | {mean[stages.index('loops')]:.2f} | "
               f"{keyframes[chosen.stop - 1]} | {seen[-1]:.0f} |")
-    print(f"\nAt the end, while the map is put together: {memory[:, 1].max():.0f} MB.")
+    print(f"\nAt the end, while the map is extracted: {memory[:, 1].max():.0f} MB.")
     figure, (upper, lower) = pyplot.subplots(2, 1, figsize=(8, 6), sharex=True)
     window = max(1, frames // 100)
     smooth = numpy.convolve(per_frame, numpy.ones(window) / window, mode="valid")
     upper.plot(numpy.arange(len(smooth)) + window, smooth)
-    upper.set(ylabel="ms a frame, two cores", ylim=(0, None))
+    upper.set(ylabel="ms per frame, two cores", ylim=(0, None))
     lower.plot(frame_of[of_frames], memory[of_frames, 1], label="memory, MB")
     lower.plot(keyframes, label="keyframes")
     lower.set(xlabel="frame", ylim=(0, None))

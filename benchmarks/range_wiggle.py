@@ -1,14 +1,15 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a periodic range error does to trajectories: with and without loops, or calibrated.
+"""Measures the effect of a periodic error on trajectories, with and without loops or calibration.
 
     benchmarks/range_wiggle.py BUILD_DIR SEQ...
     benchmarks/range_wiggle.py --calibrated BUILD_DIR SEQ...
 
-Real cameras' correlation is no pure sine: their ranges are off by some centimetres, four times a
-wavelength. That error, a sin(8 pi phase), is added to both images of copies of the recordings, which
-must have ground truth. Needs Debian's python3-numpy and python3-opencv.
+The correlation function of real cameras is not a pure sine, so that their ranges have an error of
+some centimetres with four periods per wavelength. Such an error, a sin(8 pi phase), is added to
+both phase images of copies of the recordings, which must have ground truth. Needs Debian's
+python3-numpy and python3-opencv.
 """
 import json
 import os
@@ -66,7 +67,7 @@ def with_and_without_loops(tofmap, folder):
 
 
 def calibrated(tofmap, folder):
-    """As it is, and calibrated by the recording itself: by the beat, and by truth."""
+    """Errors without calibration, and calibrated on the recording itself by residual and by truth."""
     found = [errors_mm(tofmap, f"{folder}/seq", f"{folder}/out")]
     for reference in ("residual", "truth"):
         file = f"{folder}/{reference}.yaml"
@@ -84,7 +85,7 @@ def main():
     is_calibrated = words[0] == "--calibrated"
     tofmap, *sequences = words[1:] if is_calibrated else words
     tofmap += "/apps/tofmap"
-    cases = "not calibrated; by the beat; by truth" if is_calibrated else "loops open; closed"
+    cases = "not calibrated; by the residual; by truth" if is_calibrated else "loops open; closed"
     print(f"| trajectory / map error, mm, {cases} | "
           + " | ".join(f"{100 * e:g} cm" for e in ERRORS_M) + " |")
     print("|---|" + "---|" * len(ERRORS_M))

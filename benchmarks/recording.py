@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What benchmarks read of a recording."""
+"""Functions of the benchmarks that read recordings."""
 import numpy
 import yaml
 
 
 def rays(sequence):
-    """Unit viewing rays of all pixels, from an undistorted camera's intrinsics."""
+    """The unit viewing rays of all pixels of a camera without distortion."""
     with open(f"{sequence}/sequence.yaml", encoding="utf-8") as file:
         camera = yaml.safe_load(file)["camera"]
     u, v = numpy.meshgrid(numpy.arange(camera["width"]), numpy.arange(camera["height"]))
@@ -16,6 +16,6 @@ def rays(sequence):
 
 
 def frames(sequence):
-    """The columns of each line of frames.txt: time stamp, then the frame's files."""
+    """The columns of each line of frames.txt: the timestamp, then the files of the frame."""
     with open(f"{sequence}/frames.txt", encoding="utf-8") as file:
         return [line.split() for line in file if line.strip() and not line.startswith("#")]

@@ -2,9 +2,10 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Trajectory error of recordings with ground truth, registered by our method and by PCL's, against
-# keyframes and frame to frame, with and without unwrapping, as a table in Markdown. Recordings are
-# simulated; more can be named as arguments. BUILD_DIR names the build folder (default: build).
+# Prints a Markdown table of the trajectory error of the project's registration and of PCL's ICP and
+# GICP, against keyframes and frame to frame, with and without unwrapping. Recordings are simulated;
+# more, with ground truth, can be given as arguments. BUILD_DIR is the build folder (default:
+# build).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source benchmarks/scene_tables.sh
@@ -12,11 +13,11 @@ source benchmarks/scene_tables.sh
 for scene in room hall; do simulate "$scene" "$scene"; done
 recordings+=("$@")
 
-# Every frame is a keyframe, and only the last one is registered against.
+# Makes every frame a keyframe, and registers each frame only with the one before it.
 chain=(odometry.keyframes_around=1 odometry.keyframe_translation_m=0.01 odometry.keyframe_rotation_rad=0.01
        loops.close=false)
 
-errors() {  # SEQ [SETTING…]: those of unwrapped and of wrapped ranges, metres
+errors() {  # SEQ [SETTING…]: prints the errors with and without unwrapping, metres
   local sequence=$1 settings=()
   shift
   for setting in "$@"; do settings+=(--set "$setting"); done
@@ -36,7 +37,7 @@ print(" / ".join(cells), end="")
 PYTHON
 }
 
-line() {  # LABEL [SETTING…]: a line of the table
+line() {  # LABEL [SETTING…]: prints a line of the table
   printf '| %s |' "$1"
   shift
   for recording in "${recordings[@]}"; do printf ' %s |' "$(errors "$recording" "$@")"; done

@@ -1,19 +1,18 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
-#
-# To be sourced: tables in Markdown with a column for each recording. Recordings are simulated into
-# a temporary folder; BUILD_DIR names the build folder (default: build).
+# Functions for scripts that source this: Markdown tables with a column per recording, and
+# recordings simulated into a temporary folder. BUILD_DIR is the build folder (default: build).
 tofmap=${BUILD_DIR:-build}/apps/tofmap
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 recordings=()
 
-simulate() {  # SCENE NAME [OPTION…]: adds a recording
+simulate() {  # SCENE NAME [OPTION…]: simulates a recording and adds it to recordings
   "$tofmap" simulate "$1" --out "$work/$2" --quiet "${@:3}"
   recordings+=("$work/$2")
 }
 
-table_head() {  # LABEL
+table_head() {  # LABEL: prints the head of the table
   printf '| %s |' "$1"
   for recording in "${recordings[@]}"; do printf ' %s |' "$(basename "$recording")"; done
   printf '\n|---|'

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Time of each stage on one core, for a frame of the simulated room at 176 x 144.
+// Measures the time of each stage on one core, for a frame of the simulated room of 176 x 144
+// pixels.
 
 #include <benchmark/benchmark.h>
 #include <omp.h>
@@ -12,7 +13,7 @@
 namespace tofmap {
 namespace {
 
-/// Neighbouring frames from the middle of the path, and what the stages make of the first.
+/// Two successive frames from the middle of the path, prepared for mapping.
 struct Example {
   Simulator simulator;
   PixelRays rays;
@@ -69,7 +70,7 @@ void make_cloud(benchmark::State& state) {
 }
 BENCHMARK(make_cloud)->Unit(benchmark::kMillisecond);
 
-/// A frame against one keyframe, its neighbour.
+/// Registers a frame with one keyframe, the frame before it.
 void register_frame(benchmark::State& state) {
   const Example& e = example();
   for (auto _ : state) {

@@ -2,9 +2,9 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# What each parameter of the method `jump` does: wrong wraps in percent, one parameter changed at
-# a time, as a table in Markdown. Recordings are simulated; more can be named as arguments.
-# BUILD_DIR names the build folder (default: build).
+# Measures the effect of each parameter of the method `jump`: prints a Markdown table of wrong wraps
+# with one parameter changed at a time. Recordings are simulated; more can be given as arguments.
+# BUILD_DIR is the build folder (default: build).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source benchmarks/scene_tables.sh
@@ -14,11 +14,11 @@ simulate room room --frames 30
 simulate room room_5cm --frames 30 --set simulator.range_noise_m=0.05
 recordings+=("$@")
 
-figure() {  # NAME of a figure in the last report
+figure() {  # NAME: prints this figure of the last report
   sed -n "s/.*\"$1\": \([0-9.e-]*\).*/\1/p" "$work/result/report.json"
 }
 
-line() {  # LABEL [SETTING…]: a line of the table
+line() {  # LABEL [SETTING…]: prints a line of the table
   local label=$1 settings=()
   shift
   for setting in "$@"; do settings+=(--set "$setting"); done

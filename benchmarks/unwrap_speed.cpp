@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Time of unwrapping per method and image size, of its message passing by itself, and beside them
-// what the machine can do at most: memory bandwidth and multiply-adds a second.
+// Measures the time of each unwrapping method at several image sizes, the time of message passing
+// alone and, for comparison, the memory bandwidth and the multiply-adds per second of the machine.
 
 #include <array>
 #include <map>
@@ -31,7 +31,8 @@ struct Example {
   DualFrequencyFrame frame;
 };
 
-/// A frame of the simulated room; nobody told how large it is, so fourteen counts compete.
+/// A frame of the simulated room. The sensor does not state its largest range, so that there are
+/// fourteen possible wrap counts.
 const Example& example(const Size& size) {
   static std::map<int, Example> made;
   const auto found = made.find(size.width_px);
@@ -56,7 +57,7 @@ void unwrap_frames(benchmark::State& state, const std::string& method, const Siz
   state.SetItemsProcessed(state.iterations());
 }
 
-/// Counts pixels times iterations a second.
+/// Adds a counter of pixels times iterations per second.
 void count_pixel_iterations(benchmark::State& state, const Size& size, int iterations) {
   const double pixels = static_cast<double>(size.width_px) * size.height_px;
   state.counters["pixel_iterations"] = benchmark::Counter(
@@ -92,7 +93,8 @@ void pass_jump_messages(benchmark::State& state, const Size& size) {
   count_pixel_iterations(state, size, iterations);
 }
 
-/// a = b + s c over arrays far larger than caches; three numbers pass for each.
+/// Computes a = b + s c on arrays far larger than the caches. Three numbers are transferred per
+/// element.
 void stream_bandwidth(benchmark::State& state) {
   constexpr std::size_t count = 1U << 25U;
   std::vector<float> a(count);
@@ -106,10 +108,10 @@ void stream_bandwidth(benchmark::State& state) {
                           static_cast<std::int64_t>(3 * count * sizeof(float)));
 }
 
-constexpr int fma_width = 128;  // eight registers of AVX-512: enough to hide the latency
+constexpr int fma_width = 128;  // eight AVX-512 registers, enough to hide the latency
 constexpr int fma_rounds = 1000;
 
-/// Multiply-adds on numbers that stay in registers, as wide as the processor has them.
+/// Multiply-adds on numbers that stay in registers, with the widest vectors of the processor.
 [[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] float multiply_add(
     float factor) {
   std::array<float, fma_width> sums{};

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 include(CMakePackageConfigHelpers)
 
-# What each module links, for tofmapConfig.cmake: so a component finds just what it needs. What
-# shared libraries link for themselves is none of their users' business.
+# The libraries that each module links, for tofmapConfig.cmake, so that a component searches only
+# for what it needs. Consumers of shared libraries do not need the privately linked ones.
 set(links_of_consumers LINK_LIBRARIES)
 if(BUILD_SHARED_LIBS)
   set(links_of_consumers INTERFACE_LINK_LIBRARIES)

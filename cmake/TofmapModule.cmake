@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-# What nearly every file reads, itself or by way of others.
+# Headers to precompile, which nearly all files include directly or indirectly.
 set(tofmap_common_headers <algorithm> <filesystem> <functional> <string> <vector> <Eigen/Geometry>)
 
-# Flags that every target of the project gets, privately: consumers inherit none but those that
-# sanitizers and coverage need all to agree on.
+# Sets the compiler flags of a target of the project. They are private, except those that a
+# sanitizer or coverage needs in all targets.
 function(tofmap_private_flags target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
-  # GCC 12 sees overlaps in std::string that are not there (GCC bug 105651).
+  # GCC 12 wrongly warns of overlaps in std::string (GCC bug 105651).
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(${target} PRIVATE -Wno-restrict)
   endif()
@@ -17,16 +17,16 @@ function(tofmap_private_flags target)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
   if(TOFMAP_SANITIZE)
-    # Instrumented code looks uninitialized to GCC where it is not, in the standard library, too.
+    # GCC wrongly warns of uninitialized variables in instrumented code.
     target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized -fsanitize=${TOFMAP_SANITIZE} -fno-omit-frame-pointer
                                              -fno-sanitize-recover=all)
     target_link_options(${target} PUBLIC -fsanitize=${TOFMAP_SANITIZE})
-    # Under a sanitizer Eigen would align memory by hand and expect the same of what Debian's PCL
-    # allocated, which relies on malloc as it is aligned anyway. Those who link to it must agree.
+    # With a sanitizer, Eigen would align memory itself, but Debian's PCL was built to use the
+    # alignment of malloc. Both must use the same, and so must all consumers.
     target_compile_definitions(${target} PUBLIC EIGEN_MALLOC_ALREADY_ALIGNED=1)
   endif()
   if(TOFMAP_COVERAGE)
-    # Lines run by several threads at once are counted right only if the counters are atomic.
+    # Lines that several threads run are counted correctly only with atomic counters.
     target_compile_options(${target} PRIVATE --coverage -fprofile-update=atomic)
     target_link_options(${target} PUBLIC --coverage)
   endif()
@@ -37,9 +37,8 @@ endfunction()
 
 # tofmap_add_module(NAME SOURCES a.cpp … [PUBLIC lib …] [PRIVATE lib …])
 #
-# Defines tofmap_<NAME>, alias tofmap::<NAME>, from modules/<NAME>/src, with the
-# public headers of modules/<NAME>/include, and registers both for installation.
-# Libraries of others are system headers: their warnings are not ours.
+# Defines the library tofmap_<NAME>, alias tofmap::<NAME>, from modules/<NAME>/src, with the public
+# headers of modules/<NAME>/include, and registers both for installation.
 function(tofmap_add_module name)
   cmake_parse_arguments(MODULE "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   list(TRANSFORM MODULE_SOURCES PREPEND src/ REGEX "^[^/]")
@@ -61,23 +60,24 @@ function(tofmap_add_module name)
   install(DIRECTORY include/tofmap DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 endfunction()
 
-# Has the loops of files of this folder become vector instructions: no error flags of the C library,
-# no traps. Headers precompiled otherwise do not fit these flags. Vectors are passed to functions
-# that are inlined alone, so that it does not matter how a processor would pass them.
+# tofmap_vectorize(FILE …): lets GCC vectorize the loops of source files, by switching off errno and
+# traps of floating-point functions. These files do not use the precompiled headers, which need
+# equal flags. -Wno-psabi: vector arguments are passed only to inlined functions, so their ABI is
+# irrelevant.
 function(tofmap_vectorize)
   set_source_files_properties(${ARGN} PROPERTIES
     COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math;-Wno-psabi" SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
-# PCL without its directory-wide flags: a target that carries its include folders
-# (as system headers) and the libraries of the components that the project uses.
+# tofmap_use_pcl(TARGET): adds the include folders of PCL, as system headers, and the libraries that
+# the project uses, without PCL's directory-wide flags.
 function(tofmap_use_pcl target)
   target_include_directories(${target} SYSTEM PUBLIC ${PCL_INCLUDE_DIRS})
   target_link_libraries(${target} PUBLIC pcl_common pcl_io pcl_kdtree pcl_search)
 endfunction()
 
-# tofmap_write_module_links(FILE): a line a module, and one for the program: its name and what it
-# links. A test compares docs/architecture.md with it.
+# tofmap_write_module_links(FILE): writes a line per module, and one for the program, with its name
+# and the libraries that it links. A test compares docs/architecture.md with this file.
 function(tofmap_write_module_links file)
   get_property(modules GLOBAL PROPERTY TOFMAP_MODULES)
   set(text)

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Debian packages of what is installed, a component each: `cmake --build BUILD --target package`.
-# CPack finds by itself which packages of others the libraries and the program link.
+# Makes a Debian package of each install component: `cmake --build BUILD --target package`. CPack
+# determines the packages that the libraries and the program depend on.
 set(CPACK_GENERATOR DEB)
 set(CPACK_COMPONENTS_ALL library development program)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -29,26 +29,28 @@ set(CPACK_DEBIAN_LIBRARY_DESCRIPTION
 filter and register range images, and map rooms larger than such cameras can
 see unambiguously.")
 
-# tofmap::core, unwrap and filters need Eigen alone; all others read PCL's headers.
+# The public headers of core, unwrap and filters need only Eigen. Those of cloud, and of the modules
+# that use it, include PCL's.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libtofmap-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS libeigen3-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libpcl-dev, libboost-serialization-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION 
 "Headers, CMake files and examples of the libraries. tofmap::unwrap and
-tofmap::filters need Eigen alone, modules of clouds and maps the recommended
-packages, too.")
+tofmap::filters need only Eigen; modules for clouds and maps also need the
+recommended packages.")
 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME tofmap)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
-# VTK draws off screen by EGL, which it loads when it runs.
+# Drawing without a display needs EGL and Mesa's drivers, which are loaded at run time.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libegl1, libgl1-mesa-dri")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION 
-"A program that records, unwraps, maps, evaluates and shows what dual-frequency
-time-of-flight cameras measure, and an OpenNI2 driver that simulates such a
-camera.")
+"A program that records, unwraps, maps, evaluates and shows frames of
+dual-frequency time-of-flight cameras, and an OpenNI2 driver that simulates
+such a camera.")
 
-# Each package tells its licence where Debian wants it, three.js's, too, which reports carry.
+# Each package has a copyright file as Debian requires, with the licence of three.js, which is part
+# of reports.
 file(READ LICENSE licence)
 file(READ modules/visualization/src/page/three_notice.txt three_licence)
 file(WRITE ${PROJECT_BINARY_DIR}/copyright "${licence}\nReports carry three.js:\n\n${three_licence}")

@@ -2,9 +2,9 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Installs what is missing, builds the libraries and their tests with line coverage, runs these, and
-# prints the lines of modules/ that they reach; what only the program reaches does not count.
-# BUILD_DIR chooses the build folder (default: build-coverage).
+# Installs missing packages, builds the libraries and their tests with line coverage, runs the
+# tests, and prints the line coverage of modules/. Lines that only the program runs do not count.
+# BUILD_DIR is the build folder (default: build-coverage).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 bash scripts/packages.sh --tests

@@ -2,9 +2,9 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Installs what is missing, builds tofmap, simulates a recording of a furnished room of 12 x 9 m,
-# and maps it with and without unwrapping. BUILD_DIR and OUT_DIR choose the folders (default:
-# build and out/demo).
+# Installs missing packages, builds tofmap, simulates a recording of a furnished room of 12 x 9 m,
+# and maps it with and without unwrapping. BUILD_DIR is the build folder (default: build), OUT_DIR
+# the folder of the results (default: out/demo).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 bash scripts/packages.sh
@@ -23,8 +23,8 @@ tofmap="$build/apps/tofmap"
 "$tofmap" evaluate "$out/recording" --out "$out/evaluation"
 
 echo
-echo "with and without unwrapping: $out/evaluation/report.html, to open in a browser"
-echo "the map:                     $out/map/map.ply, look at it with: $tofmap view $out/map"
+echo "with and without unwrapping: $out/evaluation/report.html, open it in a browser"
+echo "the map:                     $out/map/map.ply, view it with: $tofmap view $out/map"
 echo "its report and pictures:     $out/map/report.html, $out/map/pictures"
 echo "the map without unwrapping:  $out/map_wrapped/map.ply"
 echo "the recording:               $out/recording"

@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Installs the Debian 12 packages that building and running tofmap need, with --tests those of its
-# tests as well; those that are there already cost nothing.
+# Installs the Debian 12 packages that are needed to build and run tofmap and, with --tests, also
+# those of its tests. Packages that are installed already are skipped.
 set -euo pipefail
 
 packages=(
@@ -20,6 +20,7 @@ fi
 if (($# == 1)); then
   packages+=(
     libgtest-dev libgmock-dev libbenchmark-dev gcovr xvfb
+    clang-14 clang-format-14 clang-tidy-14 doxygen
     chromium chromium-driver python3-selenium python3-pil python3-yaml
   )
 fi

@@ -2,9 +2,8 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Installs what is missing, builds tofmap as its Debian packages want it, with warnings as errors,
-# and runs all tests.
-# BUILD_DIR chooses the build folder (default: build).
+# Installs missing packages, builds tofmap as for its Debian packages, with warnings as errors, and
+# runs all tests. BUILD_DIR is the build folder (default: build).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 bash scripts/packages.sh --tests

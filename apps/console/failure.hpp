@@ -10,20 +10,21 @@
 
 namespace tofmap::app {
 
-/// What became of an exception: the exit status that it stands for, and what is said about it.
+/// An exception as the program reports it: exit status and message.
 struct Failure {
   int status = 0;
   std::string message;
 };
 
-/// The failure of an exception that is not Interrupted.
+/// The exit status and message for an exception, which must not be Interrupted.
 Failure failure_of(const std::exception_ptr& error);
 
-/// The failures of parts of a run that the other parts do not need: each is noted, and the run goes
-/// on.
+/// Collects the failures of optional parts of a run, such as a mesh or pictures. The run continues
+/// without them.
 class Failures {
  public:
-  /// Does a part of the run, called `what`. Returns whether it could be done. Interrupted passes.
+  /// Calls `part` and returns whether it succeeded. An exception is stored under the name `what`;
+  /// only Interrupted is passed on.
   template <class Part>
   bool attempt(const std::string& what, const Part& part) {
     try {
@@ -39,13 +40,13 @@ class Failures {
 
   bool empty() const { return failed_.empty(); }
 
-  /// Names of the parts that failed, with the reason: "mesh.ply: out of memory".
+  /// The names of the parts that failed, each with the reason: "mesh.ply: out of memory".
   std::vector<std::string> texts() const;
 
-  /// The exit status of the first failure; `status` if there is none.
+  /// The exit status of the first failure, or `status` if nothing failed.
   int status_or(int status) const;
 
-  /// Throws the first failure as it came.
+  /// Throws the exception of the first failure again. There must be one.
   [[noreturn]] void rethrow_first() const;
 
  private:

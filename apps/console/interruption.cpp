@@ -10,7 +10,7 @@ namespace tofmap::app {
 namespace {
 
 std::atomic<bool> interrupted = false;
-static_assert(std::atomic<bool>::is_always_lock_free);  // else no signal might set it
+static_assert(std::atomic<bool>::is_always_lock_free);  // required in a signal handler
 
 extern "C" void note_interruption(int signal) {
   interrupted = true;
@@ -20,7 +20,7 @@ extern "C" void note_interruption(int signal) {
 }  // namespace
 
 void watch_for_interruption() {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is a failure to write it
+  std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit becomes a write error
   std::signal(SIGINT, note_interruption);
   std::signal(SIGTERM, note_interruption);
 }

@@ -4,20 +4,20 @@
 
 namespace tofmap::app {
 
-/// From here on the first Ctrl-C (or SIGTERM) is only noted, for commands to finish cleanly;
-/// the second one ends the program at once.
+/// Catches the first Ctrl-C or SIGTERM from now on, so that commands can finish cleanly (see
+/// is_interrupted). The second one ends the program at once.
 void watch_for_interruption();
 
-/// True once the user wants to stop.
+/// Whether Ctrl-C or SIGTERM has been caught.
 bool is_interrupted();
 
-/// Forgets that the user wanted to stop: what is done from here on takes a further Ctrl-C to end.
+/// Clears the interruption, so that the work from here on is interrupted only by another Ctrl-C.
 void count_interruptions_anew();
 
-/// Thrown where work that leaves nothing ends because the user wants to stop.
+/// Thrown by stop_if_interrupted, to abandon work that leaves no partial result.
 struct Interrupted {};
 
-/// Throws Interrupted once the user wants to stop.
+/// Throws Interrupted if Ctrl-C or SIGTERM has been caught.
 void stop_if_interrupted();
 
 }  // namespace tofmap::app

@@ -22,7 +22,7 @@ constexpr std::chrono::milliseconds unannounced = 2s;
 constexpr std::chrono::milliseconds between_renewals = 200ms;
 constexpr std::chrono::milliseconds between_lines = 5s;
 
-/// "8 s", "3 min", "2 h 5 min"
+/// A duration in words: "8 s", "3 min", "2 h 5 min".
 std::string duration(double seconds) {
   const auto whole = [](double number) { return fmt::format("{:.0f}", number); };
   constexpr double minute = 60;
@@ -53,7 +53,7 @@ Progress::~Progress() {
   if (has_line_) std::fputc('\n', stderr);
 }
 
-/// Empty if it is not known how much there is.
+/// Empty if the total is unknown.
 std::string Progress::bar(int done) const {
   if (!total_ || *total_ <= 0) return "";
   constexpr int width = 20;
@@ -83,7 +83,7 @@ void Progress::show(int done, const std::string& remark) {
     std::fprintf(stderr, "%s%s\n", what_.c_str(), rest.c_str());
     return;
   }
-  // A longer line would not be overwritten.
+  // A line longer than the terminal could not be overwritten.
   const std::string line = (what_ + bar(done) + rest).substr(0, terminal_columns() - 1);
   std::fprintf(stderr, "\r%s\033[K", line.c_str());
   has_line_ = true;

@@ -8,17 +8,19 @@
 
 namespace tofmap::app {
 
-/// Tells on stderr how far work has come that takes more than two seconds: on a terminal one line
-/// that renews itself, elsewhere a line every few seconds, nothing when quiet.
+/// Prints the progress of work that takes more than two seconds on stderr. On a terminal, one line
+/// is updated in place; elsewhere, a line is printed every few seconds. Prints nothing if `quiet`.
 class Progress {
  public:
-  /// `total` is not known of devices.
+  /// `what` names the steps ("mapping frame"). `total` is the number of steps, empty if it is
+  /// unknown, as for a device.
   Progress(std::string what, std::optional<int> total, bool quiet);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
+  /// Ends the line on the terminal.
   ~Progress();
 
-  /// `remark` follows the numbers, if there is any.
+  /// Shows that `done` steps are finished. `remark` follows the numbers.
   void show(int done, const std::string& remark = "");
 
  private:
@@ -31,7 +33,7 @@ class Progress {
   std::optional<int> total_;
   bool is_quiet_;
   bool is_terminal_;
-  bool has_line_ = false;  ///< on a terminal, which is to be ended
+  bool has_line_ = false;  ///< whether a line on the terminal has yet to be ended
   Clock::time_point start_ = Clock::now();
   Clock::time_point next_;
 };

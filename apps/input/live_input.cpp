@@ -39,8 +39,8 @@ const char* end_name(OpenNi2Source::End end) {
     case OpenNi2Source::End::unplugged:
       return "unplugged";
     case OpenNi2Source::End::timeout:
-      return "no image came any more";
-    case OpenNi2Source::End::none:  // nobody reads on
+      return "no more images";
+    case OpenNi2Source::End::none:  // the reader stopped
     case OpenNi2Source::End::asked:
       return "as asked";
   }
@@ -51,10 +51,12 @@ const char* end_name(OpenNi2Source::End end) {
 
 std::vector<OptionField<LiveOptions>> LiveOptions::fields() {
   return {
-      {"queue", &LiveOptions::queue, 1, 10000, "", "frames that may wait to be worked on"},
+      {"queue", &LiveOptions::queue, 1, 10000, "",
+       "number of frames that may wait to be processed"},
       {"late_frames", &LiveOptions::late_frames, 0, 0, "",
-       "what to do when the queue is full: drop the oldest, or block the device; auto: block what "
-       "waits for its reader, as files do",
+       "what to do with a new frame when the queue is full. drop: drop the oldest frame; block: "
+       "make the device wait; auto: block if the source waits for its reader, as files do, else "
+       "drop",
        "auto | drop | block"},
   };
 }
@@ -98,7 +100,7 @@ std::string LiveInput::silence() const {
   if (source_.end() != OpenNi2Source::End::timeout) return "";
   std::ostringstream text;
   text << uri_ << ": no image for " << timeout_s_
-       << " s (device.timeout_s); what came before is kept";
+       << " s (device.timeout_s); the frames before that are kept";
   return text.str();
 }
 

@@ -16,34 +16,35 @@
 
 namespace tofmap::app {
 
-/// An OpenNI2 device or .oni file as a command uses it: frames arrive in a thread of their own, and
-/// wait in a queue. Ctrl-C ends it.
+/// An OpenNI2 device or .oni file that a command reads. Frames are received in a separate thread
+/// and wait in a queue. Ctrl-C ends the stream.
 class LiveInput {
  public:
-  /// What a command wants beyond the options.
+  /// Settings of a command that are not options.
   struct Wanted {
-    std::filesystem::path oni_file = {};  ///< where to record it; empty: nowhere
-    int most_frames = 0;                  ///< 0: all
+    std::filesystem::path oni_file = {};  ///< .oni file to record the stream to; empty: none
+    int most_frames = 0;                  ///< number of frames after which to stop; 0: no limit
   };
 
-  /// Opens it, as the options say. Throws as OpenNi2Source does.
+  /// Opens a device or .oni file. Throws as OpenNi2Source does.
   LiveInput(const std::string& uri, const ProgramOptions& options, const Wanted& wanted);
 
   FrameSource& frames() { return watched_; }
   const SensorModel& sensor() const { return source_.sensor(); }
 
-  /// Frames that came too late or not whole, for a line of status; empty if there are none.
+  /// The numbers of late frames and of unpaired and lost images, as a phrase for a status line.
+  /// Empty if there are none.
   std::string losses() const;
 
-  /// The same in full, for a report, and why it ended.
+  /// URI, losses and the reason for the end, for report.json.
   nlohmann::ordered_json report();
 
-  /// What its first frames are doubted for: whether A and B belong together (docs/cameras.md).
+  /// The warnings of WatchedSource about the frames so far. `camera` may be null.
   std::vector<std::string> warnings(const CameraErrors* camera = nullptr) {
     return watched_.warnings(camera);
   }
 
-  /// If the device fell silent, a message that says so; else empty.
+  /// A message if the device stopped sending images, else empty.
   std::string silence() const;
 
  private:

@@ -15,13 +15,14 @@
 
 namespace tofmap::app {
 
-/// The frames that `map` makes a map of, from a recording or a device, and what only one of the two
-/// can tell about them.
+/// The frames that the command `map` reads, from a recording or a device, together with functions
+/// that only one of these has.
 class MapInput {
  public:
   /// Opens the recording or device. Throws InputError if that fails.
   MapInput(const std::filesystem::path& source, const ProgramOptions& options);
 
+  /// Folder of the recording, or URI of the device.
   const std::string& name() const { return name_; }
   FrameSource& frames();
 
@@ -30,20 +31,22 @@ class MapInput {
 
   bool is_recording() const { return recording_.has_value(); }
 
-  /// Frames that came too late or incomplete, as a phrase. Empty if there are none.
+  /// The numbers of a device's late frames and of its unpaired and lost images, as a phrase. Empty
+  /// if there are none, and for a recording.
   std::string losses() const { return live_ ? live_->losses() : losses_; }
 
-  /// What is suspicious about the frames so far. `camera` is what unwrapping found of the camera's
-  /// errors.
+  /// Warnings about the frames so far. `camera` holds the systematic errors that unwrapping has
+  /// estimated.
   std::vector<std::string> warnings(const CameraErrors& camera);
 
-  /// Ends a device, whose thread watches for Ctrl-C. What it told is kept.
+  /// Closes a device and ends its thread. Its losses and report can still be read. Does nothing for
+  /// a recording.
   void close();
 
-  /// What became of the images of a device, and why it ended; null for a recording. After close().
+  /// LiveInput::report of a device; null for a recording. Valid after close().
   const nlohmann::ordered_json& acquisition() const { return acquisition_; }
 
-  /// A message if the device stopped sending images, else empty. After close().
+  /// A message if the device stopped sending images, else empty. Valid after close().
   const std::string& silence() const { return silence_; }
 
  private:

@@ -12,7 +12,8 @@ namespace tofmap::app {
 
 void RecordingArguments::add_to(CLI::App& command, const std::string& meaning) {
   command.add_option("SEQ", sequence, meaning)->required();
-  command.add_option("--calibration", calibration, "what 'tofmap calibrate' found of the camera");
+  command.add_option("--calibration", calibration,
+                     "calibration of the camera, as 'tofmap calibrate' writes it");
 }
 
 void RecordingArguments::apply(OptionTable& table) const {

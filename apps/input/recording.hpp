@@ -17,33 +17,36 @@ class App;
 
 namespace tofmap::app {
 
-/// A recording as commands take it from the command line: SEQ, and --calibration, which is short
-/// for camera.calibration_file.
+/// The command line arguments that name a recording: SEQ, and --calibration, which stands for the
+/// option camera.calibration_file.
 struct RecordingArguments {
-  std::filesystem::path sequence;
-  std::string calibration;
+  std::filesystem::path sequence;  ///< folder of the recording
+  std::string calibration;         ///< calibration file; empty if none is given
 
-  /// `meaning` says what SEQ may be.
+  /// Adds the arguments to a command. `meaning` is the help text of SEQ.
   void add_to(CLI::App& command, const std::string& meaning = "folder of the recording");
 
-  /// Puts what was given into the table of a command.
+  /// Sets camera.calibration_file in the table of a command if --calibration was given.
   void apply(OptionTable& table) const;
 };
 
-/// What the options say of a camera; nothing if they name no file.
+/// Reads the calibration file that the options name. Empty if they name none. Throws InputError if
+/// it cannot be read.
 CameraCalibration calibration_of(const CameraOptions& options);
 
-/// What a frame's images in a result are called, by frame: as its phase_a image; if an earlier
-/// frame has an image of that name in another folder, with the frame's number.
+/// The file name of each frame's images in a result: that of its phase_a image. If an earlier frame
+/// has a phase_a image of the same name in another folder, the frame's number is added. Empty for a
+/// frame without a phase_a image.
 std::vector<std::filesystem::path> image_names(const SequenceReader& recording);
 
-/// On stdout, a line each.
+/// Prints each warning on a line of stdout.
 void print_warnings(const std::vector<std::string>& warnings);
 
-/// Prints what of the truth is damaged on stderr.
+/// Prints on stderr which parts of the truth are damaged.
 void print_remarks(const RecordedTruth& truth);
 
-/// Opens a recording of a calibrated camera.
+/// Opens a recording with the calibration that the options name. Throws InputError if either cannot
+/// be read.
 SequenceReader open_recording(const std::filesystem::path& sequence, const CameraOptions& options);
 
 }  // namespace tofmap::app

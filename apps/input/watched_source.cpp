@@ -14,7 +14,7 @@
 namespace tofmap::app {
 namespace {
 
-/// As many of the first frames tell.
+/// The number of frames at the start of a source that are examined.
 constexpr std::size_t enough = 12;
 
 FirstFrames judge_first(const std::vector<DualFrequencyFrame>& frames, const SensorModel& sensor) {
@@ -28,7 +28,7 @@ FirstFrames judge_first(const std::vector<DualFrequencyFrame>& frames, const Sen
   return {{}, residual};
 }
 
-/// All warnings about a source: of its first frames, of the offset between the frequencies, and of
+/// All warnings about a source: about its first frames, the offset between the frequencies, and
 /// gaps in time.
 std::vector<std::string> all_warnings(const FirstFrames& first, const CameraErrors* camera,
                                       const std::optional<std::string>& gap) {
@@ -40,7 +40,7 @@ std::vector<std::string> all_warnings(const FirstFrames& first, const CameraErro
   return warnings;
 }
 
-/// Where more than three periods passed from one frame to the next.
+/// A warning if some frames are more than 3.5 median frame periods apart. Empty if there are none.
 std::optional<std::string> gap_warning(const std::vector<double>& times_s) {
   std::vector<double> periods_s;
   for (std::size_t i = 1; i < times_s.size(); ++i) periods_s.push_back(times_s[i] - times_s[i - 1]);
@@ -55,7 +55,7 @@ std::optional<std::string> gap_warning(const std::vector<double>& times_s) {
   if (gaps == 0) return std::nullopt;
   return counted(gaps, "gap") + fmt::format(
                                     " between frames, the longest of {:.2f} s after time {:.3f} s; "
-                                    "a path across is less sure",
+                                    "the trajectory across a gap is less certain",
                                     longest_s, before_s);
 }
 

@@ -11,14 +11,15 @@
 
 namespace tofmap::app {
 
-/// What the first frames of a source show.
+/// Findings about the first frames of a source.
 struct FirstFrames {
   std::vector<std::string> warnings;
-  std::optional<ResidualSurvey> residual;  ///< if nothing is wrong with the images themselves
+  std::optional<ResidualSurvey> residual;  ///< empty if there are warnings, or too few returns
 };
 
-/// Passes the frames of another source on, and looks at them: at the first whether A and B belong
-/// together, and are ranges along rays, and at all for gaps in time (docs/cameras.md).
+/// Passes on the frames of another source and checks them (docs/cameras.md). The first frames are
+/// checked for wrong frequencies, for swapped images and for depths along the optical axis in place
+/// of ranges; all frames are checked for gaps in time.
 class WatchedSource final : public FrameSource {
  public:
   explicit WatchedSource(FrameSource& source) : source_(source) {}
@@ -27,8 +28,8 @@ class WatchedSource final : public FrameSource {
   std::optional<SourcedFrame> next() override;
   std::optional<int> frame_count() const override { return source_.frame_count(); }
 
-  /// What is suspicious about the frames so far. `camera` is what unwrapping found of the camera's
-  /// errors, if it is known.
+  /// Warnings about the frames so far. `camera` holds the systematic errors that unwrapping has
+  /// estimated, or is null.
   std::vector<std::string> warnings(const CameraErrors* camera = nullptr);
 
  private:
@@ -36,11 +37,11 @@ class WatchedSource final : public FrameSource {
 
   FrameSource& source_;
   std::vector<DualFrequencyFrame> first_;
-  std::optional<FirstFrames> judged_;  ///< empty before the first frames have come
-  std::vector<double> times_s_;
+  std::optional<FirstFrames> judged_;  ///< empty until enough frames were read
+  std::vector<double> times_s_;        ///< timestamps of all undamaged frames
 };
 
-/// What is suspicious about a recording, in the same way.
+/// The same warnings about a recording, of which only the first frames are read.
 std::vector<std::string> warnings_about(const SequenceReader& recording,
                                         const CameraErrors* camera = nullptr);
 

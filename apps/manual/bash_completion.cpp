@@ -14,7 +14,7 @@
 namespace tofmap::app {
 namespace {
 
-/// The options of a command, and the keys of its settings, as a case of bash.
+/// Writes a bash case with the options of a command and the keys of its settings.
 void write_words(std::ostream& out, const CLI::App& command) {
   std::vector<std::string> options;
   for (const CLI::Option* option : named_options(command)) {
@@ -26,7 +26,8 @@ void write_words(std::ostream& out, const CLI::App& command) {
       << "\"\n      keys=\"" << joined(keys, " ") << "\" ;;\n";
 }
 
-/// What those that are limited to some values may be, as cases of command, word before and setting.
+/// Writes bash cases with the allowed values of a command's options, arguments and settings. A case
+/// is selected by command, preceding word and setting.
 void write_choices(std::ostream& out, const CLI::App& command) {
   const std::string& name = command.get_name();
   const auto write = [&](const std::string& before, const std::string& key,
@@ -65,7 +66,7 @@ std::string bash_completion(const CLI::App& program) {
   case $command in
 )";
   for (const CLI::App* command : commands_of(program)) write_words(out, *command);
-  // A setting and its value are three words, with = between.
+  // Bash splits a setting and its value into three words: key, = and value.
   out << R"(  esac
   for ((i = COMP_CWORD - 1; i > 1; i--)); do
     [[ ${COMP_WORDS[i]} == -* ]] && option=${COMP_WORDS[i]} && break

@@ -42,7 +42,7 @@ std::vector<OptionText> settings_of(const CLI::App& command) {
   return option_table(command.get_name(), options).texts();
 }
 
-/// Its type tells them: "TEXT:{a,b,c}".
+/// The choices are part of the type name: "TEXT:{a,b,c}".
 std::vector<std::string> choices_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t begin = type.find('{');

@@ -12,26 +12,28 @@ class App;
 class Option;
 }  // namespace CLI
 
-/// What the program tells of its command line, for its manual.
+/// Descriptions of the command line, from which the manual and the completion are made.
 namespace tofmap::app {
 
+/// The commands of the program.
 std::vector<const CLI::App*> commands_of(const CLI::App& program);
 
-/// Those that are not given by their place.
+/// The arguments of a command that begin with "--".
 std::vector<const CLI::Option*> named_options(const CLI::App& command);
 
+/// The arguments of a command that are recognised by their position.
 std::vector<const CLI::Option*> positionals(const CLI::App& command);
 
-/// The options that a command takes by --set; none if it does not take that.
+/// The options that a command takes by --set. Empty if it has no --set.
 std::vector<OptionText> settings_of(const CLI::App& command);
 
-/// The values that an option is limited to; empty if there are none such.
+/// The allowed values of a command line argument. Empty if it is not limited to some values.
 std::vector<std::string> choices_of(const CLI::Option& option);
 
-/// Those of a setting.
+/// The allowed values of an option of --set. Empty if it is not limited to some values.
 std::vector<std::string> choices_of(const OptionText& setting);
 
-/// What a setting may be, with its unit.
+/// The range or the allowed values of an option of --set, with the unit.
 std::string limits(const OptionText& setting);
 
 }  // namespace tofmap::app

@@ -10,13 +10,13 @@ class App;
 
 namespace tofmap::app {
 
-/// The manual page of a program with commands, for man(1).
+/// The manual page of the program, in roff for man(1).
 std::string manual_page(const CLI::App& program);
 
-/// A script that has bash complete commands, their options, and the keys of --set.
+/// A bash script that completes commands, their options, and the keys and values of --set.
 std::string bash_completion(const CLI::App& program);
 
-/// Every option of --set and --config as Markdown, a table a group.
+/// All options of --set and --config as Markdown, with one table per group.
 std::string option_reference();
 
 }  // namespace tofmap::app

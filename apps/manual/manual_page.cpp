@@ -16,7 +16,7 @@
 namespace tofmap::app {
 namespace {
 
-/// The letters of a text in UTF-8, a number each.
+/// The Unicode code points of a UTF-8 text.
 std::vector<unsigned> code_points(const std::string& text) {
   std::vector<unsigned> points;
   for (const char letter : text) {
@@ -32,7 +32,7 @@ std::vector<unsigned> code_points(const std::string& text) {
   return points;
 }
 
-/// A line of text as roff takes it.
+/// A line of text with the characters escaped that are special in roff.
 std::string roff(const std::string& text) {
   std::string out = text.starts_with('.') || text.starts_with('\'') ? "\\&" : "";
   for (const unsigned point : code_points(text)) {
@@ -51,7 +51,7 @@ std::string roff(const std::string& text) {
 
 std::string name_of(const CLI::Option& positional) { return positional.get_name(true); }
 
-/// What follows an option: nothing, one of some values, or any.
+/// The value that follows an option in the manual: empty for a flag, else its choices or VALUE.
 std::string value_of(const CLI::Option& option) {
   if (option.get_items_expected_max() == 0) return "";
   const std::vector<std::string> choices = choices_of(option);
@@ -84,9 +84,9 @@ std::string manual_page(const CLI::App& program) {
       << ".SH NAME\ntofmap \\- " << roff(program.get_description()) << '\n'
       << ".SH SYNOPSIS\n.B tofmap\n.I command\n[options]\n.SH COMMANDS\n";
   for (const CLI::App* command : commands_of(program)) write_command(out, *command);
-  out << ".SH SETTINGS\nOptions that\n.B \\-\\-set\nand a file for\n.B \\-\\-config\ntake; "
-         "defaults in parentheses. A command has those of the groups that it uses: \\(aqtofmap "
-         "config COMMAND\\(aq prints them.\n";
+  out << ".SH SETTINGS\nOptions that\n.B \\-\\-set\nand a file for\n.B \\-\\-config\ntake, with "
+         "their defaults in parentheses. Each command has some of them: \\(aqtofmap "
+         "config COMMAND\\(aq prints these.\n";
   ProgramOptions options;
   for (const OptionText& option : option_table("", options).texts()) {
     out << ".TP\n.B " << roff(option.key()) << " \\fR(" << roff(option.value) << ")\n"

@@ -13,7 +13,7 @@
 namespace tofmap::app {
 namespace {
 
-/// The commands that have a group of options.
+/// The names of the commands that have a group of options.
 std::vector<std::string> commands_with(const std::string& group) {
   std::vector<std::string> names;
   for (const std::string& name : commands_with_options()) {
@@ -24,7 +24,7 @@ std::vector<std::string> commands_with(const std::string& group) {
   return names;
 }
 
-/// A | ends the cell of a table.
+/// A text with | escaped, which would end a table cell in Markdown.
 std::string cell(std::string text) {
   for (std::size_t i = text.find('|'); i != std::string::npos; i = text.find('|', i + 2)) {
     text.insert(i, "\\");
@@ -37,8 +37,8 @@ std::string cell(std::string text) {
 std::string option_reference() {
   std::ostringstream out;
   out << "# Options\n\nEvery option of `--set group.name=value` and of a file for `--config`, as "
-         "`tofmap manual options` prints\nthem. `tofmap config COMMAND` prints those of a command "
-         "as YAML that can be fed back.\n";
+         "`tofmap manual options` prints\nthem. `tofmap config COMMAND` prints the options of a "
+         "command as YAML, for use with `--config`.\n";
   ProgramOptions options;
   bool is_first = true;
   std::string group;

@@ -12,27 +12,28 @@ namespace tofmap::app {
 
 std::vector<OptionField<CameraOptions>> CameraOptions::fields() {
   return {{"calibration_file", &CameraOptions::calibration_file, 0, 0, "",
-           "what 'tofmap calibrate' found of the camera; empty: nothing"}};
+           "calibration of the camera, as 'tofmap calibrate' writes it; empty: none"}};
 }
 
 std::vector<OptionField<CalibrationOptions>> CalibrationOptions::fields() {
   using O = CalibrationOptions;
   return {
       {"reference", &O::reference, 0, 0, "",
-       "truth: the recording's true ranges; wall: a flat wall at known distances; residual: how "
-       "both "
-       "frequencies disagree; auto: wall if wall_file is given, else truth where there is any",
+       "what to compare ranges with. truth: the true ranges of the recording; wall: a flat wall at "
+       "known distances; residual: the inter-frequency residual; auto: wall if wall_file is given, "
+       "else truth if the recording has it, else residual",
        "auto | truth | wall | residual"},
       {"wall_file", &O::wall_file, 0, 0, "",
-       "lines 'frame distance', metres from the camera along the wall's normal"},
+       "file with lines 'frame distance': distance of the camera from the wall along its normal, "
+       "metres"},
       {"harmonics", &O::harmonics, 0, 0, "",
-       "orders of the periodic error over a wavelength, 1 to 16, with blanks between; empty: 1 2 3 "
-       "4 8 against known ranges, 4 8 "
-       "by the residual, in which motion feigns lower ones"},
-      {"every_frame", &O::every_frame, 1, 100000, "", "every how manieth frame is looked at"},
+       "harmonics of the periodic error to fit, whole numbers from 1 to 16 separated by spaces; "
+       "empty: 1 2 3 4 8 if ranges are known, 4 8 from the residual, in which motion induces lower "
+       "harmonics"},
+      {"every_frame", &O::every_frame, 1, 100000, "", "uses every n-th frame"},
       {"max_error_m", &O::max_error_m, 0.001, 1, "m",
-       "pixels farther off than this, from the middle of all, count as wrong, unless noise "
-       "explains it"},
+       "pixels whose error (or residual) differs from the median by more than this are outliers, "
+       "unless noise explains the difference"},
   };
 }
 
@@ -47,11 +48,11 @@ std::vector<int> harmonic_orders(const CalibrationOptions& options, bool ranges_
     const bool is_number = word.find_first_not_of("0123456789") == std::string::npos;
     const int order = is_number && word.size() < 3 ? std::stoi(word) : 0;
     if (order < 1 || order > most) {
-      throw UsageError("calibration.harmonics: '" + word + "' is no whole number from 1 to " +
+      throw UsageError("calibration.harmonics: '" + word + "' is not a whole number from 1 to " +
                        std::to_string(most));
     }
     if (std::ranges::find(orders, order) != orders.end()) {
-      throw UsageError("calibration.harmonics: " + word + " is there twice");
+      throw UsageError("calibration.harmonics: " + word + " is given twice");
     }
     orders.push_back(order);
   }

@@ -9,26 +9,42 @@
 
 namespace tofmap::app {
 
-/// The camera of a recording.
+/// The camera of a recording or device, group `camera`.
 struct CameraOptions {
+  /// Calibration of the camera, as `tofmap calibrate` writes it. Empty: none.
   std::string calibration_file;
 
   static std::vector<OptionField<CameraOptions>> fields();
 };
 
-/// How a camera is calibrated.
+/// How `calibrate` fits the errors of a camera, group `calibration`.
 struct CalibrationOptions {
+  /// The reference that ranges are compared with. "truth": the true ranges of the recording;
+  /// "wall": a flat wall at known distances; "residual": the inter-frequency residual; "auto": wall
+  /// if wall_file is given, else truth if the recording has it, else residual.
   std::string reference = "auto";
+
+  /// File with lines "frame distance": the distance of the camera from the wall along its normal,
+  /// metres. Needed for reference "wall".
   std::string wall_file;
+
+  /// Harmonics of the periodic error to fit, whole numbers from 1 to 16 separated by spaces. Empty:
+  /// the default of harmonic_orders().
   std::string harmonics;
+
+  /// Uses every n-th frame, 1 … 100000.
   int every_frame = 1;
+
+  /// Pixels whose error (for reference "residual": whose residual) differs from the median by more
+  /// than this are outliers, unless noise explains the difference. Metres, 0.001 … 1.
   double max_error_m = 0.15;
 
   static std::vector<OptionField<CalibrationOptions>> fields();
 };
 
-/// The orders of the harmonics that are fitted. Throws UsageError if the option holds something
-/// else than whole numbers from 1 to 16.
+/// The orders of the harmonics to fit: those of the option or, if it is empty, 1, 2, 3, 4 and 8 if
+/// true ranges are known, and 4 and 8 otherwise. Throws UsageError if the option contains anything
+/// but different whole numbers from 1 to 16.
 std::vector<int> harmonic_orders(const CalibrationOptions& options, bool ranges_are_known);
 
 }  // namespace tofmap::app

@@ -17,7 +17,7 @@ std::vector<OptionField<EvaluationOptions>> EvaluationOptions::fields() {
       "methods to compare, separated by spaces: " + all_names<UnwrapMethod>(", ");
   return {
       {"methods", &O::methods, 0, 0, "", methods_meaning},
-      {"down_to", &O::down_to, 0, 0, "", "how far to go", "unwrapping | map"},
+      {"down_to", &O::down_to, 0, 0, "", "last stage to compare", "unwrapping | map"},
   };
 }
 
@@ -27,7 +27,7 @@ std::vector<std::string> method_names(const EvaluationOptions& options) {
   for (std::string name; words >> name;) {
     if (!find_named<UnwrapMethod>(name)) {
       throw UsageError("option evaluation.methods: '" + name +
-                       "' is no method; allowed: " + all_names<UnwrapMethod>(" "));
+                       "' is not a method; allowed: " + all_names<UnwrapMethod>(" "));
     }
     if (std::ranges::find(names, name) != names.end()) {
       throw UsageError("option evaluation.methods: '" + name + "' is named twice");
@@ -35,7 +35,7 @@ std::vector<std::string> method_names(const EvaluationOptions& options) {
     names.push_back(name);
   }
   if (names.empty()) {
-    throw UsageError("option evaluation.methods: names no method; allowed: " +
+    throw UsageError("option evaluation.methods: is empty; allowed: " +
                      all_names<UnwrapMethod>(" "));
   }
   return names;

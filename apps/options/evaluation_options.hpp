@@ -11,14 +11,17 @@ namespace tofmap::app {
 
 /// What `evaluate` compares, group `evaluation`.
 struct EvaluationOptions {
+  /// Names of the unwrapping methods to compare, separated by spaces.
   std::string methods = "none pixel single paper jump joint";
+
+  /// The last stage to compare: "unwrapping" or "map".
   std::string down_to = "map";
 
   static std::vector<OptionField<EvaluationOptions>> fields();
 };
 
-/// The names in `methods`, in their order. Throws UsageError for one that is no method, for one
-/// that comes twice, and if there is none.
+/// The names in `options.methods`, in the order given. Throws UsageError if a name is unknown or is
+/// given twice, or if there are none.
 std::vector<std::string> method_names(const EvaluationOptions& options);
 
 }  // namespace tofmap::app

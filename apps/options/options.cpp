@@ -14,7 +14,7 @@ namespace tofmap::app {
 
 std::vector<OptionField<RunOptions>> RunOptions::fields() {
   return {{"threads", &RunOptions::threads, 0, 1024, "",
-           "threads to use; 0: all. The result is the same for any number"}};
+           "number of threads; 0: all. It does not change the result"}};
 }
 
 const std::vector<std::string>& commands_with_options() {
@@ -30,7 +30,7 @@ OptionTable option_table(const std::string& command, ProgramOptions& options) {
   const std::vector<std::string>& known = commands_with_options();
   if (!command.empty() && std::ranges::find(known, command) == known.end()) {
     throw UsageError("'" + command +
-                     "' is no command with options; there are: " + joined(known, ", "));
+                     "' is not a command with options; allowed: " + joined(known, ", "));
   }
   if (command == "unwrap") options.pipeline.filters.chain = smoothing_chain();
   OptionTable table;

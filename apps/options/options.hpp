@@ -19,22 +19,28 @@
 
 namespace tofmap::app {
 
-/// Options that every command has.
+/// Options that every command has, without a group.
 struct RunOptions {
+  /// Number of threads, 0 … 1024. 0: all. It does not change the result.
   int threads = 0;
 
   static std::vector<OptionField<RunOptions>> fields();
 };
 
-/// How frames of a device wait to be worked on.
+/// How frames of a device wait to be processed, group `live`.
 struct LiveOptions {
+  /// Number of frames that may wait to be processed, 1 … 10000.
   int queue = 8;
+
+  /// What to do with a new frame when the queue is full. "drop": drop the oldest frame; "block":
+  /// make the device wait; "auto": block if the source waits for its reader, as files do, else
+  /// drop.
   std::string late_frames = "auto";
 
   static std::vector<OptionField<LiveOptions>> fields();
 };
 
-/// The options of all commands; each uses its own groups.
+/// The options of all commands. Each command uses some of the groups.
 struct ProgramOptions {
   RunOptions run;
   SimulatorOptions simulator;
@@ -51,11 +57,12 @@ struct ProgramOptions {
   ReportOptions report;
 };
 
-/// The commands that take options by --set and --config.
+/// The names of the commands that take options by --set and --config.
 const std::vector<std::string>& commands_with_options();
 
-/// The groups of one command, or of all if `command` is empty, bound to `options`, which must
-/// outlive the table. Throws UsageError for a command that has no options.
+/// A table of the option groups of one command, or of all commands if `command` is empty. It is
+/// bound to `options`, which must outlive the table. For `unwrap`, the default filter chain in
+/// `options` is replaced. Throws UsageError for a command that has no options.
 OptionTable option_table(const std::string& command, ProgramOptions& options);
 
 }  // namespace tofmap::app

@@ -9,8 +9,8 @@ std::vector<OptionField<PictureOptions>> PictureOptions::fields() {
   using O = PictureOptions;
   return {
       {"frames", &O::frames, 0, 100000, "",
-       "frames to draw, spread evenly over the recording; 0: none"},
-      {"map_size_px", &O::map_size_px, 100, 8000, "px", "longer side of the map's pictures"},
+       "number of frames to draw, spread evenly over the recording; 0: none"},
+      {"map_size_px", &O::map_size_px, 100, 8000, "px", "longer side of the pictures of the map"},
   };
 }
 
@@ -18,9 +18,9 @@ std::vector<OptionField<ReportOptions>> ReportOptions::fields() {
   using O = ReportOptions;
   return {
       {"frames", &O::frames, 0, 200, "",
-       "frames that report.html steps through, spread evenly over the recording"},
+       "number of frames shown in report.html, spread evenly over the recording"},
       {"points", &O::points, 1000, 500000, "",
-       "points, at most, of a map that can be turned in report.html"},
+       "largest number of points of each map in the 3D view of report.html"},
   };
 }
 

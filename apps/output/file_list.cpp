@@ -34,7 +34,7 @@ std::uint32_t checksum_of(const fs::path& file) {
   return checksum.checksum();
 }
 
-/// Runs a step that reads folders; what the system says against it becomes an InputError.
+/// Runs a step that reads folders. A filesystem_error becomes an InputError.
 template <class Step>
 auto reading(const Step& step) {
   try {
@@ -57,7 +57,7 @@ FileList::Entry FileList::entry_of(const fs::path& path) {
   const fs::file_status status = fs::symlink_status(path);
   if (fs::is_directory(status)) return {.is_folder = true};
   if (!fs::is_regular_file(status)) {
-    throw InputError(path.string() + ": is neither file nor folder");
+    throw InputError(path.string() + ": is neither a file nor a folder");
   }
   return {.size_bytes = fs::file_size(path), .checksum = checksum_of(path)};
 }
@@ -146,11 +146,11 @@ bool FileList::remove_from(const fs::path& folder) const {
     try {
       if (!entry.is_folder && holds(name, path)) fs::remove(path, ignored);
     } catch (const std::exception&) {
-      continue;  // it is not there, or of others
+      continue;  // missing or unreadable: nothing to delete
     }
   }
   fs::remove(folder / file_name, ignored);
-  // Deeper ones come later by name; those that hold something stay.
+  // In order of name, folders follow those that contain them. Folders that are not empty stay.
   for (const fs::path& inner : folders | std::views::reverse) fs::remove(inner, ignored);
   fs::remove(folder, ignored);
   return !fs::exists(fs::symlink_status(folder, ignored));

@@ -9,25 +9,26 @@
 
 namespace tofmap::app {
 
-/// JSON has no NaN: what could not be had is null.
+/// A number as JSON. NaN and infinity become null, since JSON has neither.
 nlohmann::ordered_json json_number(double value);
 
-/// {"index", "timestamp", "damage"} of a frame that could not be read.
+/// Index, timestamp and damage of a frame that could not be read.
 nlohmann::ordered_json damaged_json(const SourcedFrame& frame);
 
-/// Adds "removed" and "corrected", pixels by filter. A filter that is named twice counts once.
+/// Adds the numbers of removed and corrected pixels of each filter. The numbers of a filter that is
+/// applied twice are added up.
 void add_filter_counts(nlohmann::ordered_json& frame, const std::vector<FilterCount>& counts);
 
-/// One frame of a map's report: unwrapping, filtering, tracking and times.
+/// One frame in the report of a map: unwrapping, filtering, tracking and times.
 nlohmann::ordered_json frame_json(const FrameRecord& record);
 
-/// Mean times of the stages over the frames that could be read.
+/// Mean times of the stages over the frames that were unwrapped and tracked.
 StageTimes mean_times(const RoomMap& map);
 
-/// Totals and means over a run.
+/// Totals and means over the frames of a map.
 nlohmann::ordered_json summary_json(const RoomMap& map);
 
-/// What is known of the camera's errors, and what to tell of it.
+/// The estimated errors of the camera, and remarks about them.
 nlohmann::ordered_json errors_json(const ErrorSurvey& survey);
 
 }  // namespace tofmap::app

@@ -8,7 +8,7 @@
 
 namespace tofmap::app {
 
-/// The text of a JSON file. Bytes of names and messages that are no valid UTF-8 become U+FFFD.
+/// The text of a JSON file. Bytes in strings that are not valid UTF-8 become U+FFFD.
 std::string json_text(const nlohmann::ordered_json& json);
 
 }  // namespace tofmap::app

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The file that a link leads to, which is replaced instead of the link.
+/// The file that a link points to, so that the file is replaced and the link stays.
 fs::path behind_links(const fs::path& file) {
   std::error_code error;
   if (!fs::is_symlink(file, error)) return file;
@@ -34,12 +34,13 @@ OutputFile::OutputFile(const fs::path& file,
   }
   if (fs::exists(file) && !may_replace(file)) {
     throw InputError(file.string() +
-                     ": is there already, and no such result; choose another name, or remove it");
+                     ": exists already, and is not a file that this command writes; choose another "
+                     "name, or remove it");
   }
   std::error_code ignored;
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), ignored);
   if (!std::ofstream(partial_)) {
-    throw InputError(file.string() + ": cannot be written; choose a folder that can be");
+    throw InputError(file.string() + ": cannot be written; choose a folder that is writable");
   }
 }
 

@@ -7,23 +7,24 @@
 
 namespace tofmap::app {
 
-/// A result of one file that appears only when it is whole: it is written beside its place, and
-/// `commit` moves it there. Without commit nothing is left, and an earlier file stays.
+/// A result in one file, which appears only when it is complete: a temporary file is written beside
+/// it, and `commit` moves that into place. Without commit the temporary file is deleted, and an
+/// earlier file stays as it is.
 class OutputFile {
  public:
-  /// Makes the folder that the file is to be in. Throws InputError that names the file and the
-  /// remedy if it cannot be written, or is there already and `may_replace` does not say that it may
-  /// go; UsageError if the path is empty.
+  /// Creates the folder of the file. Throws InputError, with the path and a remedy, if the file
+  /// cannot be written, or exists already and `may_replace(existing)` is false. Throws UsageError
+  /// if the path is empty.
   OutputFile(const std::filesystem::path& file,
              const std::function<bool(const std::filesystem::path& existing)>& may_replace);
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
   ~OutputFile();
 
-  /// Where to write until commit.
+  /// The path of the temporary file, to be written before commit.
   const std::filesystem::path& path() const { return partial_; }
 
-  /// Moves it into place. Throws InputError if it is empty: then it could not be written.
+  /// Moves the temporary file into place. Throws InputError if that fails or the file is empty.
   void commit();
 
  private:

@@ -19,8 +19,8 @@ namespace tofmap::app {
 namespace fs = std::filesystem;
 namespace {
 
-/// Where a result goes: links are followed, "results/" and "results" are one folder, "." is where
-/// we stand.
+/// The absolute path of an output folder, with links followed and without a trailing slash. Throws
+/// UsageError if the path is empty, InputError if it is a link to something that does not exist.
 fs::path resolved(const fs::path& folder) {
   if (folder.empty()) throw UsageError("the output folder has no name");
   std::error_code error;
@@ -38,7 +38,7 @@ fs::path sibling(const fs::path& folder, const std::string& suffix) {
   return folder.parent_path() / (folder.filename().string() + suffix + std::to_string(getpid()));
 }
 
-/// The same, of a name that is not taken yet.
+/// A sibling path that does not exist yet.
 fs::path free_sibling(const fs::path& folder, const std::string& suffix) {
   const fs::path first = sibling(folder, suffix);
   fs::path path = first;
@@ -49,14 +49,15 @@ fs::path free_sibling(const fs::path& folder, const std::string& suffix) {
   return path;
 }
 
-/// Tells what is at a path from what was there before or comes later; empty if there is nothing.
+/// Identifies the file or folder at a path, so that a replacement is noticed. Empty if there is
+/// nothing.
 std::string identity(const fs::path& path) {
   struct stat status {};
   if (lstat(path.c_str(), &status) != 0) return "";
   return std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
 }
 
-/// Whether a recording lies in the folder or below.
+/// Whether the folder or one inside it is a recording.
 bool holds_recording(const fs::path& folder) {
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.path().filename() == "sequence.yaml") return true;
@@ -64,7 +65,7 @@ bool holds_recording(const fs::path& folder) {
   return false;
 }
 
-/// Whether another file system begins at a folder, which cannot be moved away then.
+/// Whether a folder is a mount point, which cannot be renamed.
 bool is_mount_point(const fs::path& folder) {
   struct statx status {};
   if (statx(AT_FDCWD, folder.c_str(), 0, STATX_BASIC_STATS, &status) != 0) return false;
@@ -79,7 +80,7 @@ bool is_mount_point(const fs::path& folder) {
          status.stx_dev_minor != parent.stx_dev_minor;
 }
 
-/// Throws InputError if the owner of a folder made it, or one in it, read-only.
+/// Throws InputError if a folder, or one inside it, is read-only for its owner.
 void refuse_read_only(const fs::path& folder) {
   const auto check = [](const fs::path& path) {
     if ((fs::status(path).permissions() & fs::perms::owner_write) != fs::perms::none) return;
@@ -92,14 +93,14 @@ void refuse_read_only(const fs::path& folder) {
   }
 }
 
-/// Throws InputError if a folder with something in it is no result, or holds more than that.
+/// Throws InputError if a folder is not a result, or contains files that tofmap did not write.
 void refuse_foreign_files(const fs::path& folder) {
   const std::optional<FileList> list = FileList::read(folder);
   if (!list) {
     throw InputError(folder.string() +
-                     ": holds files that are no result of tofmap, or a result without its list of "
-                     "files (" +
-                     FileList::file_name + "); choose another output folder, or empty it");
+                     ": contains files that are not a result of tofmap, or a result without its "
+                     "list of files (" +
+                     FileList::file_name + "); choose another output folder, or empty this one");
   }
   const std::optional<ForeignFile> foreign = list->first_foreign(folder);
   if (!foreign) return;
@@ -115,20 +116,20 @@ void refuse_what_cannot_be_replaced(const fs::path& folder, Replaces replaces) {
   }
   if (is_mount_point(folder)) {
     throw InputError(folder.string() +
-                     ": is a mount point, which no result can take the place of; choose another "
-                     "output folder, for example " +
+                     ": is a mount point, which a result cannot replace; choose another output "
+                     "folder, for example " +
                      (folder / "result").string());
   }
   if (fs::is_empty(folder)) {
     refuse_read_only(folder);
     return;
   }
-  // A simulated recording lists its files as well, and may be what the result is made from.
+  // A simulated recording has a file list as well, and may be the input of this run.
   const bool may_be_result =
       fs::exists(folder / FileList::file_name) || fs::exists(folder / "options.yaml");
   if (may_be_result && replaces == Replaces::results && holds_recording(folder)) {
     throw InputError(folder.string() +
-                     ": is or holds a recording, which the result would replace; choose another "
+                     ": is or contains a recording, which the result would replace; choose another "
                      "output folder");
   }
   refuse_foreign_files(folder);
@@ -148,7 +149,7 @@ bool may_be_replaced(const fs::path& folder, Replaces replaces) {
   try {
     refuse_foreign(folder, replaces);
     return true;
-  } catch (const std::exception&) {  // what cannot be read is of others as well
+  } catch (const std::exception&) {  // includes folders that cannot be read
     return false;
   }
 }
@@ -163,8 +164,8 @@ OutputFolder::OutputFolder(const fs::path& folder, Replaces replaces)
   fs::create_directories(folder_.parent_path(), error);
   if (!error) fs::create_directory(partial_, error);
   if (error) {
-    throw InputError(folder_.string() + ": cannot be made (" + error.message() +
-                     "); choose an output folder that can be written");
+    throw InputError(folder_.string() + ": cannot be created (" + error.message() +
+                     "); choose an output folder that is writable");
   }
 }
 
@@ -177,7 +178,7 @@ fs::path OutputFolder::make(const std::string& name) const {
   fs::path path = partial_ / name;
   std::error_code error;
   fs::create_directories(path, error);
-  if (error) throw InputError(path.string() + ": cannot be made (" + error.message() + ")");
+  if (error) throw InputError(path.string() + ": cannot be created (" + error.message() + ")");
   return path;
 }
 
@@ -189,7 +190,7 @@ void OutputFolder::write_text(const std::string& name, const std::string& text) 
   if (!out) throw InputError(path.string() + ": cannot be written; is the disk full?");
 }
 
-/// Numbers the name of the folder until nothing has that name.
+/// Appends a number to the name of the folder if something of that name exists.
 void OutputFolder::choose_free_name() {
   const fs::path wanted = folder_;
   for (int i = 2; !identity(folder_).empty(); ++i) {
@@ -201,10 +202,11 @@ void OutputFolder::tell_other_name(const fs::path& wanted, bool keeps_earlier) c
   if (folder_ == wanted) return;
   if (keeps_earlier) {
     std::fprintf(
-        stderr, "tofmap: interrupted; the earlier result in %s stays, what was finished is in %s\n",
+        stderr,
+        "tofmap: interrupted; the earlier result in %s is kept, the new partial result is in %s\n",
         wanted.c_str(), folder_.c_str());
   } else {
-    std::fprintf(stderr, "tofmap: something else came to %s meanwhile; the result is in %s\n",
+    std::fprintf(stderr, "tofmap: %s was created or changed during the run; the result is in %s\n",
                  wanted.c_str(), folder_.c_str());
   }
 }
@@ -216,17 +218,17 @@ void OutputFolder::commit(Completeness completeness) {
                              !fs::is_empty(folder_, ignored);
   const bool is_taken = identity(folder_) != earlier_ || !may_be_replaced(folder_, replaces_);
   if (keeps_earlier || is_taken) choose_free_name();
-  is_committed_ = true;  // from here on what was made is kept at any rate
+  is_committed_ = true;  // from here on the files are kept even if a step fails
   const fs::path replaced = free_sibling(folder_, ".replaced-");
   std::error_code error;
   const bool replaces = fs::exists(folder_, error);
   const std::optional<FileList> earlier = replaces ? FileList::read(folder_) : std::nullopt;
-  naming("the result is whole, and in " + partial_.string(),
+  naming("the result is complete, in " + partial_.string(),
          [&] { FileList::of(partial_).write(partial_ / FileList::file_name); });
   if (replaces) fs::rename(folder_, replaced, error);
   if (!error) fs::rename(partial_, folder_, error);
   if (error == std::errc::directory_not_empty || error == std::errc::file_exists) {
-    choose_free_name();  // another run was faster
+    choose_free_name();  // another run has taken the name in between
     fs::rename(partial_, folder_, error);
   }
   if (error) {
@@ -235,7 +237,8 @@ void OutputFolder::commit(Completeness completeness) {
                      "); it is in " + partial_.string());
   }
   if (replaces && !earlier.value_or(FileList()).remove_from(replaced)) {
-    std::fprintf(stderr, "tofmap: %s held files that tofmap did not write; they are in %s\n",
+    std::fprintf(stderr,
+                 "tofmap: %s contained files that tofmap did not write; they are now in %s\n",
                  folder_.c_str(), replaced.c_str());
   }
   tell_other_name(wanted, keeps_earlier);

@@ -7,61 +7,63 @@
 
 namespace tofmap::app {
 
-/// What an output folder may take the place of, besides nothing and an empty folder.
+/// What an output folder may replace, besides an empty folder.
 enum class Replaces {
   results,     ///< an earlier result, but never a recording
   recordings,  ///< an earlier result or simulated recording
 };
 
-/// Whether a run came to its end.
+/// Whether a run was finished.
 enum class Completeness {
   whole,
-  interrupted,  ///< an earlier result is not replaced by what was finished until then
-  resumable,    ///< interrupted as well, but it goes on from the earlier result and replaces it
+  interrupted,  ///< a partial result, which does not replace an earlier one
+  resumable,    ///< a partial result that continues the earlier one and replaces it
 };
 
-/// A result folder that appears only when it is whole: files are written into a folder beside
-/// it, which `commit` moves into place. Without commit nothing is left.
+/// A result folder that appears only when it is complete: files are written into a temporary folder
+/// beside it, which `commit` moves into place. Without commit the temporary folder is deleted.
 ///
-/// An existing folder is replaced if it is empty or holds an earlier result of this program, and
-/// nothing that the program did not write (file_list.hpp). Anything else is refused, so that no
-/// data of others is lost. So is a folder that is or holds a recording, unless the command makes
-/// recordings, a mount point, and a read-only folder. A link to a folder stays, and the folder is
-/// replaced.
+/// An existing folder is replaced only if it is empty, or contains an earlier result of this
+/// program and nothing else (file_list.hpp), so that no other data is lost. Refused are mount
+/// points, read-only folders, and, unless the command makes recordings, folders that are or contain
+/// a recording. If the path is a link, the folder that it points to is replaced and the link stays.
 class OutputFolder {
  public:
-  /// Throws InputError that names the folder and the remedy if it cannot be made, or is in use.
+  /// Creates the temporary folder. Throws InputError, with the path and a remedy, if that fails or
+  /// an existing folder may not be replaced. Throws UsageError if the path is empty.
   explicit OutputFolder(const std::filesystem::path& folder, Replaces replaces = Replaces::results);
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
   ~OutputFolder();
 
-  /// Where to write until commit.
+  /// The temporary folder, to be written before commit.
   const std::filesystem::path& path() const { return partial_; }
-  /// Where the result will be, and after `commit` where it is.
+  /// The path that the result will have, and has after `commit`. Commit may change it.
   const std::filesystem::path& final_path() const { return folder_; }
 
-  /// Makes a folder inside and returns its path.
+  /// Creates a folder inside the temporary folder and returns its path. Throws InputError if that
+  /// fails.
   std::filesystem::path make(const std::string& name) const;
 
-  /// Writes a text file inside. Throws InputError if it cannot be written whole.
+  /// Writes a text file into the temporary folder. Throws InputError if that fails.
   void write_text(const std::string& name, const std::string& text) const;
 
-  /// Moves everything into place. What an interrupted run finished goes beside an earlier result,
-  /// which may be whole, and a message says so. If something has come there meanwhile, the result
-  /// goes beside it instead, and a message says so: nothing of either is lost. If it cannot be
-  /// moved it stays where it was written, and the InputError names that. Files that came into the
-  /// earlier result at the last moment are kept beside it, and named.
+  /// Moves the temporary folder into place. It gets a numbered name beside final_path(), and a
+  /// message on stderr says so, if the run was interrupted and there is an earlier result, or if a
+  /// folder was created or changed there during the run. Files that tofmap did not write and that
+  /// appeared in the earlier result at the last moment are kept beside it and named on stderr.
+  /// Throws InputError if the folder cannot be moved; it then stays where it was written, which the
+  /// message names.
   void commit(Completeness completeness = Completeness::whole);
 
-  /// Leaves what was written so far where it is if there is no commit.
+  /// Keeps the temporary folder even without commit.
   void keep();
 
  private:
   void choose_free_name();
   void tell_other_name(const std::filesystem::path& wanted, bool keeps_earlier) const;
 
-  std::string earlier_;  ///< what stood in the folder's place at the beginning
+  std::string earlier_;  ///< identity of the folder at the beginning; empty if there was none
   std::filesystem::path folder_;
   std::filesystem::path partial_;
   Replaces replaces_;

@@ -24,7 +24,8 @@
 namespace tofmap::app {
 namespace {
 
-/// Each term by itself, fused, and after propagation; probabilities sum to one in all of them.
+/// The jump probabilities by each term alone, fused, and after propagation. They sum to one in each
+/// of these stages.
 Picture jump_stages_picture(const DualFrequencyFrame& frame, const SensorModel& sensor,
                             const UnwrapOptions& options) {
   const JumpMethod method = jump_method(options.method);
@@ -73,7 +74,7 @@ void write_pictures_of(const PicturedFrame& frame, const SensorModel& sensor, co
   write("cloud", cloud_picture(unwrapped, wrapped_m, rays));
 }
 
-/// The method, and how much of the frame it gets wrong, if that is known.
+/// The name of the method and, if the truth is known, the percentage of wrong wraps.
 std::string method_title(const std::string& method, const RangeImage& image,
                          const std::optional<ImageF>& truth_m, double wavelength_m) {
   if (!truth_m) return method;
@@ -83,7 +84,8 @@ std::string method_title(const std::string& method, const RangeImage& image,
   return title;
 }
 
-/// What filters removed of what a method gave them.
+/// The ranges of a method before filters, the reasons after filters, and a title with the
+/// percentage removed.
 FilteredRanges filtered_ranges(const std::string& method, const RangeImage& before,
                                const RangeImage& after) {
   const int valid = before.count_valid();
@@ -98,7 +100,7 @@ std::string stem_of(const SampledFrame& frame) {
   return fmt::format("{:06}", frame.recorded.index);
 }
 
-/// What every method made of one frame; null where a method has it not in its sample.
+/// The frame of this index in the sample of each result. Null where a sample does not have it.
 std::vector<const SampledFrame*> frame_of_all(const std::vector<MethodResult>& results, int index) {
   std::vector<const SampledFrame*> frames;
   for (const MethodResult& result : results) {
@@ -109,7 +111,7 @@ std::vector<const SampledFrame*> frame_of_all(const std::vector<MethodResult>& r
   return frames;
 }
 
-/// The frame as a run without unwrapping has it.
+/// The frame with method `none`, which does not unwrap, and filters.
 PreparedFrame wrapped_frame(const DualFrequencyFrame& frame, const SensorModel& sensor,
                             const PixelRays& rays, PipelineOptions pipeline) {
   pipeline.unwrap.method = UnwrapMethod::none;
@@ -191,7 +193,7 @@ void add_pictures(const std::filesystem::path& result,
     ResultAddition pictures(result, "pictures");
     std::error_code error;
     std::filesystem::create_directory(pictures.path(), error);
-    if (error) throw InputError(pictures.path().string() + ": cannot be made");
+    if (error) throw InputError(pictures.path().string() + ": cannot be created");
     draw(pictures.path());
     pictures.commit();
   } catch (const DrawingError& error) {

@@ -17,7 +17,7 @@ namespace tofmap::app {
 namespace fs = std::filesystem;
 namespace {
 
-/// A name beside a result that is not taken yet.
+/// A path beside a result that does not exist yet.
 fs::path beside(const fs::path& result, const std::string& name) {
   const std::string first =
       result.filename().string() + "." + name + ".partial-" + std::to_string(getpid());
@@ -46,7 +46,8 @@ ResultAddition::~ResultAddition() {
 }
 
 void ResultAddition::commit() {
-  // It is listed first: a run that is killed in between leaves a result that can be replaced.
+  // The list is written first, so that the result can still be replaced if the run is killed
+  // between the two steps.
   FileList list = FileList::read(result_).value_or(FileList());
   list.add(FileList::of(partial_, name_));
   ResultAddition list_file(result_, "files");
@@ -62,12 +63,12 @@ int add_to_result(const fs::path& result, int status, const std::vector<Optional
     for (const OptionalPart& part : parts) failures.attempt(part.name, part.add);
   } catch (const Interrupted&) {
     std::fprintf(stderr,
-                 "tofmap: interrupted; %s is whole, but pictures or report.html are left out\n",
+                 "tofmap: interrupted; %s is complete, but without pictures or report.html\n",
                  result.c_str());
     return exit_status::interrupted;
   }
   for (const std::string& text : failures.texts()) {
-    std::fprintf(stderr, "tofmap: %s is whole, but without %s\n", result.c_str(), text.c_str());
+    std::fprintf(stderr, "tofmap: %s is complete, but without %s\n", result.c_str(), text.c_str());
   }
   return failures.status_or(status);
 }

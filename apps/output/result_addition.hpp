@@ -9,20 +9,22 @@
 
 namespace tofmap::app {
 
-/// A folder or file that comes to a result which is in place already, as pictures and the page do.
-/// It is written beside the result and appears in it when it is whole. Without commit nothing is
-/// left, and the result is as it was.
+/// A folder or file that is added to a result that is already in place, such as the pictures and
+/// the page. It is written beside the result, and `commit` moves it into the result. Without commit
+/// it is deleted, and the result stays as it was.
 class ResultAddition {
  public:
+  /// `result` is the folder of the result, `name` that of the addition inside it.
   ResultAddition(const std::filesystem::path& result, const std::string& name);
   ResultAddition(const ResultAddition&) = delete;
   ResultAddition& operator=(const ResultAddition&) = delete;
   ~ResultAddition();
 
-  /// Where to make the folder or write the file until commit; nothing is there yet.
+  /// The temporary path of the folder or file, to be created before commit.
   const std::filesystem::path& path() const { return partial_; }
 
-  /// Moves it into the result, whose list of files names it then. Throws InputError if it cannot.
+  /// Moves the addition into the result and adds it to the result's file list. Throws InputError if
+  /// that fails.
   void commit();
 
  private:
@@ -31,17 +33,17 @@ class ResultAddition {
   std::filesystem::path partial_;
 };
 
-/// A part of a result that it can do without, as pictures and a page are.
+/// A part that a result is useful without, such as pictures and the page.
 struct OptionalPart {
-  std::string name;
-  std::function<void()> add;
+  std::string name;           ///< as used in messages
+  std::function<void()> add;  ///< writes the part into the result
 };
 
-/// Adds parts to a result that is in place. One that fails is named on stderr, with the reason and
-/// that the result is whole without it, and the others are added all the same. Returns the status
-/// of the command, which was `status` so far: that of the first failure, and interrupted if the
-/// user ends this, which is said. A run that was interrupted before is at an end here, so that a
-/// further Ctrl-C counts anew.
+/// Adds parts to a result that is in place. If a part fails, a message on stderr names it with the
+/// reason, and the other parts are added all the same. Returns the exit status of the command:
+/// `interrupted` if the user interrupts this, else the status of the first failure, else `status`.
+/// If `status` is `interrupted`, an earlier Ctrl-C is cleared, so that only another one interrupts
+/// this.
 int add_to_result(const std::filesystem::path& result, int status,
                   const std::vector<OptionalPart>& parts);
 

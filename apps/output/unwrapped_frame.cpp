@@ -17,10 +17,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// As images hold them: 16-bit millimetres.
+/// A range in whole millimetres, the unit of range images.
 double millimetres(float range_m) { return std::round(1000.0 * range_m); }
 
-/// 0 = invalid; valid ranges must fit.
+/// Ranges as 16-bit millimetres, 0 for invalid pixels. Valid ranges must fit (drop_out_of_range).
 ImageU16 range_mm(const RangeImage& image) {
   ImageU16 out = ImageU16::Zero(image.rows(), image.cols());
   for (Eigen::Index i = 0; i < out.size(); ++i) {
@@ -84,7 +84,7 @@ int drop_out_of_range(RangeImage& image) {
     for (Eigen::Index u = 0; u < image.cols(); ++u) {
       if (!image.valid(v, u)) continue;
       const double mm = millimetres(image.range_m(v, u));
-      if (mm >= least_mm && mm <= most_mm) continue;  // NaN does not fit, either
+      if (mm >= least_mm && mm <= most_mm) continue;  // false for NaN
       image.invalidate(v, u, InvalidReason::out_of_range);
       ++dropped;
     }

@@ -8,7 +8,7 @@
 
 namespace tofmap::app {
 
-/// Every measure under its name; null where it is unknown.
+/// Every consistency measure under its name, null if it is unknown.
 nlohmann::ordered_json consistency_json(const Consistency& consistency);
 
 }  // namespace tofmap::app

@@ -18,7 +18,7 @@ constexpr int plot_height_px = 400;
 
 using Methods = std::vector<MethodErrors>;
 
-/// When the first frame was taken that anything is known of.
+/// The earliest timestamp of all methods, seconds. Infinite if there is none.
 double start_s(const Methods& methods) {
   double start_s = std::numeric_limits<double>::infinity();
   for (const MethodErrors& method : methods) {
@@ -76,10 +76,15 @@ void add_error_curves(ReportPage& page, const std::vector<MethodErrors>& methods
           methods,
           {"wrong wraps over range", "true range, m", "off by more than half a wavelength, %", {}},
           &ErrorsOverRange::Bin::wrong_wrap_percent),
-      over_range_plot(
-          methods,
-          {"range error over range, right wraps alone", "true range, m", "RMSE, m", {}, 0, 0, true},
-          &ErrorsOverRange::Bin::range_rmse_m)};
+      over_range_plot(methods,
+                      {"range error over range, without wrong wraps",
+                       "true range, m",
+                       "RMSE, m",
+                       {},
+                       0,
+                       0,
+                       true},
+                      &ErrorsOverRange::Bin::range_rmse_m)};
   std::erase_if(plots, [](const Plot& plot) { return plot.lines.empty(); });
   if (plots.empty()) return;
   page.add_heading("Errors over time and over range");

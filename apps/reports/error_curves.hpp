@@ -12,15 +12,16 @@
 
 namespace tofmap::app {
 
-/// How wrong one method is, where the truth is known.
+/// The errors of one method against the truth.
 struct MethodErrors {
-  std::string name;
-  std::vector<PoseError> path;  ///< in order of time; empty if there is none to compare
-  std::span<const UnwrappingRecord> frames;  ///< in order of time; those without score do not count
+  std::string name;             ///< of the method
+  std::vector<PoseError> path;  ///< in order of time; empty if the true poses are unknown
+  std::span<const UnwrappingRecord>
+      frames;  ///< in order of time; those without a score are ignored
 };
 
-/// Errors over time and over range, a line a method, under a heading of their own; nothing at all
-/// if no error is known.
+/// Adds plots of errors over time and over range, with one line per method, under a heading. Adds
+/// nothing if no errors are known.
 void add_error_curves(ReportPage& page, const std::vector<MethodErrors>& methods);
 
 }  // namespace tofmap::app

@@ -27,8 +27,8 @@ const MethodResult* find(const std::vector<MethodResult>& results, std::string_v
   return found == results.end() ? nullptr : &*found;
 }
 
-/// The method that stands for unwrapping: the one that `map` would use, or else the last that
-/// unwraps.
+/// The method shown as "with unwrapping": the one that the command `map` would use or, if that was
+/// not run, the last one that unwraps.
 const MethodResult& with_unwrapping(const EvaluationPageSubject& subject) {
   const MethodResult* found =
       find(subject.results, name_of(subject.options.pipeline.unwrap.method));
@@ -44,7 +44,7 @@ const MethodResult* without_unwrapping(const EvaluationPageSubject& subject) {
   return found == &with_unwrapping(subject) ? nullptr : found;
 }
 
-/// Of the frames whose truth is known.
+/// The scores of the frames whose true ranges are known.
 std::vector<RangeScore> scores_of(const MethodResult& result) {
   std::vector<RangeScore> scores;
   for (const UnwrappingRecord& frame : result.frames) {
@@ -53,7 +53,8 @@ std::vector<RangeScore> scores_of(const MethodResult& result) {
   return scores;
 }
 
-/// "is 9 mm off and shows 98.6 % of the room", as far as it is known.
+/// A clause about the result of a method, from the last stage that the truth is known for: "the map
+/// is 9 mm off the true surface and shows 98.6 % of what was seen".
 std::string told(const MethodResult& result) {
   std::string text;
   if (result.scores.surface) {
@@ -67,7 +68,7 @@ std::string told(const MethodResult& result) {
            counted(result.map->frames.size(), "frame") + " could be registered";
   } else {
     const std::vector<RangeScore> scores = scores_of(result);
-    if (scores.empty()) return counted(result.frames.size(), "frame") + " went through";
+    if (scores.empty()) return counted(result.frames.size(), "frame") + " were unwrapped";
     text = fmt::format("{:.2f} % of the ranges are off by more than half a wavelength",
                        mean_score(scores).wrong_wrap_percent);
   }
@@ -87,7 +88,7 @@ std::string sentence_of(const EvaluationPageSubject& subject) {
   return text;
 }
 
-/// About the recording, and about the map with unwrapping.
+/// The warnings about the recording and about the map with unwrapping.
 std::vector<std::string> warnings_of(const EvaluationPageSubject& subject) {
   std::vector<std::string> warnings = subject.warnings;
   const MethodResult& with = with_unwrapping(subject);
@@ -136,7 +137,7 @@ void add_curves(ReportPage& page, const EvaluationPageSubject& subject) {
   add_error_curves(page, methods);
 }
 
-/// The table of methods, its two lines of headings in one.
+/// The table of methods, with its two header lines joined into one.
 PageTable methods_table(const nlohmann::ordered_json& report) {
   std::vector<std::vector<std::string>> lines = table_of(report);
   PageTable table{lines[0], {lines.begin() + 2, lines.end()}};

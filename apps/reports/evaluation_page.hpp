@@ -14,20 +14,20 @@
 
 namespace tofmap::app {
 
-/// What the page of an evaluation tells of.
+/// The contents of the page of an evaluation.
 struct EvaluationPageSubject {
   const SequenceReader& recording;
   const RecordedTruth& recorded_truth;
   const Truth& truth;
   const std::vector<MethodResult>& results;  ///< not empty
-  const nlohmann::ordered_json& report;      ///< of them (evaluation_report.hpp)
+  const nlohmann::ordered_json& report;      ///< of `results` (evaluation_report.hpp)
   std::vector<std::string> warnings;
   const ProgramOptions& options;
   std::string options_yaml;
 };
 
-/// Writes report.html into a result that is in place already: what unwrapping does to ranges, path
-/// and map. Throws InputError if it cannot be written.
+/// Writes report.html into a result that is already in place. The page shows the effect of
+/// unwrapping on ranges, path and map. Throws InputError if it cannot be written.
 void write_evaluation_page(const std::filesystem::path& result,
                            const EvaluationPageSubject& subject);
 

@@ -67,7 +67,7 @@ Json trajectory_json(const MethodResult& result) {
   return json;
 }
 
-/// Shares of the pixels that unwrapping left, by filter and in all.
+/// Percentages of the valid pixels after unwrapping that filters removed, per filter and in total.
 Json filters_json(const MethodResult& result) {
   double valid = 0;
   double kept = 0;

@@ -11,14 +11,15 @@
 
 namespace tofmap::app {
 
-/// Adds a method's figures as `<group>.<method>.<metric>_<unit>` (docs/commands.md).
+/// Adds the figures of a method to report.json, as `<group>.<method>.<metric>_<unit>`
+/// (docs/commands.md).
 void add_to_report(nlohmann::ordered_json& report, const MethodResult& result);
 
-/// The figures that matter most: two lines of headings (what, and its unit), then a line a method.
-/// What is not known is "-".
+/// A table of the most important figures: two header lines (name and unit), then one line per
+/// method. Unknown figures are "-".
 std::vector<std::vector<std::string>> table_of(const nlohmann::ordered_json& report);
 
-/// The same on stdout.
+/// Prints table_of(report) on stdout.
 void print_table(const nlohmann::ordered_json& report);
 
 }  // namespace tofmap::app

@@ -34,10 +34,10 @@ std::string method_name(const MapPageSubject& subject) {
 
 double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
 
-/// What unwrapping made of the page's frames.
+/// How the frames of the page were unwrapped.
 struct UnwrappedSample {
   std::vector<UnwrappingRecord> frames;
-  double moved_percent = 0;  ///< of the ranges
+  double moved_percent = 0;  ///< percentage of the ranges with a wrap count above 0
 };
 
 UnwrappedSample unwrapped_sample(const MapPageSubject& subject) {
@@ -56,7 +56,7 @@ UnwrappedSample unwrapped_sample(const MapPageSubject& subject) {
   return sample;
 }
 
-/// What the page's frames would give along the same path without unwrapping.
+/// The map that the frames of the page give along the same path without unwrapping.
 struct WrappedSample {
   MapCloud map;
   std::vector<UnwrappingRecord> frames;
@@ -65,7 +65,7 @@ struct WrappedSample {
 WrappedSample wrapped_sample(const MapPageSubject& subject, bool quiet) {
   PipelineOptions options = subject.options.pipeline;
   options.unwrap.method = UnwrapMethod::none;
-  options.map.min_observations = 1;  // the sample is small
+  options.map.min_observations = 1;  // the sample has few frames
   FrameMeasurer measurer(subject.sensor, options.unwrap);
   Unwrapper unwrapper(subject.sensor, options.unwrap);
   const PixelRays rays = pixel_rays(subject.sensor.camera);
@@ -96,8 +96,8 @@ std::string sentence_of(const MapPageSubject& subject, const MapScores& scores,
     text += "Nothing was unwrapped. ";
   } else {
     text += fmt::format(
-        "Unwrapping moved {:.0f} % of the ranges, to beyond the {:.2f} m that one frequency can "
-        "tell. ",
+        "Unwrapping moved {:.0f} % of the ranges beyond the non-ambiguity range of frequency A, "
+        "{:.2f} m. ",
         moved_percent, subject.sensor.modulation.wavelength_a_m());
   }
   if (scores.surface) {
@@ -113,7 +113,8 @@ std::string sentence_of(const MapPageSubject& subject, const MapScores& scores,
   return text;
 }
 
-/// What the recording and the map are doubted for, and what of the truth could not be read.
+/// The warnings about recording and map, and remarks about parts of the truth that could not be
+/// read.
 std::vector<std::string> warnings_of(const MapPageSubject& subject) {
   std::vector<std::string> warnings = subject.warnings;
   if (subject.truth) std::ranges::move(subject.truth->remarks(), std::back_inserter(warnings));
@@ -129,11 +130,11 @@ PageTable summary_table(const RoomMap& map, const MapScores& scores) {
   add("frames", std::to_string(map.frames.size()));
   add("damaged", std::to_string(map.damaged()));
   add("registered", std::to_string(map.trajectory.size()));
-  add("degenerate (a direction that no surface held), %",
+  add("frames with a degenerate direction, %",
       fmt::format("{:.1f}", percent(map.degenerate(), static_cast<double>(map.frames.size()))));
   add("keyframes", std::to_string(map.keyframes.size()));
-  add("loops found, and believed", std::to_string(map.loops.size()) + ", " + std::to_string(used));
-  add("points of the map", std::to_string(map.surface.size()));
+  add("loops found, used", std::to_string(map.loops.size()) + ", " + std::to_string(used));
+  add("map points", std::to_string(map.surface.size()));
   if (scores.trajectory) {
     add("ATE, m (RMSE)", fmt::format("{:.4f}", scores.trajectory->ate_rmse_m));
     add("ATE, m (greatest)", fmt::format("{:.4f}", scores.trajectory->ate_max_m));
@@ -143,16 +144,16 @@ PageTable summary_table(const RoomMap& map, const MapScores& scores) {
   if (scores.surface) {
     add("map error, m", fmt::format("{:.4f}", scores.surface->accuracy_m));
     add("map points more than 0.2 m off, %", fmt::format("{:.2f}", scores.surface->far_percent));
-    add("surface shown of what was seen, %",
+    add("completeness (share of the seen surface), %",
         fmt::format("{:.1f}", scores.surface->completeness_percent));
   }
   return table;
 }
 
-/// How well each frame fitted, over time.
+/// Overlap, inlier ratio and share of kept pixels of each frame over time.
 Plot tracking_plot(const RoomMap& map) {
   PlotLine overlap{"overlap with the map", {}, {}};
-  PlotLine inliers{"points that fit", {}, {}};
+  PlotLine inliers{"inlier ratio", {}, {}};
   PlotLine kept{"pixels kept by filters", {}, {}};
   for (const FrameRecord& frame : map.frames) {
     if (!frame.is_prepared()) continue;
@@ -165,7 +166,7 @@ Plot tracking_plot(const RoomMap& map) {
   return {"", "time, s", "share", {overlap, inliers, kept}, 0, 1};
 }
 
-/// Errors of the path and of the frames' ranges, with and without unwrapping.
+/// Adds plots of the errors of the path and of the ranges, with and without unwrapping.
 void add_errors(ReportPage& page, const MapPageSubject& subject, const Truth& truth,
                 const MapScores& scores, const UnwrappedSample& sample,
                 const WrappedSample& wrapped) {
@@ -178,7 +179,7 @@ void add_errors(ReportPage& page, const MapPageSubject& subject, const Truth& tr
   add_error_curves(page, methods);
 }
 
-/// The map, and what the same path would have made of ranges as measured.
+/// The map, and the map that the same path gives without unwrapping.
 std::vector<ShownMap> shown_maps(const MapPageSubject& subject, const Truth& truth,
                                  const MapScores& scores, const MapCloud& wrapped) {
   std::vector<ShownMap> maps{shown_map(name_of_map(method_name(subject)), subject.map, scores)};
@@ -234,7 +235,7 @@ void write_map_page(const std::filesystem::path& result, const MapPageSubject& s
   page.add_heading("Tracking over time");
   add_drawn(page, [&] {
     return std::vector<PageFigure>{
-        {plot_picture(tracking_plot(map), 1000, 420), "how each frame fitted what was there"}};
+        {plot_picture(tracking_plot(map), 1000, 420), "how well each frame fitted the map"}};
   });
   add_consistency(page, {"map"}, {subject.consistency});
   add_stage_times(page, {"mean"}, {&map});

@@ -14,23 +14,23 @@
 
 namespace tofmap::app {
 
-/// What the page of a map tells of.
+/// The contents of the page of a map.
 struct MapPageSubject {
-  std::string source;  ///< folder of the recording, or device
+  std::string source;  ///< folder of the recording, or URI of the device
   const RoomMap& map;
   const SensorModel& sensor;
-  const std::vector<SampledFrame>& sample;  ///< of the frames that the map is made of
-  const SequenceReader* recording;          ///< for its truth; none of a device
-  const RecordedTruth* truth;               ///< of the recording, if there is one
+  const std::vector<SampledFrame>& sample;  ///< some of the frames of the map
+  const SequenceReader* recording;          ///< null for a device
+  const RecordedTruth* truth;               ///< of the recording; null for a device
   std::vector<std::string> warnings;
   Consistency consistency;
   const ProgramOptions& options;
   std::string options_yaml;
 };
 
-/// Writes report.html into a result that is in place already: what became of the map, and what it
-/// would be on the same path with ranges as measured. Throws InputError if it cannot be written,
-/// and Interrupted.
+/// Writes report.html into a result that is already in place. The page shows the map, and the map
+/// that the same path gives without unwrapping. Throws InputError if it cannot be written,
+/// Interrupted after Ctrl-C.
 void write_map_page(const std::filesystem::path& result, const MapPageSubject& subject, bool quiet);
 
 }  // namespace tofmap::app

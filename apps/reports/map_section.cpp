@@ -16,21 +16,22 @@ namespace {
 
 constexpr int map_width_px = 900;
 
-// The palette of Okabe and Ito, as in plots; the truth is black and lies undermost.
+// The palette of Okabe and Ito, as in plots. The truth is black and is drawn below the other paths.
 constexpr std::array<Rgb, 4> path_colors{
     {{0, 114, 178}, {213, 94, 0}, {0, 158, 115}, {204, 121, 167}}};
 
 bool has_errors(const ShownMap& map) { return map.errors_m && !map.errors_m->empty(); }
 
-/// Of a map whose errors are not known, all is in the colour of what is missing.
+/// Colours a map by its errors. If they are unknown, all points get the colour of missing values.
 MapColoring color_by_error(const ShownMap& map) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   return {map.errors_m ? *map.errors_m : std::vector<float>(map.surface->size(), nan),
           ColorScale(0, far_error_m, "error, m", ColorRamp::error)};
 }
 
-/// The level frame of the first map. Its box holds the others, too, as far as they are not more
-/// than half as large again: a map that went to pieces does not make the first one small.
+/// The gravity-aligned frame of the first map. Its box is extended to the other maps, but by no
+/// more than a quarter of its size to each side and not in height, so that a map that is far too
+/// large does not make the first one look small.
 GravityAlignedFrame frame_of(const std::vector<ShownMap>& maps) {
   GravityAlignedFrame frame =
       gravity_aligned_frame(*maps.front().surface, *maps.front().trajectory);
@@ -52,7 +53,7 @@ std::vector<PageFigure> maps_from_above(const std::vector<ShownMap>& maps,
         by_error ? color_by_error(map) : color_by_height(*map.surface, frame);
     const char* meaning = !by_error      ? ", coloured by height"
                           : map.errors_m ? ", coloured by distance to the true surface"
-                                         : ", of which no error is known";
+                                         : ", errors unknown";
     figures.push_back({map_from_above(*map.surface, *map.trajectory, frame, coloring, map_width_px),
                        map.name + meaning});
   }
@@ -66,7 +67,8 @@ Trajectory moved(const Pose& target_from_source, const Trajectory& trajectory) {
   return out;
 }
 
-/// All paths in the frame of the first map; if the truth is known, each as it fits it best.
+/// The paths of all maps in the frame of the first map. If the truth is known, each path is first
+/// aligned with it.
 std::vector<NamedPath> paths_of(const std::vector<ShownMap>& maps, const Trajectory& truth) {
   std::vector<NamedPath> paths;
   const std::optional<Pose>& truth_from_first = maps.front().truth_from_map;
@@ -85,7 +87,7 @@ std::vector<NamedPath> paths_of(const std::vector<ShownMap>& maps, const Traject
   return paths;
 }
 
-/// A cloud of the scene, of every so many points of a map.
+/// A map as a cloud of the 3D view, thinned out to at most `most` points.
 SceneCloud scene_cloud(const ShownMap& map, const GravityAlignedFrame& frame, bool by_error,
                        int most) {
   std::vector<MapColoring> colorings;
@@ -111,7 +113,8 @@ SceneCloud scene_cloud(const ShownMap& map, const GravityAlignedFrame& frame, bo
   return cloud;
 }
 
-/// How wide a point is drawn: somewhat wider than points of a room's surface are apart.
+/// The width of a drawn point: somewhat more than the spacing of that many points on the surface of
+/// the box.
 float point_size_m(const GravityAlignedFrame& frame, std::size_t points) {
   if (frame.box_m.isEmpty()) return 0.05F;
   const Eigen::Vector3d size = frame.box_m.sizes();
@@ -172,10 +175,10 @@ void add_maps(ReportPage& page, const std::vector<ShownMap>& maps, const Traject
     return std::vector<PageFigure>{{paths_from_above(*first.surface, paths, frame, map_width_px),
                                     "paths from above, over the map " + first.name}};
   });
-  page.add_heading("The map, to be turned");
+  page.add_heading("The map in 3D");
   page.add_text(
-      "Drag to turn, scroll to come nearer, drag with the right button to shift. Surfaces are seen "
-      "from the side that the camera saw.");
+      "Drag to rotate, scroll to zoom, drag with the right button to pan. Surfaces are visible "
+      "only from the side that the camera saw.");
   page.add_scene(scene_of(maps, frame, by_error, paths, options.points));
 }
 

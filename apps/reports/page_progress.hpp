@@ -7,13 +7,13 @@
 
 namespace tofmap::app {
 
-/// How far a page has come, by the frames that are worked on for it.
+/// Shows the progress of making a page, counted in frames.
 class PageProgress {
  public:
   PageProgress(std::size_t frames, bool quiet)
       : progress_("report.html, frame", static_cast<int>(frames), quiet) {}
 
-  /// Before each frame. Throws Interrupted.
+  /// To be called before each frame. Throws Interrupted.
   void next_frame() {
     stop_if_interrupted();
     progress_.show(done_++);

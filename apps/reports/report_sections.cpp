@@ -53,15 +53,15 @@ void add_frames(ReportPage& page, const std::vector<SampledFrame>& sample,
     if (auto truth = truth_m(frame.recorded.index)) staged.back().truth_m = *std::move(truth);
   }
   const FrameStrip strip = frame_strip(staged, modulation.wavelength_a_m());
-  page.add_heading("Frames, from what was measured to what goes into the map");
-  page.add_text("Step by the buttons, the slider, or the arrow keys.");
+  page.add_heading("Frames, from measured phases to filtered ranges");
+  page.add_text("Use the buttons, the slider or the arrow keys to step through the frames.");
   page.add_strip(strip.frames, strip.legends);
 }
 
 void add_consistency(ReportPage& page, const std::vector<std::string>& names,
                      const std::vector<Consistency>& runs) {
   PageTable table;
-  table.header = {"without any truth"};
+  table.header = {"measure"};
   table.header.insert(table.header.end(), names.begin(), names.end());
   const auto add_row = [&](const char* measure, int decimals, double Consistency::*value) {
     std::vector<std::string> row{measure};
@@ -70,15 +70,16 @@ void add_consistency(ReportPage& page, const std::vector<std::string>& names,
     }
     table.rows.push_back(std::move(row));
   };
-  add_row("points that other frames see through, %", 2, &Consistency::contradicted_percent);
-  add_row("pixels that fit the residual better with another count, %", 2,
+  add_row("free-space violations, %", 2, &Consistency::contradicted_percent);
+  add_row("pixels that fit both frequencies better with another wrap count, %", 2,
           &Consistency::residual_misfit_percent);
-  add_row("residual of phase B after A's range, cycles (RMS)", 4,
+  add_row("phase B minus its prediction from A's range, cycles (RMS)", 4,
           &Consistency::residual_rms_cycles);
-  add_row("pixels whose count the frequencies cannot tell, %", 2, &Consistency::ambiguous_percent);
-  add_row("thickness of planes in the map, m (median)", 4, &Consistency::plane_thickness_m);
+  add_row("ambiguous pixels, %", 2, &Consistency::ambiguous_percent);
+  add_row("thickness of planar surfaces in the map, m (median)", 4,
+          &Consistency::plane_thickness_m);
   add_row("curl violations per frame (jump, single)", 1, &Consistency::curl_violations_per_frame);
-  page.add_heading("Does it agree with itself?");
+  page.add_heading("Consistency, without ground truth");
   page.add_table(table);
 }
 
@@ -100,14 +101,14 @@ void add_stage_times(ReportPage& page, const std::vector<std::string>& names,
   add_row("register", [](const StageTimes& times) { return times.register_ms; });
   add_row("map", [](const StageTimes& times) { return times.map_ms; });
   add_row("loops", [](const StageTimes& times) { return times.loop_ms; });
-  add_row("all", [](const StageTimes& times) { return times.total_ms(); });
+  add_row("total", [](const StageTimes& times) { return times.total_ms(); });
   page.add_heading("Time");
   page.add_table(table);
 }
 
 void add_options(ReportPage& page, const std::string& options_yaml) {
-  page.add_heading("How it was made");
-  page.add_folded("Options, to be used again with --config", options_yaml);
+  page.add_heading("Options");
+  page.add_folded("All options, as a file for --config", options_yaml);
 }
 
 void write_page(const std::filesystem::path& result, const ReportPage& page) {
@@ -117,7 +118,7 @@ void write_page(const std::filesystem::path& result, const ReportPage& page) {
   out.close();
   if (!out) {
     throw InputError((result / "report.html").string() +
-                     ": cannot be written; is the disk full, the folder writable?");
+                     ": cannot be written; is the disk full, or the folder read-only?");
   }
   file.commit();
 }

@@ -19,10 +19,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds screen_refresh(16);
 constexpr std::chrono::milliseconds shortest_step(200);  ///< between snapshots
-constexpr int most_share_of_time = 20;  ///< of the work, snapshots take one part in so many
+constexpr int most_share_of_time = 20;  ///< snapshots take at most 1/20 of the time of the work
 
 constexpr const char* help =
-    "left button: turn, middle: shift, wheel: zoom, r: follow the map again, q: close";
+    "left button: rotate, middle: pan, wheel: zoom, r: follow the map again, q: close";
 
 }  // namespace
 
@@ -30,7 +30,7 @@ LiveView::LiveView(const std::string& title) {
   try {
     window_.emplace(title);
   } catch (const DrawingError& error) {
-    throw UsageError(std::string(error.what()) + "; leave --view out");
+    throw UsageError(std::string(error.what()) + "; run without --view");
   }
   window_->set_text("waiting for frames", help);
   window_->on_key([this](const std::string& key) {
@@ -41,7 +41,7 @@ LiveView::LiveView(const std::string& title) {
 void LiveView::accompany(const std::function<void()>& work) {
   const int threads = omp_get_max_threads();
   std::future<void> done = std::async(std::launch::async, [&] {
-    omp_set_num_threads(threads);  // OpenMP counts them for each thread apart
+    omp_set_num_threads(threads);  // OpenMP has a separate number for each thread
     work();
   });
   while (done.wait_for(screen_refresh) != std::future_status::ready) {
@@ -81,8 +81,9 @@ void LiveView::show_result(const RoomMap& map) {
   }
 }
 
-/// Sets the map upright, anew each time it has doubled, for at first little tells what is upright:
-/// not while the user looks at something.
+/// Updates the gravity-aligned frame. The alignment is estimated anew whenever the map has doubled
+/// in size, since it is uncertain while the map is small, but not after the user has rotated the
+/// view.
 void LiveView::level(const Snapshot& snapshot) {
   if (window_->was_turned() || snapshot.surface.size() < 2 * levelled_points_) {
     frame_.box_m = gravity_aligned_box(snapshot.surface, frame_.aligned_from_map);

@@ -15,22 +15,23 @@
 
 namespace tofmap::app {
 
-/// A map as it grows, in a window. It has the thread that made it, since VTK wants one for all it
-/// does; the work goes on in another.
+/// A window that shows a map as it grows. The window runs in the thread that created it, since all
+/// calls of VTK must come from one thread; the mapping runs in another.
 class LiveView {
  public:
-  /// Throws UsageError if there is no display.
+  /// Opens the window. Throws UsageError if there is no display.
   explicit LiveView(const std::string& title);
 
-  /// Does some work in a thread of its own, and keeps the window going until it is done. What the
-  /// work throws comes out here. Closing the window does not end the work.
+  /// Runs `work` in another thread and handles the events of the window until it is done.
+  /// Exceptions of `work` are passed on. Closing the window does not end the work.
   void accompany(const std::function<void()>& work);
 
-  /// For the work to call as often as it likes: takes over the map so far when the window has shown
-  /// the last one and a new one costs little of the time.
+  /// Offers the current map to the window. To be called by the work as often as it likes: the map
+  /// is copied only if the window has shown the last copy, and at most 1/20 of the time is spent on
+  /// copies.
   void update(const MapRun& run, const std::string& status);
 
-  /// Shows the finished map until the window is closed or the program interrupted.
+  /// Shows the finished map until the window is closed or the user interrupts.
   void show_result(const RoomMap& map);
 
  private:
@@ -44,17 +45,17 @@ class LiveView {
   void level(const Snapshot& snapshot);
   void handle_events();
 
-  std::optional<Window> window_;  ///< until it is closed
+  std::optional<Window> window_;  ///< empty after it was closed
   GravityAlignedFrame frame_;
-  std::size_t levelled_points_ = 0;  ///< of the map for which the frame was found
+  std::size_t levelled_points_ = 0;  ///< size of the map when frame_ was estimated
   std::atomic<bool> is_open_ = true;
 
   std::mutex mutex_;
-  std::optional<Snapshot> next_;  ///< guarded by mutex_; from the work, not shown yet
-  std::chrono::steady_clock::time_point next_time_;  ///< the work's
+  std::optional<Snapshot> next_;  ///< guarded by mutex_; set by the work, not shown yet
+  std::chrono::steady_clock::time_point next_time_;  ///< of the next copy; used by the work only
 };
 
-/// Beside a window, if there is one.
+/// Runs `work` by LiveView::accompany, or in this thread if `view` is null.
 void accompany(LiveView* view, const std::function<void()>& work);
 
 }  // namespace tofmap::app

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Along the longer side of a room, from its middle.
+/// A view from the centre of a box along its longer horizontal side.
 Viewpoint viewpoint_in_the_middle(const Eigen::AlignedBox3d& box_m) {
   Viewpoint viewpoint;
   if (box_m.isEmpty()) return viewpoint;
@@ -30,7 +30,7 @@ Viewpoint viewpoint_in_the_middle(const Eigen::AlignedBox3d& box_m) {
   return viewpoint;
 }
 
-/// Triangles of others, in the grey of their reflectance.
+/// A mesh file, in the grey of its reflectance.
 class ViewedMesh final : public Viewed {
  public:
   explicit ViewedMesh(const fs::path& file) : Viewed(color_names::mesh), mesh_(read_mesh(file)) {}
@@ -61,7 +61,7 @@ class ViewedMesh final : public Viewed {
   TriangleMesh mesh_;
 };
 
-/// Whether a PLY file has faces, an OBJ file always.
+/// Whether a file is a mesh: an OBJ file, or a PLY file with faces.
 bool is_mesh(const fs::path& file) {
   if (file.extension() == ".obj") return true;
   if (file.extension() != ".ply") return false;
@@ -72,11 +72,11 @@ bool is_mesh(const fs::path& file) {
   return false;
 }
 
-/// Throws UsageError if something is asked for that only recordings have.
+/// Throws UsageError if the request has arguments that only apply to recordings.
 void refuse_what_is_of_recordings(const ViewRequest& request) {
   const std::string asked = request.frame ? "--frame" : request.wrapped ? "--wrapped" : "";
   if (!asked.empty()) {
-    throw UsageError(asked + " is for recordings, and " + request.path.string() + " is none");
+    throw UsageError(asked + " is for recordings, and " + request.path.string() + " is not one");
   }
 }
 
@@ -84,13 +84,14 @@ std::unique_ptr<Viewed> view_map_or_mesh(const ViewRequest& request, const fs::p
   refuse_what_is_of_recordings(request);
   if (!request.method.empty()) {
     throw UsageError("--method is for recordings and evaluations, and " + request.path.string() +
-                     " is none");
+                     " is neither");
   }
   if (!fs::is_directory(request.path) && is_mesh(file)) return std::make_unique<ViewedMesh>(file);
   return view_maps({{file, ""}}, request.cameras);
 }
 
-/// The maps of an evaluation's methods, the best method first; empty if the folder has none.
+/// The maps of the methods in the result folder of an evaluation, the most accurate method first.
+/// Empty if there are none.
 std::vector<MapFile> maps_of_methods(const fs::path& folder) {
   std::vector<MapFile> files;
   for (const auto& [method, value] : named_values(UnwrapMethod{})) {
@@ -100,7 +101,7 @@ std::vector<MapFile> maps_of_methods(const fs::path& folder) {
   return files;
 }
 
-/// Begins with the method that is asked for.
+/// Opens the maps of an evaluation, beginning with the requested method.
 std::unique_ptr<Viewed> view_evaluation(const ViewRequest& request, std::vector<MapFile> files) {
   refuse_what_is_of_recordings(request);
   if (!request.method.empty()) {
@@ -131,7 +132,7 @@ Viewpoint viewpoint_above(const Eigen::AlignedBox3d& box_m, double aspect) {
 void Viewed::color_by(const std::string& name) {
   const auto found = std::ranges::find(color_names_, name);
   if (found == color_names_.end()) {
-    throw UsageError("--color " + name + ": this can be coloured by " + joined(color_names_, ", "));
+    throw UsageError("--color " + name + ": allowed here: " + joined(color_names_, ", "));
   }
   color_ = static_cast<std::size_t>(found - color_names_.begin());
 }
@@ -142,8 +143,8 @@ std::unique_ptr<Viewed> open_viewed(const ViewRequest& request, const ProgramOpt
   const fs::path& path = request.path;
   if (!fs::exists(path)) {
     throw InputError(path.string() +
-                     ": not found; give the result folder of a command, a map, "
-                     "cloud or mesh (PLY, PCD, OBJ), or a recording");
+                     ": not found; name the result folder of a command, a map, cloud or mesh (PLY, "
+                     "PCD, OBJ), or a recording");
   }
   if (!fs::is_directory(path)) return view_map_or_mesh(request, path);
   for (const char* name : {"map.ply", "merged.ply"}) {
@@ -158,9 +159,9 @@ std::unique_ptr<Viewed> open_viewed(const ViewRequest& request, const ProgramOpt
   if (const auto files = maps_of_methods(path); !files.empty()) {
     return view_evaluation(request, files);
   }
-  throw InputError(path.string() +
-                   ": holds no map.ply, merged.ply, sequence.yaml or METHOD/map.ply; nothing to "
-                   "view");
+  throw InputError(
+      path.string() +
+      ": contains no map.ply, merged.ply, sequence.yaml or METHOD/map.ply; nothing to view");
 }
 
 }  // namespace tofmap::app

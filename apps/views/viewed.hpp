@@ -17,19 +17,23 @@
 
 namespace tofmap::app {
 
-/// What `view` is asked to show, and how.
+/// The command line arguments of `view` that say what to show.
 struct ViewRequest {
   std::filesystem::path path;
-  std::string color;         ///< empty: the first there is
-  bool cameras = false;      ///< of a map: pyramids of what the camera saw
-  bool wrapped = false;      ///< of a recording: ranges as measured
-  std::string method;        ///< of a recording: how it is unwrapped; empty: as the options say.
-                             ///< Of an evaluation: whose map is the first; empty: the best that
-                             ///< there is
-  std::optional<int> frame;  ///< of a recording; none: the first
+  /// One of color_names. Empty: the first of them.
+  std::string color;
+  /// Maps only: draws the field of view of the camera at the keyframes, as pyramids.
+  bool cameras = false;
+  /// Recordings only: shows ranges as measured, without unwrapping.
+  bool wrapped = false;
+  /// Recordings: the unwrapping method; empty: that of the options. Evaluations: the method whose
+  /// map is shown first; empty: the most accurate.
+  std::string method;
+  /// Recordings only: index of the frame; empty: the first.
+  std::optional<int> frame;
 };
 
-/// What can be coloured by what; the first is the one that is taken if nothing is asked for.
+/// The colourings of each kind of Viewed. The first of each is the default.
 namespace color_names {
 inline const std::vector<std::string> map{"height", "confidence", "count", "plain"};
 inline const std::vector<std::string> frame{"moved",      "range",  "wrap",
@@ -37,7 +41,7 @@ inline const std::vector<std::string> frame{"moved",      "range",  "wrap",
 inline const std::vector<std::string> mesh{"reflectance"};
 }  // namespace color_names
 
-/// Something that can be looked at in several ways.
+/// Something that `view` can show, in several colourings.
 class Viewed {
  public:
   Viewed() = default;
@@ -45,28 +49,33 @@ class Viewed {
   Viewed& operator=(const Viewed&) = delete;
   virtual ~Viewed() = default;
 
+  /// Points, lines and meshes to be drawn, in the current colouring.
   virtual Drawing drawing() const = 0;
 
-  /// `from` is outside, above or inside.
+  /// The viewpoint called `from` ("outside", "above" or "inside"), for a picture whose width is
+  /// `aspect` times its height.
   virtual Viewpoint viewpoint(const std::string& from, double aspect) const = 0;
 
-  /// What the colours mean; empty if there is nothing to say.
+  /// The legend of the current colouring. Empty if it has none.
   virtual Picture legend() const = 0;
 
-  /// What is seen, in a line or two.
+  /// One or two lines of text about what is shown.
   virtual std::string status() const = 0;
 
-  /// The keys that it has beyond those of all views, a line; empty if there is none.
+  /// One line of help about the keys of take_key. Empty if there are none.
   virtual std::string help() const { return {}; }
 
-  /// Whether the key changed what is seen. Throws InputError as reading files does.
+  /// Reacts to a key. Returns whether the drawing changed. Throws InputError if a file cannot be
+  /// read.
   virtual bool take_key(const std::string& /*key*/) { return false; }
 
-  /// What it can be coloured by.
+  /// The names of the colourings.
   const std::vector<std::string>& color_names() const { return color_names_; }
 
-  /// Throws UsageError if there is no such colour.
+  /// Chooses a colouring. Throws UsageError if there is none of this name.
   void color_by(const std::string& name);
+
+  /// Chooses the next colouring, and the first after the last.
   void color_by_next();
 
  protected:
@@ -79,24 +88,27 @@ class Viewed {
   std::size_t color_ = 0;
 };
 
-/// A map, cloud, mesh, recording, or the result of map, register or evaluate. Throws InputError if
-/// there is nothing to see, UsageError if what is there cannot be shown as requested.
+/// Opens a map, cloud, mesh or recording, or the result folder of map, register or evaluate. Throws
+/// InputError if there is nothing to show, UsageError if the request has arguments that do not
+/// apply.
 std::unique_ptr<Viewed> open_viewed(const ViewRequest& request, const ProgramOptions& options);
 
-/// A map or cloud to be read; path and keyframes beside it may not be there.
+/// A map or cloud file. trajectory.txt and keyframes.txt beside it are read as well if they exist.
 struct MapFile {
   std::filesystem::path file;
-  std::string method;  ///< that made it, where there are maps of several
+  std::string method;  ///< that made the map; empty if there is only one map
 };
 
-/// One map at a time, in the place of the first and by one scale; others without a point are left
-/// out. Throws InputError if the first has none.
+/// Shows one of several maps at a time, all in the gravity-aligned frame of the first. Throws
+/// InputError if the first cannot be read or has no points; others of which that is true are left
+/// out.
 std::unique_ptr<Viewed> view_maps(const std::vector<MapFile>& files, bool with_cameras);
 
-/// A frame of a recording at a time, unwrapped and filtered as the options say.
+/// Shows one frame of a recording at a time, unwrapped and filtered with the options.
 std::unique_ptr<Viewed> view_recording(const ViewRequest& request, const ProgramOptions& options);
 
-/// From straight above, in parallel projection.
+/// A view of a box from straight above, in parallel projection, for a picture whose width is
+/// `aspect` times its height.
 Viewpoint viewpoint_above(const Eigen::AlignedBox3d& box_m, double aspect);
 
 }  // namespace tofmap::app

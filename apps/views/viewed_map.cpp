@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of the path as much as can be read; lines that cannot are named on stderr.
+/// Reads a trajectory. Lines that cannot be read are left out and named on stderr. Empty if there
+/// is no such file.
 Trajectory read_if_there(const fs::path& file) {
   std::error_code unknown;
   if (!fs::is_regular_file(file, unknown)) return {};
@@ -28,7 +29,7 @@ Trajectory read_if_there(const fs::path& file) {
   return std::move(usable.poses);
 }
 
-/// The number of observations that all but a few points stay below.
+/// The 98th percentile of the number of observations of a point.
 float most_observations(const MapCloud& map) {
   std::vector<std::uint32_t> counts;
   for (const MapPoint& point : map) counts.push_back(point.observations);
@@ -37,7 +38,7 @@ float most_observations(const MapCloud& map) {
   return static_cast<float>(std::max<std::uint32_t>(1, *place));
 }
 
-/// A map that was read, with its path.
+/// A map with its trajectory and keyframes.
 struct PathedMap {
   explicit PathedMap(const MapFile& from)
       : method(from.method),
@@ -93,7 +94,7 @@ class ViewedMaps final : public Viewed {
     std::string help = maps_.size() > 1 ? "m: map of the next method" : "";
     if (!shown().trajectory.empty()) {
       help += (help.empty() ? "" : ", ");
-      help += "p: path of the camera, f: what it saw from keyframes";
+      help += "p: path of the camera, f: its field of view at keyframes";
     }
     return help;
   }
@@ -114,7 +115,8 @@ class ViewedMaps final : public Viewed {
 
   const PathedMap& shown() const { return maps_[shown_]; }
 
-  /// The first map must be there; of the others one that cannot be read is named and left out.
+  /// Reads a map. Throws InputError if it is the first and cannot be read or has no points; others
+  /// of which that is true are left out, and named on stderr or in the status.
   void add(const MapFile& file) {
     try {
       PathedMap read(file);
@@ -122,7 +124,7 @@ class ViewedMaps final : public Viewed {
         most_observations_ = std::max(most_observations_, most_observations(read.map));
         maps_.push_back(std::move(read));
       } else if (maps_.empty()) {
-        throw InputError(file.file.string() + ": holds no point; nothing to view");
+        throw InputError(file.file.string() + ": has no points; nothing to view");
       } else {
         without_points_ += (without_points_.empty() ? "; without points: " : ", ") + file.method;
       }
@@ -149,7 +151,8 @@ class ViewedMaps final : public Viewed {
     return coloring;
   }
 
-  /// Those of the keyframes; if they are not known, of some poses.
+  /// Adds the field of view of the camera at the keyframes or, if these are unknown, at some of the
+  /// poses.
   void add_cameras(Drawing& drawing) const {
     constexpr std::size_t most = 100;
     const Trajectory& poses = shown().keyframes.empty() ? shown().trajectory : shown().keyframes;
@@ -164,8 +167,8 @@ class ViewedMaps final : public Viewed {
   std::vector<PathedMap> maps_;
   std::size_t shown_ = 0;
   std::string without_points_;   ///< for the status
-  float most_observations_ = 0;  ///< of all
-  GravityAlignedFrame frame_;    ///< of the first map, and for all
+  float most_observations_ = 0;  ///< upper end of the colour scale of observations, for all maps
+  GravityAlignedFrame frame_;    ///< of the first map, used for all
   bool with_path_ = true;
   bool with_cameras_;
 };

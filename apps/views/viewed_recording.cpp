@@ -79,8 +79,8 @@ class ViewedRecording final : public Viewed {
   }
 
   std::string help() const override {
-    return "left, right: frames (with up, down: ten), u: as measured or unwrapped, x: with or "
-           "without filters";
+    return "left, right: one frame back or on (up, down: ten), u: as measured or unwrapped, x: "
+           "with or without filters";
   }
 
   bool take_key(const std::string& key) override {
@@ -104,7 +104,8 @@ class ViewedRecording final : public Viewed {
     return true;
   }
 
-  /// A damaged frame is empty, and its status says why.
+  /// Reads, unwraps and filters a frame. A damaged frame is shown as empty, and the status says
+  /// why.
   void read(int index) {
     const CameraModel& camera = source_.sensor().camera;
     const SourcedFrame sourced = source_.read(index);
@@ -138,8 +139,8 @@ class ViewedRecording final : public Viewed {
     return range_m;
   }
 
-  /// From the least value to the greatest, but for strays; ranges begin at 0, whether wrapped or
-  /// not.
+  /// The colour scale of the frame, between the 1st and 99th percentiles of the values. Scales of
+  /// ranges and amplitudes begin at 0.
   ColorScale scale() const {
     if (color() == "confidence") return {0, 1, "confidence"};
     std::vector<double> values;

@@ -29,7 +29,7 @@ RunPlan divided(RunPlan plan, int divisor) {
   return plan;
 }
 
-/// 29 and 31 MHz and a range noise of 2 cm at 5 m where nothing else is said.
+/// A simulated recording. The default noise is 2 cm at 5 m.
 struct Recording {
   const char* name;
   const char* scene;
@@ -51,7 +51,7 @@ constexpr Recording development[] = {
     {"flat, 37.65/45.18 MHz", "flat", 0.02, 37.65e6, 45.18e6},
     {"flat, 80 cm", "flat", 0.8},
 };
-/// Development data, too.
+/// Recordings for the departures of `jump` from the paper. These are development data as well.
 constexpr Recording of_paper[] = {
     {"wall", "wall"},           {"slope", "slope"},
     {"room", "room"},           {"hall", "hall"},
@@ -75,7 +75,8 @@ void add_runs(const Simulator& simulator, const RunPlan& plan, Case& data) {
   }
 }
 
-/// A room of its own for each seed; of other scenes the first seed alone.
+/// A case of a simulated scene: for scene "random", one room for each of the seeds; for other
+/// scenes, runs of the first seed only.
 Case simulated_case(const std::string& name, const std::string& scene, SimulatorOptions options,
                     int first_seed, int seeds, int divisor) {
   Case data{.name = name, .sensor = {}, .runs = {}};

@@ -13,49 +13,51 @@
 
 namespace tofmap::accuracy {
 
-/// Consecutive frames of one camera, for one Unwrapper: methods may learn from earlier frames.
+/// Consecutive frames of one camera, to be unwrapped by one Unwrapper, since methods may use
+/// earlier frames.
 struct Run {
   std::vector<DualFrequencyFrame> frames;
-  std::vector<ImageF> truth_m;
+  std::vector<ImageF> truth_m;  ///< true radial ranges of each frame
 };
 
-/// What one row of a table is about. The sensor does not say how large the room is: no method is
-/// told, as with a camera.
+/// The data of one row of a table. The sensor does not state the largest range of the scene, so
+/// that methods do not know it, as with a real camera.
 struct Case {
   std::string name;
   SensorModel sensor;
   std::vector<Run> runs;
 };
 
-/// How many runs of how many frames.
+/// The number of runs, and of frames in each.
 struct RunPlan {
   int runs = 6;
   int frames = 8;
 };
 
-/// The first frames of the runs, spread evenly over a recording of `total` frames; `shift` (0 to 1)
-/// moves all of them, by that share of their distance. Runs are shortened if there are too few
-/// frames.
+/// The index of the first frame of each run, spread evenly over a recording of `total` frames.
+/// `shift` (0 to 1) moves all of them by this fraction of their distance.
 std::vector<int> run_starts(int total, const RunPlan& plan, double shift = 0.5);
 
-/// The cases whose scenes and seeds constants may be chosen on. `divisor` lessens the runs.
+/// The cases that constants may be chosen on. `divisor` divides the number of runs.
 std::vector<Case> development_cases(int divisor);
 
-/// The paper's experiments, and scenes with more counts than its two.
+/// Scenes of the paper's experiments, and scenes that need more than the paper's two wrap counts.
+/// Development data.
 std::vector<Case> paper_cases(int divisor);
 
-/// The cases of frozen.hpp.
+/// The cases with frozen data, see frozen.hpp.
 std::vector<Case> frozen_cases(int divisor);
 
-/// A recording with range_truth/, in runs. Frames that are damaged are left out.
+/// Runs of a recording with range_truth/. Damaged frames are left out.
 Case recorded_case(const std::filesystem::path& folder, int divisor);
 
-/// How the runs of the tables are made, for their captions.
+/// A sentence about the number of runs and frames, for the captions of tables.
 std::string describe_runs(int divisor);
 
+/// Unwraps all runs of a case and scores their frames.
 Score score_case(const Case& data, const Variant& variant);
 
-/// The same for one run, unwrapped from its first frame on.
+/// Unwraps one run and adds its frames to `score`.
 void score_run(const Run& run, const SensorModel& sensor, const Variant& variant, Score& score);
 
 }  // namespace tofmap::accuracy

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double standard_errors = 3;
 
-/// Of one frame: how many pixels there are, and how many are wrong.
+/// The numbers of pixels and of wrong pixels.
 struct Tally {
   double wrong = 0;
   double pixels = 0;
@@ -25,13 +25,14 @@ using TallyOf = std::function<Tally(const FrameScore&)>;
 Tally all_pixels(const FrameScore& frame) { return {frame.wrong, frame.pixels}; }
 Tally sure_pixels(const FrameScore& frame) { return {frame.sure_wrong, frame.sure}; }
 
-/// Standard error of the counted difference of `value` and `factor` times `reference`.
+/// The standard error, from counting, of the difference between `value` and `factor` times
+/// `reference`.
 double counting_error_percent(const Tally& value, const Tally& reference, double factor) {
   const double pixels = std::max({1.0, value.pixels, reference.pixels});
   return 100 * std::sqrt(value.wrong + factor * factor * reference.wrong) / pixels;
 }
 
-/// Standard error of the mean of these values.
+/// The standard error of the mean of values. 0 for fewer than two.
 double standard_error(const std::vector<double>& values) {
   const auto count = static_cast<double>(values.size());
   if (count < 2) return 0;
@@ -42,7 +43,7 @@ double standard_error(const std::vector<double>& values) {
   return std::sqrt(squares / (count - 1) / count);
 }
 
-/// The mean of `value` over frames against `factor` times that of `reference`.
+/// Compares the mean of `value` over frames with `factor` times the mean of `reference`.
 Check compare_means(const Score& value, const Score& reference, double factor,
                     const TallyOf& tally_of) {
   Check check{.applies = true};
@@ -82,7 +83,7 @@ Check compare_worst(const Score& value, const Score& reference, double factor) {
           .allowance = standard_errors * counting_error_percent(a, b, factor)};
 }
 
-/// The calibration error against 1 %.
+/// Compares the calibration error with 1 %.
 Check check_calibration(const Score& score) {
   const auto frames = static_cast<double>(score.frames.size());
   std::vector<double> errors;

@@ -17,19 +17,20 @@ namespace {
 constexpr std::array<double, 4> noises_m{0.005, 0.02, 0.05, 0.1};
 constexpr std::array<double, 4> delays{0, 0.1, 0.5, 1};
 
-/// One kind of error: its sizes, and how a camera gets it.
+/// A kind of error, its sizes, and the function that sets it.
 struct Kind {
   const char* name;
   const char* unit;
-  double unit_scale;          ///< sizes are printed in this
+  double unit_scale;          ///< factor from sizes to printed sizes
   std::vector<double> sizes;  ///< the last one is the largest
   std::function<void(CameraErrors&, double)> set;
 
   std::string text(double size) const { return fmt::format("{:g}{}", size * unit_scale, unit); }
 };
 
-/// Both frequencies have a periodic error of the same size, but not of the same shape. The error
-/// that depends on amplitude is B's alone: what both have moves no wrap.
+/// All kinds of error. Both frequencies have a periodic error of the same size, but of different
+/// shape. Only B has an error with amplitude, since an equal error of both frequencies does not
+/// change wrap counts.
 std::vector<Kind> kinds() {
   return {
       {"offset", " cm", 100, {-0.1, -0.05, 0.05, 0.1}, [](auto& e, double m) { e.offset_m = m; }},
@@ -80,7 +81,7 @@ void add_pairs(std::vector<Combination>& out) {
   }
 }
 
-/// Numbers drawn by a seed; the same with every standard library.
+/// Random numbers that are the same with every standard library.
 class Draw {
  public:
   explicit Draw(int seed) : random_(static_cast<std::uint32_t>(seed)) {}
@@ -97,8 +98,8 @@ class Draw {
   std::mt19937 random_;
 };
 
-/// All errors at once. Half of the cameras stand in the sun, which falls on a twelfth to a half of
-/// the image.
+/// A random combination of all errors. Half of the cameras see ambient light, in 9 to 40 % of the
+/// image.
 CameraErrors drawn_errors(Draw& draw) {
   CameraErrors errors;
   errors.offset_m = draw.between(-0.1, 0.1);

@@ -9,48 +9,48 @@
 
 namespace tofmap::accuracy {
 
-/// What is wrong with a camera's ranges (docs/simulator.md, equations 9 to 13), and how noisy they
-/// are. By default nothing but photon noise.
+/// Systematic errors and noise of a camera (docs/simulator.md, equations 9 to 13). By default,
+/// there is only photon noise.
 struct CameraErrors {
-  double offset_m = 0;      ///< of B
-  double periodic_a_m = 0;  ///< peak
-  double periodic_b_m = 0;
-  double amplitude_error_a_m = 0;  ///< over three decades
-  double amplitude_error_b_m = 0;
-  double pattern_m = 0;       ///< standard deviation
-  double delay_share = 0;     ///< 0, 0.1, 0.5 or 1
-  double ambient_noise = 1;   ///< factor, in the rectangle below
-  double ambient_left = 0.5;  ///< shares of the image
+  double offset_m = 0;             ///< range offset of B
+  double periodic_a_m = 0;         ///< peak periodic error of A
+  double periodic_b_m = 0;         ///< peak periodic error of B
+  double amplitude_error_a_m = 0;  ///< change of the range of A over three decades of amplitude
+  double amplitude_error_b_m = 0;  ///< change of the range of B over three decades of amplitude
+  double pattern_m = 0;            ///< standard deviation of the fixed pattern
+  double delay_share = 0;          ///< delay of B after A, frame periods: 0, 0.1, 0.5 or 1
+  double ambient_noise = 1;        ///< factor of the noise in the rectangle of ambient light
+  double ambient_left = 0.5;       ///< edges of this rectangle, fractions of the image
   double ambient_top = 0;
   double ambient_right = 1;
   double ambient_bottom = 0.5;
-  double noise_m = 0.02;
+  double noise_m = 0.02;  ///< SimulatorOptions::range_noise_m
 
   bool has_ambient() const { return ambient_noise > 1; }
 
-  /// Nothing but photon noise.
+  /// Whether there is only photon noise.
   bool are_none() const;
 };
 
-/// Sets those options of `base` that the errors are about.
+/// The options of `base` with these errors.
 SimulatorOptions with_errors(SimulatorOptions base, const CameraErrors& errors);
 
 /// One row of the grid.
 struct Combination {
-  std::string kind;  ///< of error: "offset", "two errors", "drawn", …
-  std::string size;  ///< "5 cm"
+  std::string kind;  ///< kind of error: "offset", "two errors", "drawn", …
+  std::string size;  ///< size in words: "5 cm"
   CameraErrors errors;
 };
 
-/// How many of what.
+/// Which combinations of errors the grid has.
 struct GridPlan {
-  bool with_pairs = true;
-  int drawn = 40;
-  int seed = 1;  ///< draws these
+  bool with_pairs = true;  ///< every two errors at their largest
+  int drawn = 40;          ///< number of random combinations
+  int seed = 1;            ///< seed of the random combinations
 };
 
-/// Each error by itself at each size, every two at their largest, and combinations that are drawn.
-/// Each noise comes by itself, too: then nothing is wrong.
+/// Each error alone at each of its sizes, every two errors at their largest, and random
+/// combinations. Each noise is also used alone, without systematic errors.
 std::vector<Combination> error_combinations(const GridPlan& plan);
 
 }  // namespace tofmap::accuracy

@@ -6,22 +6,22 @@
 
 // Frozen data
 //
-// No constant of the project is ever chosen on what this header names: not its scenes, not its
-// seeds, not its pairs of frequencies, not its noises, not its errors. Whoever looks at figures of
-// frozen data in order to change a method makes them development data: then they move to cases.cpp,
-// and new ones are drawn here. Everything else that the benchmarks and tests use is development
-// data, the scenes of docs/simulator.md and all seeds below 900 among it.
+// No constant of the project may be chosen on the scenes, seeds, frequency pairs, noises and errors
+// in this header. Data become development data as soon as somebody changes a method because of
+// their figures: then they must move to cases.cpp, and new ones must be drawn here. All other data
+// of benchmarks and tests are development data, including the scenes of docs/simulator.md and all
+// seeds below 900.
 
 namespace tofmap::accuracy::frozen {
 
-/// Seeds of `random`, of the noise and of the camera's errors from here on are frozen.
+/// Seeds of random rooms, of noise and of camera errors are frozen from this one on.
 inline constexpr int first_seed = 900;
 
-/// Image size: none of the development data has it.
+/// The image size, which no development data have.
 inline constexpr int width_px = 224;
 inline constexpr int height_px = 172;
 
-/// Pairs of frequencies that are used for nothing else, and a noise for each.
+/// A scene with a frequency pair that no development data have, and a noise.
 struct Place {
   const char* scene;
   double frequency_a_hz;
@@ -29,14 +29,14 @@ struct Place {
   double range_noise_m;
 };
 
-/// Scenes of this folder, and rooms drawn by frozen seeds.
+/// Scenes of make_scene() and random rooms of frozen seeds.
 inline constexpr Place places[] = {
     {"attic", 20e6, 21.5e6, 0.013}, {"attic", 24e6, 27e6, 0.08},    {"depot", 24e6, 27e6, 0.037},
     {"depot", 20e6, 21.5e6, 0.013}, {"workshop", 60e6, 75e6, 0.08}, {"workshop", 48e6, 53e6, 0.037},
     {"random", 48e6, 53e6, 0.013},  {"random", 24e6, 27e6, 0.037},
 };
 
-/// The scenes of the frozen grid, with a pair of frequencies each; the grid has noises of its own.
+/// The scenes of the frozen grid with their frequency pairs. The grid has its own noises.
 inline constexpr Place grid_places[] = {
     {"attic", 20e6, 21.5e6, 0},
     {"depot", 24e6, 27e6, 0},
@@ -44,7 +44,7 @@ inline constexpr Place grid_places[] = {
     {"random", 48e6, 53e6, 0},
 };
 
-/// Draws the random combinations of the frozen grid.
+/// The seed of the random error combinations of the frozen grid.
 inline constexpr int combinations_seed = 977;
 
 /// `attic` (14 x 8 m under a gable roof: nearly every surface is slanted), `depot` (30 x 18 x 6.5

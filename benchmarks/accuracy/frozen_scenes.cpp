@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A beam of square section between two points; `up` is not parallel to it.
+/// Adds a beam of square cross-section between two points. It must not be vertical.
 void add_beam(TriangleMesh& mesh, const Vector3d& from, const Vector3d& to, double thickness_m,
               double reflectance) {
   const Vector3d along = to - from;
@@ -68,7 +68,7 @@ Scene attic() {
   return scene;
 }
 
-/// A rack along x: uprights, boards, and boxes of drawn sizes and reflectances on them.
+/// Adds a rack along x: uprights, boards, and boxes of random sizes and reflectances on the boards.
 void add_rack(TriangleMesh& mesh, const Vector3d& foot, double length_m, std::mt19937& random) {
   constexpr double depth = 1.0, spacing = 1.5;
   const auto draw = [&](double low, double high) {

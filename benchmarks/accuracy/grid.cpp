@@ -15,22 +15,23 @@
 namespace tofmap::accuracy {
 namespace {
 
-/// How the camera moves, and how much later it takes B.
+/// The motion of the camera, and the delay of B.
 struct Motion {
-  double delay_share = 0;
+  double delay_share = 0;  ///< delay of B after A, frame periods
   bool is_fast = false;
 
   auto operator<=>(const Motion&) const = default;
 };
 
-/// A camera that takes A and B in turn is measured while it moves fast.
+/// The motion for a combination of errors. It is fast if the camera exposes A and B in alternate
+/// frames (delay of one frame).
 Motion motion_of(const CameraErrors& errors) {
   return {errors.delay_share, errors.delay_share == 1};
 }
 
 Motion without_delay(Motion motion) { return {0, motion.is_fast}; }
 
-/// Ideal frames of one place at one motion.
+/// Noise-free frames of one place with one motion.
 struct IdealRuns {
   SensorModel sensor;
   std::vector<std::vector<IdealFrame>> runs;
@@ -46,11 +47,11 @@ IdealRuns cast_runs(const GridPlace& place, const Motion& motion, const RunPlan&
     options.max_rotation_deg = 6;
   }
   Scene scene = frozen::make_scene(place.scene, place.seed);
-  scene.min_frames = 2;  // the limits of motion alone say how fast the camera is
+  scene.min_frames = 2;  // so that only the limits of motion determine the speed of the camera
   const Simulator simulator(std::move(scene), options);
   IdealRuns out{simulator.sensor(), {}};
   const int total = *simulator.frame_count();
-  // Each seed starts elsewhere.
+  // Each seed starts at other frames.
   const double shift = 0.15 + 0.3 * (place.seed % 3);
   for (const int start : run_starts(total, plan, shift)) {
     std::vector<IdealFrame> run;
@@ -84,7 +85,7 @@ Run measured_run(const std::vector<IdealFrame>& ideal, const SensorModel& sensor
   return run;
 }
 
-/// One camera at one place, by these methods.
+/// The scores of several methods for one camera at one place.
 std::vector<Score> score_methods(const GridPlace& place, const IdealRuns& ideal,
                                  const CameraErrors& errors,
                                  const std::vector<const char*>& methods) {
@@ -101,7 +102,8 @@ std::vector<Score> score_methods(const GridPlace& place, const IdealRuns& ideal,
   return scores;
 }
 
-/// What a row is compared with: the same noise and motion, nothing wrong, B at the instant of A.
+/// The reference of a row: the same noise and motion, without systematic errors and without delay
+/// of B.
 struct Reference {
   double noise_m = 0;
   Motion motion;
@@ -152,7 +154,7 @@ std::vector<GridRow> measure_place(const GridPlace& place,
   return rows;
 }
 
-/// Three cameras in each scene.
+/// Each seed is a different camera.
 constexpr int seeds_per_scene = 3;
 constexpr int first_development_seed = 11;
 

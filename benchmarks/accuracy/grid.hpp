@@ -10,14 +10,14 @@
 
 namespace tofmap::accuracy {
 
-/// A scene seen by one camera: the scene, the noise's seed and the camera's are given.
+/// A scene seen by one camera. The seed is that of the scene, the noise and the camera errors.
 struct GridPlace {
   std::string scene;
   int seed = 1;
   SimulatorOptions options;  ///< image size and frequencies
 };
 
-/// What a combination of errors made of one place.
+/// The scores of one combination of errors at one place.
 struct GridRow {
   std::size_t combination = 0;  ///< index in Grid::combinations
   std::string scene;
@@ -25,12 +25,12 @@ struct GridRow {
   Score pixel;
   Score jump;
   Score joint;
-  Score joint_without_errors;  ///< same place, motion and noise; B taken at the instant of A
+  Score joint_without_errors;  ///< same place, motion and noise, and no delay of B
 };
 
 struct Grid {
   std::vector<Combination> combinations;
-  std::vector<GridRow> rows;  ///< place by place, each with all combinations in order
+  std::vector<GridRow> rows;  ///< for each place, all combinations in order
   RunPlan runs;
 
   const CameraErrors& errors_of(const GridRow& row) const {
@@ -44,8 +44,8 @@ struct GridSettings {
   bool quick = false;  ///< two scenes, half images, one seed each, no pairs of errors
 };
 
-/// The places and combinations of the settings, measured: rays are cast once a place and motion.
-/// The same settings give the same figures, whatever the number of threads.
+/// Measures all combinations of errors at all places. Rays are cast once for each place and motion.
+/// The figures do not depend on the number of threads.
 Grid measure_grid(const GridSettings& settings);
 
 }  // namespace tofmap::accuracy

@@ -23,7 +23,7 @@ std::string mean_and_worst(const Score& score) {
   return fmt::format("{:.2f} / {:.1f}", score.wrong_percent(), score.worst_percent());
 }
 
-/// How many rows keep a condition.
+/// The number of rows that meet a condition.
 struct Kept {
   int holds = 0;
   int without_allowance = 0;
@@ -42,7 +42,7 @@ void print_kept(const char* name, const Kept& kept) {
               count_of(kept.without_allowance, kept.all).c_str());
 }
 
-/// Rows of one kind and size of error, all scenes and seeds together.
+/// The rows of one kind and size of error, over all scenes and seeds.
 struct Group {
   std::string name;
   Score pixel, jump, joint, without_errors;
@@ -60,7 +60,8 @@ struct Group {
   }
 };
 
-/// Pairs of errors, and those that are drawn, count as one group each: the CSV has them by name.
+/// The name of the group of a combination. All pairs of errors are one group, as are all random
+/// combinations; the CSV file has them one by one.
 std::string group_name(const Combination& combination) {
   const bool is_many = combination.kind == "two errors" || combination.kind.starts_with("drawn");
   if (!is_many) return combination.kind + ' ' + combination.size;
@@ -68,7 +69,7 @@ std::string group_name(const Combination& combination) {
                                           : "all errors, " + combination.kind;
 }
 
-/// In the order in which they come first.
+/// The groups of rows, in the order of their first rows.
 std::vector<Group> group_rows(const Grid& grid, const std::vector<Checks>& checks) {
   std::vector<Group> groups;
   for (std::size_t i = 0; i < grid.rows.size(); ++i) {
@@ -118,7 +119,7 @@ void print_conditions(const std::vector<Checks>& checks) {
   print_kept("all", all);
 }
 
-/// All rows together: what share of the wraps is right at each confidence.
+/// Prints the share of right wraps at each confidence, over all rows.
 void print_reliability(const Grid& grid) {
   Calibration all;
   for (const GridRow& row : grid.rows) all.add(row.joint.calibration);
@@ -136,7 +137,7 @@ struct Failure {
   Check check;
 };
 
-/// The three rows that miss each condition by most.
+/// Prints the three rows that miss each condition by most.
 void print_failures(const Grid& grid, const std::vector<Checks>& checks) {
   constexpr std::size_t shown = 3;
   std::printf(

@@ -8,11 +8,12 @@
 
 namespace tofmap::accuracy {
 
-/// Prints, in Markdown: wrong wraps by kind and size of error, averaged over scenes and seeds; how
-/// many rows keep each condition; and the rows that miss it by most.
+/// Prints Markdown tables: wrong wraps by kind and size of error, averaged over scenes and seeds;
+/// the number of rows that meet each condition; and the rows that miss it by most.
 void print_grid(const Grid& grid);
 
-/// Every row with every figure and condition. Throws InputError if the file cannot be written.
+/// Writes all rows with all figures and conditions. Throws InputError if the file cannot be
+/// written.
 void write_grid_csv(const Grid& grid, const std::filesystem::path& file);
 
 }  // namespace tofmap::accuracy

@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// How many wraps each method of unwrapping gets wrong, as tables in Markdown
+// Prints the share of wrong wraps of each unwrapping method, as Markdown tables
 // (docs/comparison.md):
 //
-//     bench_unwrap_accuracy [--divide N] [SEQ …]        methods against scenes; parts of joint
+//     bench_unwrap_accuracy [--divide N] [SEQ …]        all methods on scenes; parts of joint
 //     bench_unwrap_accuracy --departures [--divide N] [SEQ …]
-//                                                       from the paper to jump, step by step
-//     bench_unwrap_accuracy --frozen [--divide N]       methods against frozen data (frozen.hpp)
+//                                                       each departure of jump from the paper
+//     bench_unwrap_accuracy --frozen [--divide N]       all methods on frozen data (frozen.hpp)
 //     bench_unwrap_accuracy --grid [--frozen] [--half] [--quick] [--csv FILE]
-//                                                       methods against errors of cameras
+//                                                       all methods under camera errors
 //
-// SEQ are recordings with range_truth/ besides those that are simulated. N divides the number of
-// runs.
+// SEQ are recordings with range_truth/, which are added to the simulated ones. N divides the number
+// of runs.
 
 #include "cases.hpp"
 #include "grid_report.hpp"
@@ -62,20 +62,22 @@ void run(const Arguments& arguments) {
 
 int main(int count, char** values) {
   tofmap::accuracy::Arguments arguments;
-  CLI::App app("Wrong wraps of every method of unwrapping");
-  app.add_option("SEQ", arguments.recordings, "recordings with range_truth/");
-  app.add_option("--divide", arguments.divisor, "divides the number of runs")
+  CLI::App app("Measures the wrong wraps of every unwrapping method");
+  app.add_option("SEQ", arguments.recordings, "more recordings, with range_truth/");
+  app.add_option("--divide", arguments.divisor, "divide the number of runs by this")
       ->check(CLI::PositiveNumber);
-  auto* frozen =
-      app.add_flag("--frozen", arguments.grid.frozen, "frozen data instead of development data");
-  auto* grid = app.add_flag("--grid", arguments.is_grid, "errors of cameras");
-  app.add_flag("--departures", arguments.only_departures, "what sets jump apart from the paper")
+  auto* frozen = app.add_flag("--frozen", arguments.grid.frozen,
+                              "use frozen data instead of development data");
+  auto* grid = app.add_flag("--grid", arguments.is_grid, "measure a grid of camera errors");
+  app.add_flag("--departures", arguments.only_departures,
+               "measure each departure of jump from the paper")
       ->excludes(frozen)
       ->excludes(grid);
-  app.add_flag("--half", arguments.grid.half, "a grid of images of half the width and height")
+  app.add_flag("--half", arguments.grid.half,
+               "halve the width and height of the images of the grid")
       ->needs(grid);
-  app.add_flag("--quick", arguments.grid.quick, "a small grid")->needs(grid);
-  app.add_option("--csv", arguments.csv, "file for all rows of the grid")->needs(grid);
+  app.add_flag("--quick", arguments.grid.quick, "measure a small grid")->needs(grid);
+  app.add_option("--csv", arguments.csv, "write all rows of the grid to this file")->needs(grid);
   CLI11_PARSE(app, count, values);
   try {
     tofmap::accuracy::run(arguments);

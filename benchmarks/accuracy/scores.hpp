@@ -10,20 +10,22 @@
 
 namespace tofmap::accuracy {
 
-/// Shares of right wraps against confidences, in 20 bins.
+/// Compares confidences with the share of right wraps, in 20 bins of confidence.
 class Calibration {
  public:
   void add(float confidence, bool is_right);
   void add(const Calibration& other);
 
-  /// Mean difference between confidence and share of right wraps, weighted by pixels.
+  /// The expected calibration error: the mean absolute difference between the mean confidence and
+  /// the share of right wraps in a bin, weighted by pixels.
   double error_percent() const;
 
-  /// What some of these pixels, those of one frame, add to error_percent(): its sum over all
-  /// frames.
+  /// The contribution of some of these pixels, such as those of one frame, to error_percent(). The
+  /// contributions of all frames add up to it.
   double error_percent_of(const Calibration& some) const;
 
-  /// The pixels whose confidence is at least c_k and less than c_(k+1); the last bin has no end.
+  /// The pixels with a confidence from least_confidence up to that of the next bin. The last bin
+  /// has no upper limit.
   struct Bin {
     double least_confidence = 0;
     double mean_confidence = 0;
@@ -31,7 +33,8 @@ class Calibration {
     double pixel_share = 0;  ///< of all pixels
   };
 
-  /// Finer than those of error_percent where confidences are high; without bins that are empty.
+  /// Bins that are finer at high confidences than those of error_percent(). Empty bins are left
+  /// out.
   std::vector<Bin> reliability() const;
 
  private:
@@ -51,15 +54,16 @@ class Calibration {
   double all_ = 0;
 };
 
-/// Pixels of one frame. A wrap is wrong if the range is off by more than half a wavelength of A.
+/// Numbers of pixels of one frame. A wrap is wrong if the range is off by more than half a
+/// wavelength of A.
 struct FrameScore {
-  double returns = 0;          ///< with a phase at both frequencies, and a truth
-  double pixels = 0;           ///< of these, with a range
-  double wrong = 0;            ///< of these, with a wrong wrap
-  double sure = 0;             ///< the most confident ones, 90 % of the returns
-  double sure_wrong = 0;       ///< of these, with a wrong wrap
-  double square_error_m2 = 0;  ///< sum over the pixels with a right wrap
-  bool is_converged = false;   ///< no curl is left; of methods of phase jumps
+  double returns = 0;          ///< pixels with a phase at both frequencies and a true range
+  double pixels = 0;           ///< pixels of `returns` that have a range
+  double wrong = 0;            ///< pixels of `pixels` with a wrong wrap
+  double sure = 0;             ///< the most confident of `pixels`, up to 90 % of `returns`
+  double sure_wrong = 0;       ///< pixels of `sure` with a wrong wrap
+  double square_error_m2 = 0;  ///< sum of squared errors over the pixels with a right wrap
+  bool is_converged = false;   ///< UnwrapResult::converged; false if the method has none
   double milliseconds = 0;
   Calibration calibration;
 
@@ -67,7 +71,7 @@ struct FrameScore {
   double sure_wrong_percent() const { return sure > 0 ? 100 * sure_wrong / sure : 0; }
 };
 
-/// All frames of a case.
+/// The scores of all frames of a case.
 struct Score {
   std::vector<FrameScore> frames;
   Calibration calibration;
@@ -76,13 +80,13 @@ struct Score {
   double worst_percent() const;  ///< the frame with the largest share of wrong wraps
   double sure_wrong_percent() const;
   double coverage_percent() const;
-  double range_rmse_m() const;       ///< of right wraps, mean over frames
+  double range_rmse_m() const;       ///< of pixels with a right wrap, mean over frames
   double converged_percent() const;  ///< of the frames
   double milliseconds() const;       ///< mean over frames
 };
 
-/// Adds one frame to `score`. Pixels without a truth do not count. Time and
-/// convergence are left to the caller.
+/// Adds one frame to `score`. Pixels without a true range do not count. The caller sets time and
+/// convergence.
 void add_frame(const DualFrequencyFrame& frame, const RangeImage& image, const ImageF& truth_m,
                double wavelength_a_m, Score& score);
 

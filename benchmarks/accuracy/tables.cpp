@@ -15,7 +15,7 @@
 namespace tofmap::accuracy {
 namespace {
 
-/// What one variant made of each case.
+/// The scores of one variant for each case.
 using Column = std::vector<Score>;
 using Cell = std::function<std::string(const Score&)>;
 
@@ -67,7 +67,7 @@ void print_method_tables(const std::vector<Case>& cases) {
               [](const Score& s) { return fmt::format("{:.1f}", s.coverage_percent()); });
   print_table("error of right ranges, RMS, cm", cases, all, scores,
               [](const Score& s) { return fmt::format("{:.1f}", 100 * s.range_rmse_m()); });
-  print_table("milliseconds a frame, one core", cases, all, scores,
+  print_table("milliseconds per frame, one core", cases, all, scores,
               [](const Score& s) { return fmt::format("{:.1f}", s.milliseconds()); });
 }
 

@@ -8,13 +8,13 @@
 
 namespace tofmap::accuracy {
 
-/// Prints every method against `cases`, in Markdown.
+/// Prints Markdown tables with the scores of every method for each case.
 void print_method_tables(const std::vector<Case>& cases);
 
-/// Prints what is left of `joint` without each of its parts.
+/// Prints a table of wrong wraps of `joint` without each of its parts.
 void print_ablation_table(const std::vector<Case>& cases);
 
-/// Prints what sets `jump` apart from the paper, one departure at a time.
+/// Prints tables of wrong wraps and convergence for each departure of `jump` from the paper.
 void print_departure_tables(const std::vector<Case>& cases);
 
 }  // namespace tofmap::accuracy

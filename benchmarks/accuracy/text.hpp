@@ -8,7 +8,7 @@
 
 namespace tofmap::accuracy {
 
-/// As a share of a hundred: "58 / 60".
+/// "58 / 60"
 inline std::string count_of(int count, int all) { return fmt::format("{} / {}", count, all); }
 
 }  // namespace tofmap::accuracy

@@ -10,34 +10,38 @@
 #include <tofmap/core/frame.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
-// An inner part of the module: the paper's method, whose departures are left out one at a time.
+// A private header of the module: the method of the paper, with switches for the departures from
+// it.
 #include "jump/jump.hpp"
 
 namespace tofmap::accuracy {
 
-/// Options, and a method of phase jumps that none of them names.
+/// A variant of a method.
 struct Variant {
   std::string name;
   UnwrapOptions options = {};
+  /// If not empty, a method of phase jumps that is used instead of `options.method`.
   std::optional<JumpMethod> jumps = std::nullopt;
 };
 
-/// Unwraps the frames of one run, in order, after a look ahead at the first of them, as the program
-/// does it.
+/// A function that unwraps the frames of one run, to be called in order.
 using UnwrapFrame = std::function<UnwrapResult(const DualFrequencyFrame&)>;
+
+/// Returns the function for a variant, after it has looked ahead at the first frames as the program
+/// does.
 UnwrapFrame unwrapper_of(const Variant& variant, const SensorModel& sensor,
                          const std::vector<DualFrequencyFrame>& frames);
 
-/// Every method by its name.
+/// Every method, under its name.
 std::vector<Variant> methods();
 
-/// `joint` with one ingredient less, or more of one.
+/// Variants of `joint` with one part removed or changed.
 std::vector<Variant> ablations();
 
-/// One departure from the paper after the other, until it is `jump`.
+/// Variants from `paper` to `jump`, each with one more departure from the paper.
 std::vector<Variant> departures();
 
-/// `jump` with one of its departures from the paper taken back.
+/// Variants of `jump`, each with one departure from the paper undone.
 std::vector<Variant> returns();
 
 }  // namespace tofmap::accuracy

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Ranges of frames whose phases are noisier than steps between surfaces, as a table in Markdown:
+// Measures ranges under extreme phase noise, and prints a Markdown table:
 //
 //     bench_extreme_noise [--seed N] [--divide N] [--pictures DIR]
-//
-// The like of a recording at 37.65 and 45.18 MHz without amplitudes: exact phases of simulated
-// rooms, ranges of 2 to 9 m, and noise of one strength in all pixels. Beside the filters stands
-// what blurring does: phasors of both frequencies under a Gaussian of 8 pixels, and the range of
-// the greatest likelihood.
+// The frames resemble a recording at 37.65 and 45.18 MHz without amplitudes: exact phases of
+// simulated rooms with ranges of 2 to 9 m, and the same noise in all pixels. The filters are
+// compared with blurring: the phasors of both frequencies are smoothed by a Gaussian of 8 pixels,
+// and each pixel gets the range of largest likelihood.
 
 #include <algorithm>
 #include <cmath>
@@ -41,8 +40,8 @@ struct Noise {
   double sigma_rad;
 };
 
-/// The standard deviation of either component of complex noise on a unit phasor whose phase then
-/// has the mean resultant length of a wrapped normal of this size.
+/// The standard deviation of the real and imaginary part of noise on a unit phasor for which the
+/// phase has the same mean resultant length as a wrapped normal distribution of `sigma_rad`.
 double complex_sigma(double sigma_rad) {
   constexpr int draws = 200000;
   const double wanted = std::exp(-sigma_rad * sigma_rad / 2);
@@ -66,7 +65,7 @@ double complex_sigma(double sigma_rad) {
   return (low + high) / 2;
 }
 
-/// Phases of these ranges with noise, cycles.
+/// Noisy phases of ranges, cycles.
 ImageF noisy_phase(const ImageF& range_m, double wavelength_m, const Noise& noise,
                    std::mt19937_64& random) {
   const bool is_complex = noise.kind == NoiseKind::complex_normal;
@@ -104,7 +103,7 @@ bool is_of_the_kind(const ImageF& truth_m) {
   return inside > 0.8 * static_cast<double>(truth_m.size());
 }
 
-/// Frames of a scene whose ranges are mostly 2 to 9 m.
+/// Frames of a scene in which more than 80 % of the ranges are from 2 to 9 m.
 std::vector<Sample> samples_of(const std::string& scene, int seed, int frames, int width,
                                int height) {
   SimulatorOptions options;
@@ -129,7 +128,7 @@ std::vector<Sample> samples_of(const std::string& scene, int seed, int frames, i
   return samples;
 }
 
-/// The most likely range of phasors blurred by a Gaussian.
+/// The most likely ranges for phasors smoothed by a Gaussian.
 ImageF blurred_ranges(const DualFrequencyFrame& frame, const Modulation& modulation,
                       double sigma_px) {
   const auto rows = frame.phase_a.rows();
@@ -160,7 +159,7 @@ ImageF blurred_ranges(const DualFrequencyFrame& frame, const Modulation& modulat
   };
   const Plane a = blurred(frame.phase_a);
   const Plane b = blurred(frame.phase_b);
-  constexpr double step_m = 0.04;  // a tenth of what errors are held against
+  constexpr double step_m = 0.04;  // much smaller than the error limit of 0.3 m
   const double last_m = combined_range_m(modulation);
   std::vector<std::complex<double>> turn_a;
   std::vector<std::complex<double>> turn_b;
@@ -181,14 +180,14 @@ ImageF blurred_ranges(const DualFrequencyFrame& frame, const Modulation& modulat
   return range_m;
 }
 
-/// What one way to ranges makes of frames.
+/// Statistics of the ranges of one method.
 struct Tally {
   double pixels = 0;
   double valid = 0;
   double near = 0;
   double wrong_wraps = 0;
   double confidence = 0;
-  std::vector<float> deviations;  ///< errors over sigma_m
+  std::vector<float> deviations;  ///< errors divided by sigma_m
 
   void add(const RangeImage& image, const Sample& sample) {
     constexpr float near_m = 0.3F;
@@ -221,14 +220,15 @@ struct Tally {
   double coverage_percent() const { return 100 * valid / pixels; }
   double doubt_percent() const { return 100 * (1 - confidence / valid); }
 
-  /// 1 if sigma_m is right: the median of a normal is 0.6745 standard deviations off.
+  /// The median error in units of sigma_m, scaled so that it is 1 for a correct sigma_m and normal
+  /// noise, whose median absolute error is 0.6745 σ.
   double median_deviation() const {
     std::vector<float> sizes = deviations;
     return static_cast<double>(median(sizes)) / 0.6745;
   }
 };
 
-/// The ways that are compared.
+/// The statistics of all methods that are compared.
 struct Tallies {
   Tally pixel;
   Tally joint;
@@ -269,7 +269,7 @@ DualFrequencyFrame noisy_frame(const Sample& sample, const Noise& noise, std::mt
   return frame;
 }
 
-/// Truth, and ranges with their errors below them, for the eye.
+/// A picture of the true ranges and the ranges of each method, with the errors below them.
 Picture sheet_of(const Sample& sample, const std::vector<const ImageF*>& ranges) {
   const ColorScale range_scale(0, 12, "range, m");
   const ColorScale error_scale(0, 0.6, "error, m", ColorRamp::error);
@@ -289,7 +289,8 @@ Picture sheet_of(const Sample& sample, const std::vector<const ImageF*>& ranges)
   return beside(columns, 2);
 }
 
-/// One frame by all ways; a picture of it if a file is named.
+/// Adds one frame to the statistics of all methods. Writes a picture of it if `picture` is not
+/// empty.
 void compare(const Sample& sample, const Noise& noise, unsigned seed,
              const std::filesystem::path& picture, Tallies& tallies) {
   std::mt19937_64 random(seed);
@@ -363,7 +364,7 @@ Arguments read_arguments(const std::vector<std::string>& words) {
   return arguments;
 }
 
-/// Frames of one kind.
+/// Frames of one scene and image size.
 struct Group {
   std::string name;
   std::vector<Sample> samples;
@@ -380,7 +381,7 @@ std::vector<Group> make_groups(const Arguments& arguments) {
       Group group{std::string(scene) + ", " + std::to_string(size.width) + " x " +
                       std::to_string(size.height),
                   {}};
-      // Many rooms are too large for frames of 2 to 9 m.
+      // Many random rooms are too large for ranges of 2 to 9 m.
       const int seeds = std::max(1, (std::string(scene) == "random" ? 12 : 4) / arguments.divisor);
       for (int seed = arguments.seed; seed < arguments.seed + seeds; ++seed) {
         std::ranges::move(samples_of(scene, seed, 1, size.width, size.height),

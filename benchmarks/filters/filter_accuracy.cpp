@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What filters remove and what they lose, as tables in Markdown, and as plots if a folder is given:
+// Measures which pixels filters remove, and prints Markdown tables; writes plots if a folder is
+// given:
 //
 //     bench_filter_accuracy [--divide N] [--plots DIR] [--only flying] [--mesh FILE]
-//
-// The recordings are simulated, so that it is known which pixels fly. N divides the number of
-// frames. `--only flying` prints the tables of flying pixels by recording, and no others; a mesh
+// The recordings are simulated, so that it is known which pixels are flying. N divides the number
+// of frames. `--only flying` prints only the tables of flying pixels per recording. A mesh file
 // adds a recording to the frozen ones.
 
 #include "pcl_filters.hpp"
@@ -30,7 +30,8 @@
 namespace tofmap::bench {
 namespace {
 
-/// It loses what plane_edge loses.
+/// The name of this chain. It is left out of the plots, since it removes the same pixels as
+/// plane_edge.
 const std::string chain_of_unwrap = "the chain of `unwrap --filters`";
 
 Filter chain(const std::string& name, const FilterOptions& options) {
@@ -60,7 +61,7 @@ std::vector<Filter> all_filters() {
   return all;
 }
 
-/// A dash if there is nothing to share.
+/// A share in percent, or a dash if there are no pixels.
 std::string percent(const Share& share, int digits) {
   if (share.all == 0) return "–";
   char text[32];
@@ -93,7 +94,8 @@ void print_scores(const std::string& title, const std::vector<NamedScore>& score
   std::fflush(stdout);
 }
 
-/// Shares over the middles of bins, `width` of them together. Where there are few pixels a gap.
+/// A line of shares for groups of `width` bins. It has gaps where a group has fewer than 200
+/// pixels.
 template <std::size_t Size>
 PlotLine line_of(const std::string& name, const std::array<Share, Size>& bins, std::size_t width) {
   constexpr double least_pixels = 200;
@@ -107,7 +109,7 @@ PlotLine line_of(const std::string& name, const std::array<Share, Size>& bins, s
   return line;
 }
 
-/// Plots of the filters that remove pixels.
+/// Writes plots of the lost pixels for the filters that remove pixels.
 void write_plots(const std::filesystem::path& folder, const std::vector<NamedScore>& scores) {
   constexpr int width_px = 900;
   constexpr int height_px = 540;
@@ -134,7 +136,7 @@ void write_plots(const std::filesystem::path& folder, const std::vector<NamedSco
   write_picture(folder / "lost_by_range.png", plot_picture(by_range, width_px, height_px));
 }
 
-/// Pixels that are a wavelength or more off.
+/// The share of pixels that are off by more than half a wavelength of A.
 Share wrong_wraps(const RangeImage& image, const Sample& sample, const Case& example) {
   const auto half_m = static_cast<float>(example.sensor.modulation.wavelength_a_m() / 2);
   Share wrong;
@@ -169,7 +171,7 @@ void print_isolated_wraps(const std::string& method, int divisor) {
   }
 }
 
-/// The default chain, and then fusion with `views` frames before and after.
+/// The default chain, followed by fusion with `views` frames before and after.
 Filter fused(int views) {
   return {
       "± " + std::to_string(views) + " frames", [views](const Case& run, const Sample& sample) {
@@ -205,7 +207,7 @@ void print_fusion(int divisor) {
   }
 }
 
-/// What the default chain finds and loses in each recording by itself.
+/// Prints which pixels the default chain finds and loses in each recording.
 void print_flying(const std::string& title, const std::vector<Recording>& recordings, int divisor) {
   std::printf(
       "\n| %s | frames | labelled flying, a frame | of these found, %% | flying in range, too: "

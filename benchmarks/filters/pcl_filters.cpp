@@ -29,7 +29,7 @@ Cloud::Ptr cloud_of(const RangeImage& image, const PixelRays& rays) {
   return cloud;
 }
 
-/// Numbers of the valid pixels: PCL's searches end the program at a NaN.
+/// The indices of the valid pixels. PCL's searches abort the program if a point is NaN.
 pcl::IndicesPtr valid_pixels(const RangeImage& image) {
   const pcl::IndicesPtr indices(new pcl::Indices);
   for (Eigen::Index i = 0; i < image.reason.size(); ++i) {
@@ -38,7 +38,8 @@ pcl::IndicesPtr valid_pixels(const RangeImage& image) {
   return indices;
 }
 
-/// The image without the points that a filter of PCL removes from those it was given.
+/// The image with the pixels invalidated that a PCL filter removes. `given` are the indices of the
+/// pixels in the filter's input cloud.
 template <class PclFilter>
 RangeImage without_removed(PclFilter& filter, const pcl::Indices& given, const RangeImage& image) {
   pcl::Indices kept;
@@ -56,7 +57,8 @@ RangeImage without_removed(PclFilter& filter, const pcl::Indices& given, const R
   return out;
 }
 
-/// The same for filters that need a cloud of valid points alone.
+/// Sets the cloud of valid points as the input of a PCL filter, and returns the image with the
+/// pixels invalidated that it removes.
 template <class PclFilter>
 RangeImage without_removed(PclFilter& filter, const Case& example, const RangeImage& image) {
   const pcl::IndicesPtr valid = valid_pixels(image);
@@ -64,8 +66,8 @@ RangeImage without_removed(PclFilter& filter, const Case& example, const RangeIm
   return without_removed(filter, *valid, image);
 }
 
-/// Points at which the line of sight is almost in their plane: those whose distance to the camera
-/// along the normal is below a threshold, metres.
+/// Removes points whose plane nearly contains the line of sight: those whose distance to the camera
+/// along the normal is below `threshold_m`.
 RangeImage without_shadows(const Case& example, const Sample& sample, float threshold_m) {
   const Cloud::Ptr cloud = cloud_of(sample.unwrapped, example.rays);
   pcl::PointCloud<pcl::Normal>::Ptr normals(new pcl::PointCloud<pcl::Normal>);

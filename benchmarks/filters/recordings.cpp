@@ -26,7 +26,7 @@ SimulatorOptions simulator_options(const Recording& recording) {
   return options;
 }
 
-/// A step of a camera in front of something that is seen from the scene's path.
+/// A path of 3 cm in front of a surface that is visible from the path of the scene.
 CameraPath step_near_wall(const Scene& scene, const RayScene& rays, std::mt19937& random) {
   constexpr double clearance_m = 0.25;
   constexpr double step_m = 0.03;
@@ -48,7 +48,7 @@ CameraPath step_near_wall(const Scene& scene, const RayScene& rays, std::mt19937
   }
 }
 
-/// Adds an offset to all ranges of B.
+/// Adds an offset to all phases of B.
 void shift_b(DualFrequencyFrame& frame, double cycles) {
   for (float& phase : frame.phase_b.reshaped()) {
     phase += static_cast<float>(cycles);
@@ -56,7 +56,7 @@ void shift_b(DualFrequencyFrame& frame, double cycles) {
   }
 }
 
-/// Takes frames of one scene.
+/// Adds frames of a recording to a case.
 class SampleTaker {
  public:
   SampleTaker(const Recording& recording, Case& example)

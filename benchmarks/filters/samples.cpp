@@ -19,7 +19,7 @@ Sample take_sample(const Simulator& simulator, int index, Unwrapper& unwrapper) 
   return sample;
 }
 
-/// Frames in the middles of equal parts of a scene's path.
+/// Adds frames from the middles of equal parts of the path of a scene.
 void add_samples(const std::string& scene, int scene_seed, const std::string& method, int frames,
                  Case& example) {
   const Simulator simulator(make_scene(scene, scene_seed), {});

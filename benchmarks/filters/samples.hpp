@@ -10,13 +10,13 @@
 
 namespace tofmap::bench {
 
-/// A simulated frame, unwrapped.
+/// A simulated frame and its unwrapped ranges.
 struct Sample {
   SimulatedFrame simulated;
   RangeImage unwrapped;
 };
 
-/// Frames of one kind, all by the same camera.
+/// Frames of one kind, all from the same camera.
 struct Case {
   std::string name;
   SensorModel sensor;
@@ -24,20 +24,23 @@ struct Case {
   std::vector<Sample> samples;
 };
 
-/// Random rooms and built-in scenes, unwrapped by a method; `divisor` divides the number of frames.
+/// Frames of random rooms and built-in scenes, unwrapped by a method. `divisor` divides the number
+/// of frames.
 std::vector<Case> make_cases(const std::string& method, int divisor);
 
-/// Frames next to one another on a scene's path.
+/// Successive frames from the middle of the path of a scene, unwrapped by `joint`.
 Case make_run(const std::string& scene, int frames);
 
-/// Whether several surfaces were in the pixel's view.
+/// Whether the pixel sees several surfaces, that is, whether it is labelled as mixed or flying.
 bool sees_several_surfaces(const Sample& sample, Eigen::Index row, Eigen::Index col);
 
-/// Whether A's range, before wraps, is none of those surfaces (PixelLabel::flying).
+/// Whether the pixel is labelled as flying (PixelLabel::flying). The label depends only on the
+/// range of frequency A.
 bool is_labelled_flying(const Sample& sample, Eigen::Index row, Eigen::Index col);
 
-/// A pixel that sees several surfaces flies if its range is none of the surfaces around it, by more
-/// than 5 cm and three standard deviations of its noise. (The label itself is of A's range alone.)
+/// Whether the pixel is flying: it sees several surfaces, and its unwrapped range differs from the
+/// true range of each of the 3 x 3 pixels around it by more than 5 cm and more than three standard
+/// deviations of its noise.
 bool is_flying(const Sample& sample, Eigen::Index row, Eigen::Index col);
 
 }  // namespace tofmap::bench

@@ -14,12 +14,12 @@
 namespace tofmap::bench {
 namespace {
 
-/// Of a copy; NaN if there are none.
+/// The median of values. NaN if there are none.
 double median_of(std::vector<float> values) {
   return values.empty() ? std::nan("") : median(values);
 }
 
-/// Counts a pixel that sees one surface and has the right wrap count.
+/// Adds a pixel that sees one surface and has the right wrap count to the score.
 void tally_one_surface(const Sample& sample, const RangeImage& kept, Eigen::Index v, Eigen::Index u,
                        Score& score) {
   const SimulatedFrame& truth = sample.simulated;
@@ -43,7 +43,7 @@ void tally_one_surface(const Sample& sample, const RangeImage& kept, Eigen::Inde
 }
 
 void tally(const Sample& sample, const RangeImage& kept, Score& score) {
-  constexpr double wrong_m = 2;  // a wrong wrap
+  constexpr double wrong_m = 2;  // a larger error is a wrong wrap
   const ImageF& truth_m = sample.simulated.range_truth_m;
   for (Eigen::Index v = 0; v < kept.rows(); ++v) {
     for (Eigen::Index u = 0; u < kept.cols(); ++u) {

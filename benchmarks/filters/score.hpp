@@ -12,12 +12,13 @@
 
 namespace tofmap::bench {
 
-/// A filter by its name.
+/// A filter and its name.
 struct Filter {
   std::string name;
   std::function<RangeImage(const Case&, const Sample&)> apply;
 };
 
+/// The share of some pixels in all.
 struct Share {
   double part = 0;
   double all = 0;
@@ -33,39 +34,40 @@ struct Share {
   double percent() const { return 100 * part / all; }
 };
 
-/// What a filter did with all frames of a case. Right pixels see one surface and are off by less
-/// than 10 cm.
+/// The effect of a filter on all frames of a case. "Right" pixels are those with the label
+/// PixelLabel::right: they see one surface and are off by at most 10 cm.
 struct Score {
-  static constexpr std::size_t angles = 90;  ///< bins of a degree of incidence
-  static constexpr std::size_t ranges = 30;  ///< bins of a metre
+  static constexpr std::size_t angles = 90;  ///< bins of one degree of incidence angle
+  static constexpr std::size_t ranges = 30;  ///< bins of one metre of range
   static constexpr double far_m = 5;
 
-  Share found;                              ///< of the flying pixels: removed
-  Share found_by_label;                     ///< of the pixels labelled as flying: removed
-  Share precise;                            ///< of the removed pixels: flying or mixed
-  std::array<Share, angles> lost_by_angle;  ///< of the right pixels: removed
-  std::array<Share, ranges> lost_by_range;
+  Share found;                              ///< removed pixels, of the flying ones
+  Share found_by_label;                     ///< removed pixels, of those labelled as flying
+  Share precise;                            ///< pixels with several surfaces, of the removed ones
+  std::array<Share, angles> lost_by_angle;  ///< removed pixels, of the right ones
+  std::array<Share, ranges> lost_by_range;  ///< removed pixels, of the right ones
 
-  // Of pixels that are kept and see one surface, right or noisy:
+  // Of the kept pixels that see one surface and have the right wrap count:
   double squared_before_m2 = 0;
   double squared_after_m2 = 0;
   double one_surface_kept = 0;
   std::vector<float> before_m;
   std::vector<float> after_m;
-  double milliseconds = 0;  ///< a frame
+  double milliseconds = 0;  ///< per frame
 
   Share lost() const { return lost_between(0, angles); }
   Share lost_beyond_far() const;
   Share lost_within_a_metre() const { return lost_by_range[0]; }
   Share lost_between(std::size_t from_deg, std::size_t to_deg) const;
   double rmse_m() const;
-  double rms_share() const;     ///< of the error before the filter
-  double median_share() const;  ///< the same for the median
+  double rms_share() const;     ///< RMS error after the filter divided by that before
+  double median_share() const;  ///< median error after the filter divided by that before
 };
 
+/// Applies a filter to all frames of a case and scores it.
 Score score_filter(const Filter& filter, const Case& example);
 
-/// Scores of several cases together.
+/// The score over the frames of several cases.
 Score joined(const std::vector<Score>& scores);
 
 }  // namespace tofmap::bench

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Maps three frames of a simulated room, scores their path against the truth, and draws the map.
+// Maps three frames of a simulated room, scores the trajectory against the truth, and draws the
+// map.
 
 #include <cstdio>
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Unwraps a flat wall at 7 m, which both frequencies see wrapped, and checks its ranges.
+// Unwraps a frame of a flat wall at 7 m, where both phases are wrapped once, and checks the ranges.
 
 #include <cmath>
 #include <cstdio>
@@ -21,7 +21,7 @@ tofmap::SensorModel small_camera() {
   return sensor;
 }
 
-/// What a camera that faces a wall at z = wall_m measures: range is radial.
+/// The radial ranges of a camera that faces a wall at depth wall_m.
 tofmap::ImageF wall_ranges(const tofmap::CameraModel& camera) {
   return static_cast<float>(wall_m) / tofmap::pixel_rays(camera).z;
 }
@@ -44,6 +44,6 @@ int main() {
   const float worst_m = (result.image.range_m - truth_m).abs().maxCoeff();
   const float middle_m = result.image.range_m(12, 16);
   std::printf("range in the middle: %.4f m, largest error: %.2g m\n", middle_m, worst_m);
-  // Float phases of 7 to 9 m are good to a few micrometres; one wrap is 5 m.
+  // Phases stored as floats are precise to a few micrometres at 7 to 9 m; one wrap is 5 m.
   return result.image.count_valid() == truth_m.size() && worst_m < 1e-4F ? 0 : 1;
 }

@@ -48,7 +48,7 @@ TEST_F(Result, GetsThePartsThatDoNotFail) {
   EXPECT_EQ(add(exit_status::done, [] { throw std::bad_alloc(); }), exit_status::own_fault);
   EXPECT_THAT(
       testing::internal::GetCapturedStderr(),
-      AllOf(HasSubstr(result_.string() + " is whole, but without pictures: out of memory")));
+      AllOf(HasSubstr(result_.string() + " is complete, but without pictures: out of memory")));
   EXPECT_TRUE(fs::exists(result_ / "report.html"));
   EXPECT_FALSE(FileList::read(result_)->first_foreign(result_));
 }

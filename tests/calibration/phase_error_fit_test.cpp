@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include "support/consistency.hpp"
+
 #include <cmath>
 #include <random>
 
@@ -153,6 +155,45 @@ TEST(FitToResidual, FindsNothingWhereThereIsNothing) {
       samples_of({}, {}, {.ranges_are_known = false, .count = 20000}), modulation, orders({4, 8}));
   EXPECT_TRUE(found.error_a.harmonics.empty());
 }
+
+/// As many samples as a few frames give, where the samples of each surface err alike: at both
+/// frequencies in one way, and thirty samples to a surface, as the fit allows for.
+std::vector<RangeSample> samples_of_surfaces(double offset_a_m, unsigned seed) {
+  constexpr int surfaces = 100;
+  constexpr int samples_each = 30;
+  std::mt19937 random(seed);
+  std::normal_distribution<double> error_m(0, noise_m);
+  std::uniform_real_distribution<double> ranges(0.5, 9);
+  std::vector<RangeSample> samples;
+  for (int i = 0; i < surfaces; ++i) {
+    const double error_a_m = offset_a_m + error_m(random);
+    const double error_b_m = error_m(random);
+    for (int j = 0; j < samples_each; ++j) {
+      const double range_m = ranges(random);
+      samples.push_back({static_cast<float>(range_m + error_a_m),
+                         static_cast<float>(range_m + error_b_m), static_cast<float>(range_m)});
+    }
+  }
+  return samples;
+}
+
+/// Of the offset between both frequencies, over 500 draws.
+template <class Fit>
+void expect_consistent_offset(const Fit& fit) {
+  constexpr double offset_a_m = 0.01;
+  test::Consistency consistency;
+  for (unsigned seed = 0; seed < 500; ++seed) {
+    const PhaseErrorFit found =
+        fit(samples_of_surfaces(offset_a_m, seed), modulation, PhaseErrorFitOptions{});
+    consistency.add(found.offset_m.value - offset_a_m, found.offset_m.sigma);
+  }
+  EXPECT_GT(consistency.mean_nees(), consistency.lower_bound());
+  EXPECT_LT(consistency.mean_nees(), consistency.upper_bound());
+}
+
+TEST(FitToReferences, IsAsFarOffAsItSays) { expect_consistent_offset(fit_to_references); }
+
+TEST(FitToResidual, IsAsFarOffAsItSays) { expect_consistent_offset(fit_to_residual); }
 
 TEST(AppendRangeSamples, TakesTheWrapsThatComeNearestToTheReference) {
   DualFrequencyFrame frame;

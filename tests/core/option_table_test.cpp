@@ -196,7 +196,7 @@ TEST_F(Options, InAFileAreRefusedWithFileAndLine) {
 TEST_F(Options, OfAFileThatCannotBeReadAreBadInput) {
   expect_refusal<InputError>([&] { table_.load(folder_.path() / "none.yaml"); }, {"none.yaml"});
   expect_refusal<InputError>([&] { table_.load(file("stage: [1\n")); },
-                             {"options.yaml", "no valid YAML"});
+                             {"options.yaml", "is not valid YAML"});
   expect_refusal<InputError>([&] { table_.load(file("- 1\n- 2\n")); },
                              {"options.yaml", "map of option groups"});
 }

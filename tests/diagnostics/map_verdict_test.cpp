@@ -87,9 +87,8 @@ TEST(Verdict, TellsItsReasons) {
   EXPECT_EQ(told_reasons(judge(evidence)), "");
   evidence.registered = 90;
   evidence.is_interrupted = true;
-  EXPECT_EQ(
-      told_reasons(judge(evidence)),
-      " Held against it: 10 % of the frames could not be registered; the run was interrupted.");
+  EXPECT_EQ(told_reasons(judge(evidence)),
+            " Reasons: 10 % of the frames could not be registered; the run was interrupted.");
 }
 
 TEST(Verdict, OnRangesGoesByWrongWraps) {

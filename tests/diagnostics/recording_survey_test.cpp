@@ -168,7 +168,7 @@ TEST(FrequencyPairWarning, IsThereWhereOneWavelengthIsAllThatThePairTells) {
   EXPECT_FALSE(frequency_pair_warning({29e6, 31e6}));
   EXPECT_FALSE(frequency_pair_warning({80e6, 100e6}));
   EXPECT_THAT(frequency_pair_warning({29e6, 29.001e6}).value_or(""),
-              HasSubstr("tells no wrap counts apart"));
+              HasSubstr("cannot tell wrap counts apart"));
 }
 
 TEST(ErrorWarnings, BeginAtACentimetreOfPeriodicError) {
@@ -191,7 +191,7 @@ TEST_F(Survey, DoubtsImagesOfOneFrequencyThatRepeat) {
   const RecordingSurvey found = survey();
   EXPECT_EQ(found.repeated, 0);
   EXPECT_EQ(found.repeated_single, found.frames - 1);
-  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("at one frequency, and new ones at the other")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("at one frequency, and new phases at the other")));
 }
 
 TEST_F(Survey, NamesImagesOfOnePhase) {
@@ -212,7 +212,7 @@ TEST_F(Survey, CountsFramesThatRepeat) {
   });
   EXPECT_EQ(survey().repeated, 1);
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("1 frame repeats"),
-                                     HasSubstr("1 frame has the phases of the one before at one")));
+                                     HasSubstr("1 frame has the phases of the previous frame")));
 }
 
 TEST_F(Survey, CountsFramesWithoutAnyReturn) {

@@ -90,7 +90,7 @@ TEST_F(BadOptions, ConfigurationThatIsAFolderIsBadInput) {
 TEST_F(BadOptions, ConfigurationThatIsNoYamlIsBadInput) {
   const Finished finished = run("map", {"--config", config("unwrap: [1, 2\n")});
   EXPECT_EQ(finished.status, 3);
-  EXPECT_THAT(finished.err, HasSubstr("no valid YAML"));
+  EXPECT_THAT(finished.err, HasSubstr("is not valid YAML"));
 }
 
 TEST(Program, NeedsACommand) {

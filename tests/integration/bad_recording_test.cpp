@@ -158,7 +158,7 @@ TEST_F(BadRecording, OfIdenticalFramesCountsAsOneFrame) {
   }
   const Finished finished = run("map");
   ASSERT_EQ(finished.status, 0) << finished.err;
-  EXPECT_THAT(finished.out, HasSubstr("warning: 3 frames repeat the one before"));
+  EXPECT_THAT(finished.out, HasSubstr("warning: 3 frames repeat the previous frame"));
   EXPECT_EQ(read_trajectory(out_ / "trajectory.txt").size(), 1U);
 }
 
@@ -169,8 +169,8 @@ TEST_F(BadRecording, ThatStandsStillForAWhileIsDoubted) {
   }
   const Finished finished = run("map");
   EXPECT_EQ(finished.status, 0) << finished.err;
-  EXPECT_THAT(finished.out, HasSubstr("warning: 1 frame repeats the one before"));
-  EXPECT_THAT(read_text(out_ / "report.html"), HasSubstr("1 frame repeats the one before"));
+  EXPECT_THAT(finished.out, HasSubstr("warning: 1 frame repeats the previous frame"));
+  EXPECT_THAT(read_text(out_ / "report.html"), HasSubstr("1 frame repeats the previous frame"));
   const auto report = read_json(out_ / "report.json");
   EXPECT_EQ(report["summary"]["repeated"], 1);
   EXPECT_FALSE(report["frames"][2].contains("repeats"));
@@ -212,7 +212,7 @@ TEST_F(BadRecording, FrameOf8BitsIsSkippedAndNamed) {
 TEST_F(BadRecording, FrameThatIsAPipeIsNotWaitedFor) {
   fs::remove(phase_a(1));
   ASSERT_EQ(mkfifo(phase_a(1).c_str(), 0600), 0);
-  expect_frame_1_skipped("is no regular file");
+  expect_frame_1_skipped("is not a regular file");
 }
 
 TEST_F(BadRecording, WithAFolderInPlaceOfAFileIsNamed) {

@@ -112,7 +112,7 @@ TEST_F(Calibrate, LeavesOutFramesThatNoWallFills) {
       run_program({"calibrate", sequence_.string(), "--out", (folder_.path() / "c.yaml").string(),
                    "--set", "calibration.wall_file=" + wall.string()});
   EXPECT_EQ(finished.status, 3);
-  EXPECT_THAT(finished.err, testing::HasSubstr("no flat wall fills it"));
+  EXPECT_THAT(finished.err, testing::HasSubstr("no flat wall fills the image"));
   EXPECT_THAT(finished.err, testing::HasSubstr(sequence_.string()));
   EXPECT_THAT(finished.err, testing::HasSubstr("too few pixels"));
 }
@@ -123,7 +123,7 @@ TEST_F(Calibrate, DoesNotReplaceWhatIsNoCalibration) {
   const Finished finished =
       run_program({"calibrate", sequence_.string(), "--out", header.string()});
   EXPECT_EQ(finished.status, 3);
-  EXPECT_THAT(finished.err, testing::HasSubstr("is there already"));
+  EXPECT_THAT(finished.err, testing::HasSubstr("exists already"));
   EXPECT_EQ(read_text(header), before);
   calibrate("truth");
   calibrate("truth");  // but an earlier one is replaced

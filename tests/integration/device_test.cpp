@@ -342,10 +342,10 @@ TEST_P(BadDevice, IsNamedAndLeavesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(
     Uris, BadDevice,
-    testing::Values(BadUri{"unknown_scene", "tofmap://nowhere", "there are: ", 2},
+    testing::Values(BadUri{"unknown_scene", "tofmap://nowhere", "allowed: ", 2},
                     BadUri{"unknown_option", "tofmap://room?spee=1", "unknown option spee", 2},
                     BadUri{"doubled_option", "tofmap://room?speed=1&speed=2", "twice", 2},
-                    BadUri{"no_option", "tofmap://room?speed", "no option=value", 2},
+                    BadUri{"no_option", "tofmap://room?speed", "expected option=value", 2},
                     BadUri{"wrong_distortion", "tofmap://room?simulator.distortion_k1=-0.9",
                            "distortion", 2},
                     BadUri{"no_recording", "tofmap:///nowhere/at/all", "/nowhere/at/all"},

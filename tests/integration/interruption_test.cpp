@@ -75,7 +75,7 @@ TEST_F(Interruption, LeavesAnEarlierResultWhereItIs) {
   program.send(SIGINT);
   const Finished finished = program.wait();
   EXPECT_EQ(finished.status, 130);
-  EXPECT_THAT(finished.err, HasSubstr("the earlier result in " + out_.string() + " stays"));
+  EXPECT_THAT(finished.err, HasSubstr("the earlier result in " + out_.string() + " is kept"));
   EXPECT_EQ(names_in(out_ / "range").size(), earlier);
   EXPECT_GT(names_in(fs::path(out_.string() + "-2") / "range").size(), 0U);
 }
@@ -169,7 +169,7 @@ TEST_F(Interruption, OfDrawingLeavesTheMapWhole) {
   program.send(SIGINT);
   const Finished finished = program.wait();
   EXPECT_EQ(finished.status, 130) << finished.err;
-  EXPECT_THAT(finished.err, HasSubstr("pictures or report.html are left out"));
+  EXPECT_THAT(finished.err, HasSubstr("but without pictures or report.html"));
   EXPECT_EQ(read_json(out_ / "report.json")["summary"]["interrupted"], false);
   EXPECT_EQ(read_json(out_ / "report.json")["frames"].size(), few);
   EXPECT_FALSE(fs::exists(out_ / "report.html"));

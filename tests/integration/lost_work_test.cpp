@@ -49,8 +49,9 @@ TEST_F(LostWork, OfARangeThatDoesNotFitIsThatPixelAlone) {
   const int dropped = report["frames"][1]["out_of_range_pixels"];
   EXPECT_GE(dropped, 2);
   EXPECT_GE(report["summary"]["out_of_range_pixels"], dropped);
-  EXPECT_THAT(finished.err, AllOf(HasSubstr("had ranges that images of 0.001 m to 65.535 m cannot"),
-                                  HasSubstr("unwrap.max_range_m")));
+  EXPECT_THAT(finished.err,
+              AllOf(HasSubstr("had ranges outside the 0.001 m to 65.535 m that images can store"),
+                    HasSubstr("unwrap.max_range_m")));
   const ImageU8 reason = read_png_8(out_ / "reason" / "000001.png");
   const ImageU16 range = read_png_16(out_ / "range" / "000001.png");
   const ImageU8 wraps = read_png_8(out_ / "wraps" / "000001.png");

@@ -67,7 +67,7 @@ TEST_F(OutputFolder, ThatCannotBeMadeIsNamedBeforeWorkBegins) {
     const Finished finished = run_program({command, sequence_.string(), "--out", below.string()});
     EXPECT_EQ(finished.status, 3) << command;
     EXPECT_THAT(finished.err, HasSubstr(below.string())) << command;
-    EXPECT_THAT(finished.err, HasSubstr("can be written")) << command;
+    EXPECT_THAT(finished.err, HasSubstr("is writable")) << command;
   }
 }
 
@@ -86,7 +86,7 @@ TEST_F(OutputFolder, ThatIsAFileIsKept) {
 TEST_F(OutputFolder, WithFilesOfOthersIsKept) {
   fs::create_directory(out_);
   std::ofstream(out_ / "thesis.txt") << "mine";
-  expect_refusal(out_, "no result of tofmap");
+  expect_refusal(out_, "not a result of tofmap");
   EXPECT_EQ(read_text(out_ / "thesis.txt"), "mine");
 }
 
@@ -212,14 +212,14 @@ TEST_F(OutputFolder, OfAnyEarlierResultIsReplaced) {
 
 TEST_F(OutputFolder, ThatIsTheRecordingIsKept) {
   const auto before = names_in(sequence_);
-  expect_refusal(sequence_, "is or holds a recording");
+  expect_refusal(sequence_, "is or contains a recording");
   EXPECT_EQ(names_in(sequence_), before);
 }
 
 TEST_F(OutputFolder, ThatHoldsTheRecordingIsKept) {
   // An earlier result by its look, so it would be replaced with all that is in it.
   std::ofstream(folder_.path() / "options.yaml") << "threads: 0\n";
-  expect_refusal(folder_.path(), "is or holds a recording");
+  expect_refusal(folder_.path(), "is or contains a recording");
   EXPECT_TRUE(fs::exists(sequence_ / "sequence.yaml"));
 }
 
@@ -256,7 +256,7 @@ TEST_F(FullDisk, KeepsTheResultWhenOnlyPicturesDoNotFit) {
       run_program({"unwrap", sequence_.string(), "--out", out_.string()}, {.max_file_bytes = 5000});
   EXPECT_EQ(finished.status, 3);
   EXPECT_THAT(finished.err, HasSubstr("cannot be written"));
-  EXPECT_THAT(finished.err, HasSubstr("is whole, but without pictures: "));
+  EXPECT_THAT(finished.err, HasSubstr("is complete, but without pictures: "));
   EXPECT_THAT(names_in(out_), ElementsAre(".tofmap-files", "confidence", "options.yaml", "range",
                                           "reason", "report.json", "wraps"));
   EXPECT_EQ(run("unwrap").status, 0) << "what is there can be replaced";
@@ -274,7 +274,7 @@ TEST_F(FullDisk, KeepsTheMapWhenItsMeshOrPageDoesNotFit) {
   const Finished without_mesh = map(size("mesh.ply") / 2);
   EXPECT_EQ(without_mesh.status, 3);
   EXPECT_THAT(without_mesh.err, HasSubstr("holds the map, but without mesh.ply: "));
-  EXPECT_THAT(without_mesh.err, HasSubstr("is whole, but without report.html: "));
+  EXPECT_THAT(without_mesh.err, HasSubstr("is complete, but without report.html: "));
   EXPECT_TRUE(fs::exists(out_ / "map.ply") && fs::exists(out_ / "trajectory.txt"));
   EXPECT_FALSE(fs::exists(out_ / "mesh.ply")) << "a part of it";
   EXPECT_EQ(read_json(out_ / "report.json")["failed"].size(), 1U);

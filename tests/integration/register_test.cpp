@@ -76,7 +76,7 @@ TEST_F(Register, PlacesWhatBelongsTogetherAndNamesWhatDoesNot) {
 TEST_F(Register, EndsWithBadInputIfNoTwoFitAndSaysHowNearTheyCame) {
   const Finished finished = run({"a.ply", "elsewhere.ply"});
   EXPECT_EQ(finished.status, 3);
-  EXPECT_THAT(finished.err, HasSubstr("no two of the clouds fit"));
+  EXPECT_THAT(finished.err, HasSubstr("no two of the clouds could be registered"));
   EXPECT_THAT(finished.out, testing::Not(HasSubstr("merged")));
   EXPECT_FALSE(std::filesystem::exists(out_ / "merged.ply"));
   EXPECT_NE(read_json(out_ / "report.json")["pairs"][0]["verdict"], "registered");

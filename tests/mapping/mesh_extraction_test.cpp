@@ -83,11 +83,16 @@ TEST(ExtractMesh, LiesOnTheSurface) {
 
 TEST(ExtractMesh, IsClosedWhereTheMapIs) {
   const SurfaceMesh mesh = extract_mesh(sphere(1), voxel_m);
-  for (const auto& [edge, count] : edges(mesh)) EXPECT_EQ(count, 2);
+  ASSERT_GT(mesh.triangles.size(), 3000U);
+  const auto counts = edges(mesh);
+  for (const auto& [edge, count] : counts) EXPECT_EQ(count, 2);
+  // Euler's formula for a sphere: V - E + F = 2.
+  EXPECT_EQ(mesh.points_m.size() + mesh.triangles.size(), counts.size() + 2);
 }
 
 TEST(ExtractMesh, TurnsTrianglesTowardsTheNormals) {
   const SurfaceMesh mesh = extract_mesh(sphere(1), voxel_m);
+  ASSERT_GT(mesh.triangles.size(), 3000U);
   for (const auto& triangle : mesh.triangles) {
     const Vector3f& a = mesh.points_m[triangle[0]];
     const Vector3f across = (mesh.points_m[triangle[1]] - a).cross(mesh.points_m[triangle[2]] - a);
@@ -110,7 +115,9 @@ TEST(ExtractMesh, LeavesHolesOpen) {
   for (const MapPoint& point : map) {
     if (std::hypot(point.x - 0.5F, point.y - 0.5F) > 0.2F) with_hole.push_back(point);
   }
-  for (const Vector3f& point : extract_mesh(with_hole, voxel_m).points_m) {
+  const SurfaceMesh mesh = extract_mesh(with_hole, voxel_m);
+  ASSERT_GT(mesh.points_m.size(), 200U);
+  for (const Vector3f& point : mesh.points_m) {
     EXPECT_GT(std::hypot(point.x() - 0.5F, point.y() - 0.5F), 0.2F - 1.5F * voxel_m);
   }
 }
@@ -138,6 +145,7 @@ TEST(ExtractMesh, RefusesVoxelsTooSmallForTheExtent) {
 TEST(WriteMesh, WritesWhatItsHeaderSays) {
   const test::TemporaryFolder folder;
   const SurfaceMesh mesh = extract_mesh(sphere(0.3F), voxel_m);
+  ASSERT_FALSE(mesh.triangles.empty());
   write_mesh(folder.path() / "mesh.ply", mesh);
   std::ifstream in(folder.path() / "mesh.ply", std::ios::binary);
   std::size_t header = 0;

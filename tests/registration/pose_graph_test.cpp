@@ -70,7 +70,7 @@ TEST(PoseGraph, MendsDriftByALoopThatIsManyDeviationsOff) {
   EXPECT_LT(result.edge_mahalanobis[24], kernel_width) << "a right loop keeps its say";
 }
 
-TEST(PoseGraph, IsNotBentByWrongLoops) {
+TEST(PoseGraph, FindsExactPosesInSpiteOfWrongLoops) {
   const std::vector<Pose> truth = circle(24);
   std::vector<PoseEdge> edges = chain(truth);
   edges.push_back(loop(0, 24, Pose::Identity()));
@@ -80,7 +80,10 @@ TEST(PoseGraph, IsNotBentByWrongLoops) {
   edges.push_back(loop(2, 14, Pose::Identity(), 0.002));
   edges.push_back(loop(5, 20, along_x(0.3), 0.002));
   edges.push_back(loop(7, 19, moved_by({0, 0.4, 0}, {0, 0, 1}), 0.002));
-  const PoseGraphResult result = optimise_pose_graph(truth, edges, kernel_width);
+  const auto start = drifted(chain(truth), moved_by({0, 0, 0.005}, {0.005, 0, 0}));
+  ASSERT_GT(largest_error_m(start, truth), 0.1);
+  const PoseGraphResult result = optimise_pose_graph(start, edges, kernel_width);
+  // Geman-McClure kernels leave outliers a weight of their own, which bends the path this much.
   EXPECT_LT(largest_error_m(result.poses, truth), 2e-3);
   for (std::size_t i = first_wrong; i < edges.size(); ++i) {
     EXPECT_GT(result.edge_mahalanobis[i], 10 * kernel_width);
@@ -96,6 +99,7 @@ TEST(PoseGraph, DoesNotDependOnWhereTheWorldIs) {
   for (const Pose& pose : truth) moved.push_back(elsewhere * pose);
   const PoseGraphResult here = optimise_pose_graph(truth, edges, kernel_width);
   const PoseGraphResult there = optimise_pose_graph(moved, edges, kernel_width);
+  ASSERT_GT(largest_error_m(here.poses, truth), 0.01) << "the loop moves the path";
   for (std::size_t i = 0; i < truth.size(); ++i) {
     EXPECT_LT((elsewhere * here.poses[i] * there.poses[i].inverse()).translation().norm(), 1e-4);
   }

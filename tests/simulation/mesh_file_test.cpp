@@ -113,11 +113,11 @@ TEST_F(MeshFile, CutAnywhereIsRefused) {
 TEST_F(MeshFile, ThatIsWrongIsRefusedWithTheReason) {
   expect_refusal(folder_.path() / "none.ply", "no such file");
   expect_refusal(write("a.stl", "solid\n"), "neither .ply nor .obj");
-  expect_refusal(write("a.ply", "obj\n"), "no PLY");
+  expect_refusal(write("a.ply", "obj\n"), "not a PLY file");
   expect_refusal(write("b.ply",
                        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
                        "end_header\n1\n"),
-                 "no triangle");
+                 "no triangles");
   expect_refusal(write("c.ply",
                        "ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\n"
                        "end_header\n1\n"),
@@ -130,7 +130,7 @@ TEST_F(MeshFile, ThatIsWrongIsRefusedWithTheReason) {
                        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
                        "element face 1\nproperty list int int vertex_indices\n"
                        "end_header\n1\nnan\n2\n3 0 1 2\n"),
-                 "no numbers");
+                 "not finite numbers");
 }
 
 TEST_F(MeshFile, ThatDoesNotFitOnTheDiskIsAnInputError) {

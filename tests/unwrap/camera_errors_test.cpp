@@ -155,7 +155,7 @@ TEST_P(JointUnderCameraErrors, IsNoWorseThanTheBetterOfPixelAndJump) {
     const SimulatorOptions camera = drawn_camera(seed);
     const Recording recording = record(GetParam(), camera);
     // Where all residuals are off by half a step, other counts explain them as well: no method
-    // knows (docs/unwrapping.md, 'What does not hold').
+    // knows (docs/unwrapping.md, 'Limitations').
     const double step_m = residual_step_m(unwrap_limits(recording.sensor, 0));
     if (std::abs(median_residual_m(recording)) > step_m / 2) continue;
     ++compared;

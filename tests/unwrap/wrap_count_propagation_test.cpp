@@ -206,7 +206,7 @@ TEST(FastMath, HalfCycleIsTheDistanceToTheNearestWholeNumber) {
   }
 }
 
-TEST(FastMath, HalvedFloatsComeBackWithinTheirPrecision) {
+TEST(FastMath, BFloat16KeepsEightBinaryDigits) {
   for (float x = 1e-12F; x < 2; x *= 1.37F) EXPECT_NEAR(to_float(to_bfloat16(x)) / x, 1, 1.0 / 256);
   EXPECT_EQ(to_float(bfloat16_one), 1);
 }

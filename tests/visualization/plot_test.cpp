@@ -43,9 +43,12 @@ TEST(PlotPicture, DrawsALineFromTheLowerLeftToTheUpperRight) {
 
 TEST(PlotPicture, LeavesAGapWhereThereIsNoValue) {
   Plot plot = rising();
-  plot.lines[0].y[1] = std::nan("");
+  plot.lines[0].x = {0, 3, 5, 7, 10};
+  plot.lines[0].y = {0, 30, std::nan(""), 70, 100};
   const Picture picture = plot_picture(plot, 600, 400);
-  EXPECT_EQ(count_line(picture, 250, 350, 150, 250), 0);
+  EXPECT_EQ(count_line(picture, 280, 340, 150, 250), 0);
+  EXPECT_GT(count_line(picture, 0, 280, 200, 400), 20) << "before the gap";
+  EXPECT_GT(count_line(picture, 340, 600, 0, 200), 20) << "after the gap";
 }
 
 TEST(PlotPicture, FindsItsLimitsItself) {
@@ -64,7 +67,9 @@ TEST(PlotPicture, SpreadsDecadesEvenlyOnALogarithmicAxis) {
   // On a linear axis the middle of the line would be near the bottom.
   EXPECT_GT(count_line(picture, 260, 340, 130, 250), 20);
   plot.lines[0].y = {0, -1, 0.1};
-  EXPECT_EQ(plot_picture(plot, 600, 400).width_px, 600) << "what is not positive is a gap";
+  const Picture with_gap = plot_picture(plot, 600, 400);
+  EXPECT_EQ(count_line(with_gap, 260, 340, 130, 250), 0) << "what is not positive is a gap";
+  EXPECT_GT(count_line(with_gap, 340, 600, 0, 130), 2) << "the last point is drawn";
 }
 
 TEST(PlotPicture, MarksSinglePointsWithoutComplaint) {
@@ -79,11 +84,18 @@ TEST(PlotPicture, MarksSinglePointsWithoutComplaint) {
   EXPECT_GT(count_line(picture, 300, 600, 0, 200), 5) << "upper right";
 }
 
-TEST(PlotPicture, CanBeEmpty) {
+TEST(PlotPicture, HasAxesWithoutLines) {
   Plot plot = rising();
   plot.lines[0].x.clear();
   plot.lines[0].y.clear();
-  EXPECT_EQ(plot_picture(plot, 300, 200).width_px, 300);
+  const Picture picture = plot_picture(plot, 300, 200);
+  ASSERT_EQ(picture.width_px, 300);
+  EXPECT_EQ(count_line(picture, 0, 300, 0, 200), 0);
+  int inked = 0;
+  for (int y = 0; y < 200; ++y) {
+    for (int x = 0; x < 300; ++x) inked += picture.at(x, y) == picture.at(0, 0) ? 0 : 1;
+  }
+  EXPECT_GT(inked, 1000) << "axes, title and labels";
 }
 
 TEST(PlotPicture, RefusesALineWithoutAsManyXAsY) {

@@ -51,7 +51,7 @@ TEST(ReportPage, TellsVerdictsInWordsToo) {
   ReportPage page = empty_page();
   page.add_verdict(Verdict::doubtful, "half of it");
   EXPECT_THAT(page.html(), HasSubstr("class=\"verdict doubtful\""));
-  EXPECT_THAT(page.html(), HasSubstr("To be looked at with care."));
+  EXPECT_THAT(page.html(), HasSubstr("Check this result."));
 }
 
 TEST(ReportPage, LeavesOutWhatIsEmpty) {

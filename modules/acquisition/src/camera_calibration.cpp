@@ -24,14 +24,15 @@ constexpr int format_version = 1;
 
 double wrapped(double cycles) { return cycles - std::floor(cycles); }
 
+/// True if the error is 0 at every phase.
 bool is_nothing(const PhaseError& error) {
   return error.offset_m == 0 && error.harmonics.empty() && error.table_m.empty();
 }
 
-/// The error at every phase that 16 bits can hold would be as exact; so many are finer than any
-/// camera.
+/// Number of phases at which the error is tabulated. No camera's error needs a finer table.
 constexpr int steps_a_cycle = 4096;
 
+/// Subtracts the error from the phases of one frequency.
 void correct(ImageF& phase, const PhaseError& error, double wavelength_m) {
   if (is_nothing(error)) return;
   std::vector<float> error_cycles(steps_a_cycle + 1);
@@ -47,17 +48,17 @@ void correct(ImageF& phase, const PhaseError& error, double wavelength_m) {
     const float share = place - static_cast<float>(before);
     const float off = (1 - share) * error_cycles[before] + share * error_cycles[before + 1];
     const auto corrected = static_cast<float>(wrapped(double{value} - double{off}));
-    value = corrected < 1 ? corrected : 0;  // rounding may reach a whole cycle
+    value = corrected < 1 ? corrected : 0;  // rounding may give a whole cycle
   }
 }
 
-/// Beyond any cable; phases stay exact to a hundredth of a millimetre.
+/// No cable delay causes a larger offset, and up to it phases keep a precision of 0.01 mm.
 constexpr double longest_offset_m = 100;
 
-/// The correction is still smooth from step to step.
+/// Up to this order the error is smooth between the steps of its table.
 constexpr int highest_order = 64;
 
-/// Amplitudes are of 16 bits.
+/// Amplitudes have 16 bits.
 constexpr double highest_amplitude = 65535;
 
 WiggleHarmonic read_harmonic(const YamlSection& section) {
@@ -80,7 +81,7 @@ PhaseError read_error(const YamlSection& root, const std::string& name) {
   if (section.has("offset_m")) {
     error.offset_m = section.value<double>("offset_m", "a number of metres");
     if (std::abs(error.offset_m) > longest_offset_m) {
-      section.fail(section.key("offset_m"), "must be at most 100 m, above or below 0");
+      section.fail(section.key("offset_m"), "must be between -100 and 100 m");
     }
   }
   std::set<int> orders;
@@ -88,7 +89,7 @@ PhaseError read_error(const YamlSection& root, const std::string& name) {
     error.harmonics.push_back(read_harmonic(harmonic));
     if (!orders.insert(error.harmonics.back().order).second) {
       section.fail(section.key("harmonics"),
-                   "have order " + std::to_string(error.harmonics.back().order) + " twice");
+                   "list order " + std::to_string(error.harmonics.back().order) + " twice");
     }
   }
   if (section.has("table_m")) {
@@ -97,7 +98,8 @@ PhaseError read_error(const YamlSection& root, const std::string& name) {
   return error;
 }
 
-/// Throws InputError if a longer range does not always make a larger phase with this error.
+/// Throws InputError if the error rises faster than the phase anywhere: a longer range would
+/// measure shorter there.
 void check_order(const PhaseError& error, const char* name, double wavelength_m) {
   for (int i = 0; i < steps_a_cycle; ++i) {
     const double step_m =
@@ -106,7 +108,7 @@ void check_order(const PhaseError& error, const char* name, double wavelength_m)
     std::ostringstream message;
     message << name << " rises faster than the phase, at " << 1.0 * i / steps_a_cycle
             << " of its cycle of " << wavelength_m
-            << " m: no camera measures so; are its numbers metres, and of this camera?";
+            << " m, which no camera's error does; is it in metres, and of this camera?";
     throw InputError(message.str());
   }
 }
@@ -146,8 +148,8 @@ std::string frequencies_text(const Modulation& modulation) {
 }
 
 [[noreturn]] void refuse_other_camera(const std::string& calibrated, const std::string& recorded) {
-  throw InputError("is of a camera of " + calibrated + ", the recording's has " + recorded +
-                   "; is it of another camera?");
+  throw InputError("is for a camera with " + calibrated + ", but the recording has " + recorded +
+                   "; does it belong to another camera?");
 }
 
 void check_size(int width_px, int height_px, const CameraModel& camera) {
@@ -157,7 +159,7 @@ void check_size(int width_px, int height_px, const CameraModel& camera) {
 
 void check_camera(const CalibratedWith& with, const SensorModel& sensor) {
   check_size(with.width_px, with.height_px, sensor.camera);
-  constexpr double same = 1e-4;  // quartz, and how it is rounded
+  constexpr double same = 1e-4;  // tolerance of the oscillator and of rounding
   const auto is_same = [](double one_hz, double other_hz) {
     return std::abs(one_hz - other_hz) <= same * other_hz;
   };
@@ -169,8 +171,8 @@ void check_camera(const CalibratedWith& with, const SensorModel& sensor) {
   refuse_other_camera(frequencies_text(with.modulation), frequencies_text(modulation));
 }
 
-/// A comment must not end at a line break in the name of a file, nor hold bytes that no YAML file
-/// may.
+/// The comment as one line of valid YAML. It may quote file names, which can contain line breaks
+/// and bytes that are not UTF-8.
 std::string one_line(const std::string& comment) {
   std::string line = valid_utf8(comment);
   std::ranges::replace_if(

@@ -18,12 +18,13 @@
 namespace tofmap {
 namespace {
 
-constexpr double most_steps = 65534;  // .oni files lose the depth 65535, it comes back as 1
+constexpr double most_steps = 65534;  // an .oni file returns the depth 65535 as 1
 
-/// "tofmap", and the layout of what follows.
+/// The bytes "tofmap", then the version of the tag's layout.
 constexpr std::array<std::uint16_t, 4> magic = {0x6f74, 0x6d66, 0x7061, 1};
 
-/// Writes a tag as words of 16 bits, low ones first; numbers as their bits.
+/// Writes the values of a tag as words of 16 bits, the low word first. Floating-point numbers are
+/// written as their bits.
 class TagWriter {
  public:
   TagWriter() : words_(magic.begin(), magic.end()) {}
@@ -41,6 +42,7 @@ class TagWriter {
   std::vector<std::uint16_t> words_;
 };
 
+/// Reads the values that TagWriter wrote, in the same order.
 class TagReader {
  public:
   explicit TagReader(const std::vector<std::uint16_t>& words)
@@ -114,7 +116,8 @@ std::size_t tag_words() {
   return count;
 }
 
-constexpr int pixels_per_word = 2;  // a byte each: .oni files do not keep every depth
+constexpr int pixels_per_word =
+    2;  // one byte per pixel, since .oni files do not keep the depth 65535
 
 void write_tag(ImageU16& image, const std::vector<std::uint16_t>& words) {
   const Eigen::Index rows = tag_rows(static_cast<int>(image.cols()));
@@ -160,8 +163,8 @@ DeviceImageCodec::DeviceImageCodec(const SensorModel& sensor, const RangeScale& 
       std::max(sensor.modulation.wavelength_a_m(), sensor.modulation.wavelength_b_m());
   if (!(longest_m / scale.unit_m <= most_steps)) {
     throw UsageError("ranges up to " + std::to_string(longest_m) +
-                     " m do not fit into 16 bits of " + std::to_string(1000 * scale.unit_m) +
-                     " mm; a coarser unit holds them");
+                     " m do not fit into 16 bits at " + std::to_string(1000 * scale.unit_m) +
+                     " mm per step; use a coarser unit");
   }
   steps_per_m_ = ImageF::Constant(sensor.camera.height_px, sensor.camera.width_px,
                                   static_cast<float>(1 / scale.unit_m));
@@ -179,7 +182,7 @@ ImageU16 DeviceImageCodec::encode_range(const ImageF& phase, double wavelength_m
 
 ImageF DeviceImageCodec::decode_range(const Eigen::Ref<const ImageU16>& range,
                                       double wavelength_m) const {
-  if (!same_size(range, steps_per_m_)) throw UsageError("an image is not of the camera's size");
+  if (!same_size(range, steps_per_m_)) throw UsageError("an image does not have the camera's size");
   return range.cast<float>().binaryExpr(
       steps_per_m_, [wavelength_m](float steps, float steps_per_m) {
         constexpr float nan = std::numeric_limits<float>::quiet_NaN();
@@ -222,7 +225,7 @@ int DeviceImageCodec::rows_of_both(const ImageU16& image) const {
                     (image.rows() == both || image.rows() == both + tag_rows(camera.width_px));
   if (!fits) {
     throw UsageError("an image of " + std::to_string(image.cols()) + " x " +
-                     std::to_string(image.rows()) + " pixels does not hold two of " +
+                     std::to_string(image.rows()) + " pixels does not hold two images of " +
                      std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px));
   }
   return both / 2;

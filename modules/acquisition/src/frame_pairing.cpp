@@ -11,14 +11,15 @@
 namespace tofmap {
 namespace {
 
-/// Images that wait for their other half: one that many later ones have overtaken will not come.
+/// Largest number of images of a stream that wait for their counterparts. The counterpart of an
+/// image that more images have overtaken will not arrive.
 constexpr std::size_t most_waiting = 8;
 
-/// Keys that are remembered to tell one that comes twice from one that comes late.
+/// Number of recent keys that are kept to distinguish duplicates from late images.
 constexpr std::size_t most_recent = 64;
 
-/// How far from a whole number of periods the time between two images may be. Beyond a third it is
-/// as likely another number.
+/// Largest difference between the time from one image to the next and a whole number of periods, in
+/// periods. With a larger difference the number of periods is uncertain.
 constexpr double most_period_error = 1.0 / 3;
 
 Half other(Half half) { return half == Half::a ? Half::b : Half::a; }
@@ -33,7 +34,7 @@ void StreamJoiner::count_lost(std::int64_t key, PairingCounts& counts) {
     if (highest_key_) counts.lost += static_cast<int>(key - *highest_key_ - 1);
     highest_key_ = key;
   } else if (!range_.recent_keys.contains(key) && !amplitude_.recent_keys.contains(key)) {
-    --counts.lost;  // it only came late
+    --counts.lost;  // the image was not lost, but late
   }
 }
 
@@ -67,7 +68,7 @@ std::optional<JoinedImages> StreamJoiner::add(DeviceImage image, PairingCounts& 
     ++counts.paired;
     return JoinedImages{image.timestamp_s, image.key, std::move(image.pixels), {}};
   }
-  // Both streams are in order, so what the other has before this key waits in vain.
+  // Both streams are in order, so no counterpart will arrive for the other stream's earlier images.
   drop_before(others, image.key, counts);
   if (others.waiting.empty() || others.waiting.front().key != image.key) {
     own.waiting.push_back(std::move(image));

@@ -18,10 +18,10 @@
 namespace tofmap {
 namespace {
 
-/// A speed of playback.
+/// The playback speed at which a device delivers one frame whenever a client waits for one.
 constexpr float as_frames_are_asked_for = -1;
 
-/// What OpenNI2 has to say of the last failure, in one line.
+/// OpenNI2's message about the last failure, as one line.
 std::string last_error() {
   std::istringstream words(openni::OpenNI::getExtendedError());
   std::string text;
@@ -33,7 +33,7 @@ void check(openni::Status status, const std::string& what) {
   if (status != openni::STATUS_OK) throw InputError(what + ": " + last_error());
 }
 
-/// Throws UsageError if that is what the driver complains of.
+/// Throws UsageError if OpenNI2's last error is a message of tofmap's driver about wrong use.
 void refuse_wrong_use(const std::string& uri) {
   const std::string complaint = openni::OpenNI::getExtendedError();
   const std::string_view mark = openni2_property::usage_error;
@@ -44,6 +44,7 @@ void refuse_wrong_use(const std::string& uri) {
   }
 }
 
+/// Metres per step of a depth format; 0 for other formats.
 double unit_of(openni::PixelFormat format) {
   switch (format) {
     case openni::PIXEL_FORMAT_DEPTH_100_UM:
@@ -55,12 +56,14 @@ double unit_of(openni::PixelFormat format) {
   }
 }
 
-/// OpenNI2 writes files in a thread of its own, and says neither when that has begun (images before
-/// are not recorded) nor when it has written all it was given (what it has not is dropped at the
-/// end). So waits until the file has something in it and has stopped growing.
+/// Waits until the file is not empty and no longer grows, at most 30 s.
+///
+/// OpenNI2 writes files in its own thread. It reports neither when that thread has started, before
+/// which images are not recorded, nor when it has written all images; those that remain when the
+/// recorder stops are lost.
 void wait_while_growing(const std::filesystem::path& file) {
   using namespace std::chrono_literals;
-  constexpr auto still = 200ms;  // an image takes some milliseconds
+  constexpr auto still = 200ms;  // writing an image takes some milliseconds
   constexpr auto longest = 30s;
   std::uintmax_t last = 0;
   for (const auto give_up = std::chrono::steady_clock::now() + longest;
@@ -121,9 +124,10 @@ OpenNi2Connection::~OpenNi2Connection() {
   }
   if (recorder_.isValid()) end_recording();
   if (!is_file_) return;
-  // OpenNI2's player of files goes over its streams without a lock while none of them runs, and
-  // crashed in one of ten runs where they were destroyed meanwhile. So its streams run on: it waits
-  // to be asked for a frame until the program ends. Some hundred kilobytes a file stay in use.
+  // While no stream of an .oni file runs, OpenNI2's player iterates over the streams without a
+  // lock, and crashed in one of ten runs when they were destroyed at that time. Therefore the
+  // streams keep running: the player waits for a request until the program ends. Each file occupies
+  // some hundred kilobytes.
   static auto* const never_closed = new std::vector<std::unique_ptr<Opened>>;
   static std::mutex mutex;
   const std::scoped_lock lock(mutex);
@@ -137,15 +141,15 @@ void OpenNi2Connection::open(const std::string& uri) {
                      " plays it as a camera if it is a recording");
   }
   if (is_file_ && !std::filesystem::is_regular_file(uri)) {
-    throw InputError(uri + ": there is no such file; a device has a URI with ://");
+    throw InputError(uri + ": no such file; the URI of a device contains ://");
   }
   const openni::Status status = device_.open(uri.c_str());
   if (status != openni::STATUS_OK) refuse_wrong_use(uri);
   const bool is_own = uri.starts_with("tofmap://");
   check(status, uri + ": cannot be opened" +
-                    (is_file_ ? "; is it an .oni file, and whole?"
+                    (is_file_ ? "; is it a complete .oni file?"
                      : is_own ? ""
-                              : "; is it plugged in, and its driver there?"));
+                              : "; is it plugged in, and is its driver installed?"));
   listener_.uri = device_.getDeviceInfo().getUri();
   if (!device_.hasSensor(openni::SENSOR_DEPTH)) throw InputError(uri + ": has no depth stream");
   if (openni::PlaybackControl* playback = device_.getPlaybackControl()) {
@@ -208,8 +212,8 @@ RawImage OpenNi2Connection::read(DeviceStream stream) {
   if (!is_known) {
     throw InputError(listener_.uri + ": its " +
                      (stream == DeviceStream::range ? "depth" : "infrared") +
-                     " images are of pixel format " + std::to_string(format) +
-                     "; 16 bits of depth (mm or 0.1 mm) and of gray can be read");
+                     " images have pixel format " + std::to_string(format) +
+                     "; supported are 16-bit depth in mm or 0.1 mm, and 16-bit gray");
   }
   image.pixels.resize(frame.getHeight(), frame.getWidth());
   const auto* bytes = static_cast<const char*>(frame.getData());

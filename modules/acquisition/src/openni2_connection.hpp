@@ -15,24 +15,27 @@
 
 namespace tofmap {
 
-/// An image as OpenNI2 hands it over.
+/// An image as OpenNI2 delivers it.
 struct RawImage {
   DeviceStream stream = DeviceStream::range;
   std::int64_t timestamp_us = 0;
-  double unit_m = 0;  ///< of range images
+  double unit_m = 0;  ///< metres per step of range images; 0 for infrared images
   ImageU16 pixels;
 };
 
-/// An open device whose depth and infrared streams run, and the recorder of them if there is one.
+/// An open device with running depth and infrared streams, and the recorder of these streams if
+/// they are recorded.
 class OpenNi2Connection {
  public:
-  /// Throws InputError that names the URI and what OpenNI2 says.
+  /// Opens the device and starts its streams. Records them to `oni_file` unless it is empty. Throws
+  /// InputError with the URI and OpenNI2's message if that fails, and UsageError if the URI is one
+  /// of tofmap's and asks for something that is not allowed.
   OpenNi2Connection(const std::string& uri, const std::filesystem::path& oni_file);
   OpenNi2Connection(const OpenNi2Connection&) = delete;
   OpenNi2Connection& operator=(const OpenNi2Connection&) = delete;
   ~OpenNi2Connection();
 
-  /// The next image of either stream; nothing if none came in that time.
+  /// The next image of either stream. Empty if no image arrives within the time.
   std::optional<RawImage> wait_for_image(int timeout_ms);
 
   bool has_amplitude() const { return infrared_.isValid(); }
@@ -41,14 +44,14 @@ class OpenNi2Connection {
   double horizontal_fov_rad() const { return depth_.getHorizontalFieldOfView(); }
   double frame_rate_hz() const { return depth_.getVideoMode().getFps(); }
 
-  /// Whether an image is made when somebody waits for it.
+  /// True if the device makes an image only when a client waits for one.
   bool waits_for_reader() const;
 
-  /// A property of the device that is a double; nothing if it has none of that number.
+  /// The value of a device property of type double. Empty if the device does not have the property.
   std::optional<double> number(int property) const;
 
  private:
-  /// OpenNI2 as long as somebody needs it, with a device and its streams.
+  /// Keeps OpenNI2 initialised, with a device and its streams.
   struct Opened {
     Opened();
     ~Opened();
@@ -58,7 +61,7 @@ class OpenNi2Connection {
     openni::VideoStream infrared;
   };
 
-  /// Hears of devices as long as it lives.
+  /// Receives OpenNI2's notifications about devices during its lifetime.
   struct Listener : openni::OpenNI::DeviceDisconnectedListener,
                     openni::OpenNI::DeviceStateChangedListener {
     Listener();
@@ -79,10 +82,10 @@ class OpenNi2Connection {
   void end_recording();
   RawImage read(DeviceStream stream);
 
-  bool is_file_ = false;      ///< an .oni file
-  bool tells_reads_ = false;  ///< the device waits for what is read
+  bool is_file_ = false;      ///< the device is an .oni file
+  bool tells_reads_ = false;  ///< the device is told of each image that was read
   std::unique_ptr<Opened> opened_ = std::make_unique<Opened>();
-  Listener listener_;  ///< after OpenNI2 has begun
+  Listener listener_;  ///< declared after `opened_`, which initialises OpenNI2
   openni::Device& device_ = opened_->device;
   openni::VideoStream& depth_ = opened_->depth;
   openni::VideoStream& infrared_ = opened_->infrared;

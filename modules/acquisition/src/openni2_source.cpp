@@ -21,18 +21,22 @@
 namespace tofmap {
 namespace {
 
-/// Of an image, beyond a wavelength, that chance and noise do not explain.
+/// Smallest share and smallest number of pixels with ranges beyond a wavelength that chance and
+/// noise cannot explain.
 constexpr double telling_share = 0.001;
 constexpr int least_telling = 3;
 
-/// A device of which so many images made no frame is not what the options say.
+/// If this many images make no frame, the options do not fit the device.
 constexpr int most_fruitless_images = 200;
 
+/// True if chance and noise cannot explain that `beyond` of `pixels` have ranges beyond a
+/// wavelength.
 bool has_beyond(int beyond, Eigen::Index pixels) {
   return beyond >= std::max(least_telling * 1.0, telling_share * static_cast<double>(pixels));
 }
 
-/// Metres, as the options or the device itself say, of a device whose images carry no tag.
+/// The sensor of a device whose images carry no tag, from the options, the calibration and the
+/// properties of the device.
 SensorModel untagged_sensor(const std::string& uri, const OpenNi2Connection& device,
                             const RawImage& image, const OpenNi2Source::Settings& settings) {
   const DeviceOptions& options = settings.options;
@@ -46,7 +50,7 @@ SensorModel untagged_sensor(const std::string& uri, const OpenNi2Connection& dev
       frequency(options.frequency_b_hz, openni2_property::frequency_b_hz);
   sensor.max_range_m = options.max_range_m;
   if (!(sensor.modulation.frequency_a_hz > 0 && sensor.modulation.frequency_b_hz > 0)) {
-    throw UsageError(uri + ": does not say at which frequencies it measures; set " +
+    throw UsageError(uri + ": does not report its modulation frequencies; set " +
                      "device.frequency_a_hz and device.frequency_b_hz");
   }
   const int halves = options.layout == "stacked" ? 2 : 1;
@@ -58,8 +62,8 @@ SensorModel untagged_sensor(const std::string& uri, const OpenNi2Connection& dev
   } else if (view_rad > 0 && view_rad < std::numbers::pi) {
     sensor.camera = pinhole_camera(view_rad, width, height);
   } else {
-    throw InputError(uri + ": does not say how wide its view is; a calibration with the camera's " +
-                     "intrinsics does (--calibration, docs/calibration.md)");
+    throw InputError(uri + ": does not report its field of view; give a calibration with the " +
+                     "camera's intrinsics (--calibration, docs/calibration.md)");
   }
   return sensor;
 }
@@ -70,27 +74,26 @@ std::vector<OptionField<DeviceOptions>> DeviceOptions::fields() {
   using D = DeviceOptions;
   return {
       {"layout", &D::layout, 0, 0, "",
-       "auto: as its images say; stacked: A above B in each image; alternating: A and B in turn",
+       "auto: the tag of the images decides; stacked: each image holds A above B; alternating: "
+       "images of A and B alternate",
        "auto | stacked | alternating"},
       {"frequency_a_hz", &D::frequency_a_hz, 0, 1e9, "Hz",
-       "of image A, if the images do not say; 0: as the device says"},
+       "modulation frequency of image A, for images without a tag; 0: ask the device"},
       {"frequency_b_hz", &D::frequency_b_hz, 0, 1e9, "Hz",
-       "of image B, if the images do not say; 0: as the device says"},
+       "modulation frequency of image B, for images without a tag; 0: ask the device"},
       {"depth", &D::depth, 0, 0, "",
-       "what depth images hold, if they do not say: z, along the optical axis, as OpenNI2 has it, "
-       "or "
-       "radial, along each pixel's ray",
+       "what depth images without a tag hold; z: depth along the optical axis, OpenNI2's "
+       "convention; radial: range along each pixel's ray",
        "z | radial"},
       {"max_range_m", &D::max_range_m, 0, 65.5, "m",
-       "how far the scene reaches, if the images do not say; 0: not known"},
+       "largest range in the scene, for images without a tag; 0: unknown"},
       {"first", &D::first, 0, 0, "",
-       "what the first image of an alternating device is; auto: ranges tell, as none is longer "
-       "than "
-       "its wavelength",
+       "first image of an alternating device; auto: determined from the ranges, since none exceeds "
+       "the wavelength of its image",
        "auto | a | b"},
       {"period_s", &D::period_s, 0, 10, "s",
-       "between two images of an alternating device; 0: by its frame rate"},
-      {"timeout_s", &D::timeout_s, 0.1, 3600, "s", "how long to wait for an image"},
+       "time between two images of an alternating device; 0: from its frame rate"},
+      {"timeout_s", &D::timeout_s, 0.1, 3600, "s", "longest time to wait for an image"},
   };
 }
 
@@ -98,7 +101,7 @@ bool is_device_uri(const std::string& text) {
   return text.find("://") != std::string::npos || text.ends_with(".oni");
 }
 
-/// What the images of a device mean, and the frames that they make.
+/// Interprets the images of a device and makes frames of them.
 class OpenNi2Source::Impl {
  public:
   Impl(const std::string& uri, Settings settings);
@@ -133,7 +136,7 @@ class OpenNi2Source::Impl {
   std::optional<DeviceImageCodec> codec_;
   std::optional<StreamJoiner> joiner_;
   std::optional<AlternatingPairer> alternating_;
-  std::deque<RawImage> early_;  ///< images that came before it was known what they mean
+  std::deque<RawImage> early_;  ///< images that arrived before their meaning was known
   int index_ = 0;
   int images_ = 0;
   std::atomic<End> end_{End::none};
@@ -216,7 +219,8 @@ std::optional<RawImage> OpenNi2Source::Impl::wait_for_image() {
   }
 }
 
-/// The instant of an image; nothing for one that is not as the others are.
+/// Adds timestamp and key to an image. Empty if the images of the device carry tags, but this image
+/// has no valid tag or one that differs from the first image's.
 std::optional<DeviceImage> OpenNi2Source::Impl::understand(RawImage image) {
   DeviceImage understood{image.stream, 1e-6 * static_cast<double>(image.timestamp_us),
                          image.timestamp_us, std::move(image.pixels)};
@@ -275,7 +279,7 @@ std::optional<DualFrequencyFrame> OpenNi2Source::Impl::add(RawImage image) {
   const int images = joined->has_amplitude() ? 2 : 1;
   try {
     return frame_of(std::move(*joined));
-  } catch (const UsageError&) {  // not of the camera's size
+  } catch (const UsageError&) {  // the image does not have the camera's size
     counts_.paired -= images;
     counts_.unreadable += images;
     return std::nullopt;
@@ -284,8 +288,8 @@ std::optional<DualFrequencyFrame> OpenNi2Source::Impl::add(RawImage image) {
 
 std::string OpenNi2Source::Impl::silence() const {
   std::ostringstream text;
-  text << "no range image for " << settings_.options.timeout_s
-       << " s; is it the right device? A slow one needs a longer device.timeout_s";
+  text << "no range image arrived within " << settings_.options.timeout_s
+       << " s; is it the right device? A slow device needs a longer device.timeout_s";
   return text.str();
 }
 
@@ -293,10 +297,10 @@ void OpenNi2Source::Impl::check_fruit() const {
   if (index_ > 0 || images_ < most_fruitless_images) return;
   throw InputError(uri_ + ": " + std::to_string(images_) +
                    " images made no frame: " + std::to_string(counts_.half_missing) +
-                   " without their other half, " + std::to_string(counts_.undecided) +
-                   " undecided, " + std::to_string(counts_.unreadable) +
-                   " not as described; do device.layout, device.period_s, device.first and the "
-                   "frequencies fit the device?");
+                   " had no counterpart, " + std::to_string(counts_.undecided) +
+                   " could be of either frequency, " + std::to_string(counts_.unreadable) +
+                   " had a wrong size or tag; do device.layout, device.period_s, device.first and "
+                   "the frequencies fit the device?");
 }
 
 SourcedFrame OpenNi2Source::Impl::sourced(DualFrequencyFrame frame) {
@@ -324,7 +328,7 @@ std::optional<SourcedFrame> OpenNi2Source::Impl::next() {
     if (frame) return sourced(std::move(*frame));
     check_fruit();
   }
-  if (end_ == End::asked) return std::nullopt;  // what waits might have been completed
+  if (end_ == End::asked) return std::nullopt;  // waiting images might still have been completed
   const std::scoped_lock lock(mutex_);
   if (joiner_) joiner_->finish(counts_);
   if (alternating_) alternating_->finish(counts_);

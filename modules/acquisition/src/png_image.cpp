@@ -33,7 +33,7 @@ struct Closer {
 };
 using File = std::unique_ptr<std::FILE, Closer>;
 
-/// What libpng's callback leaves behind before it jumps.
+/// The message that libpng's error callback stores before it jumps.
 struct Failure {
   char message[128] = "";
 };
@@ -88,7 +88,7 @@ bool read_rows(Reader& reader, bool swap_bytes, png_bytepp rows) {
   png_set_interlace_handling(reader.png);
   png_read_update_info(reader.png, reader.info);
   png_read_image(reader.png, rows);
-  png_read_end(reader.png, nullptr);  // checks the last sum and that the end is there
+  png_read_end(reader.png, nullptr);  // verifies the last checksum and the end of the file
   return true;
 }
 
@@ -105,7 +105,7 @@ bool write_rows(Writer& writer, std::FILE* file, png_uint_32 width, png_uint_32 
   return true;
 }
 
-/// PNG stores the high byte first.
+/// True if the bytes of a pixel must be swapped, since PNG stores the high byte first.
 template <class Pixel>
 constexpr bool swaps_bytes = sizeof(Pixel) > 1 && std::endian::native == std::endian::little;
 
@@ -133,7 +133,7 @@ Image<Pixel> read_png(const std::filesystem::path& path) {
   Reader reader;
   if (reader.info == nullptr) throw std::bad_alloc();
   if (!read_header(reader, file.get())) {
-    fail(std::string("is no whole PNG image (") + reader.failure.message + ")");
+    fail(std::string("is not a complete PNG image (") + reader.failure.message + ")");
   }
   const int file_bits = png_get_bit_depth(reader.png, reader.info);
   if (file_bits != bits || png_get_color_type(reader.png, reader.info) != PNG_COLOR_TYPE_GRAY) {
@@ -156,7 +156,7 @@ void write_png_image(const std::filesystem::path& path, const Image<Pixel>& imag
   if (image.size() == 0 || image.rows() > max_side_px || image.cols() > max_side_px) {
     throw UsageError(path.string() + ": an image of " + std::to_string(image.cols()) + " x " +
                      std::to_string(image.rows()) + " pixels cannot be written as PNG; allowed: " +
-                     "1 to " + std::to_string(max_side_px) + " a side");
+                     "1 to " + std::to_string(max_side_px) + " pixels per side");
   }
   const auto fail = [&](const std::string& why) -> void {
     throw InputError(path.string() + ": cannot be written: " + why);
@@ -166,7 +166,7 @@ void write_png_image(const std::filesystem::path& path, const Image<Pixel>& imag
 
   Writer writer;
   if (writer.info == nullptr) throw std::bad_alloc();
-  // libpng takes rows as mutable, but only reads them.
+  // libpng's interface takes mutable rows, but only reads them.
   std::vector<png_bytep> rows =
       row_pointers(const_cast<Pixel*>(image.data()), image.rows(), image.cols());
   errno = 0;
@@ -174,7 +174,7 @@ void write_png_image(const std::filesystem::path& path, const Image<Pixel>& imag
                                   static_cast<png_uint_32>(image.rows()), 8 * sizeof(Pixel),
                                   swaps_bytes<Pixel>, rows.data());
   if (!written) fail(errno != 0 ? error_text(errno) : writer.failure.message);
-  // What the buffer still holds goes out here: a full disk may show only now.
+  // Closing flushes the buffer, so a full disk may show only here.
   if (std::fclose(file.release()) != 0) fail(error_text(errno));
 }
 

@@ -11,7 +11,7 @@ namespace tofmap {
 
 QueuedSource::QueuedSource(FrameSource& source, int capacity, LateFrames late_frames)
     : source_(source), capacity_(static_cast<std::size_t>(capacity)), late_frames_(late_frames) {
-  if (capacity < 1) throw UsageError("a queue must hold one frame at least");
+  if (capacity < 1) throw UsageError("a queue must hold at least one frame");
   thread_ = std::thread([this] { fetch(); });
 }
 

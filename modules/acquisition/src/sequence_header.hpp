@@ -9,11 +9,11 @@
 
 namespace tofmap {
 
-/// Reads and checks sequence.yaml. Throws InputError that names the file, the key and what is
-/// expected.
+/// Reads and checks sequence.yaml. Throws InputError, which names the file, the key and what is
+/// expected, if the file cannot be read or is not valid.
 SensorModel read_sequence_header(const std::filesystem::path& file);
 
-/// The text of sequence.yaml; every number reads back as the same bits.
+/// The text of sequence.yaml for a sensor. Every number reads back as the same bits.
 std::string sequence_header_text(const SensorModel& sensor);
 
 }  // namespace tofmap

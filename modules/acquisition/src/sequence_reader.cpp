@@ -22,6 +22,7 @@ namespace {
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint16_t no_return = 65535;
 
+/// A path of frames.txt. Throws InputError if it leads out of the folder of the sequence.
 std::filesystem::path inner_path(const std::string& text, const std::string& place) {
   std::filesystem::path path = std::filesystem::path(text).lexically_normal();
   if (path.is_absolute() || *path.begin() == "..") {
@@ -48,7 +49,7 @@ SequenceFrameFiles parse_line(const std::vector<std::string>& words, const std::
   const char* end = words[0].data() + words[0].size();
   const auto [rest, error] = std::from_chars(words[0].data(), end, files.timestamp_s);
   if (error != std::errc() || rest != end || !std::isfinite(files.timestamp_s)) {
-    throw InputError(place + ": the timestamp '" + words[0] + "' is no number of seconds");
+    throw InputError(place + ": the timestamp '" + words[0] + "' is not a number of seconds");
   }
   if (words[1] == "-" || words[2] == "-") {
     throw InputError(place + expected + "; only an amplitude may be '-'");
@@ -60,9 +61,9 @@ SequenceFrameFiles parse_line(const std::vector<std::string>& words, const std::
   return files;
 }
 
-/// Marks frames whose time cannot be right. Of two frames in the wrong order the later line is
-/// damaged, unless it fits in with the two lines after it: then the earlier one has the wrong time,
-/// as where a single timestamp is far ahead of all others.
+/// Marks frames with a wrong timestamp as damaged. Of two lines in the wrong order, the second one
+/// is marked, unless it is in order with the lines before and after the pair: then the first one is
+/// marked, as when a single timestamp is far ahead of all others.
 void mark_times_out_of_order(std::vector<SequenceFrameFiles>& frames,
                              const std::filesystem::path& file) {
   std::vector<SequenceFrameFiles*> whole;
@@ -81,16 +82,16 @@ void mark_times_out_of_order(std::vector<SequenceFrameFiles>& frames,
     const bool is_ahead = i + 2 < whole.size() && time_s(i + 1) > latest_s &&
                           time_s(i + 2) > time_s(i + 1) && time_s(i) >= time_s(i + 2);
     if (time_s(i) <= latest_s) {
-      mark(*whole[i], "later than that before it,", latest_s);
+      mark(*whole[i], "later than the one before it,", latest_s);
     } else if (is_ahead) {
-      mark(*whole[i], "earlier than that after it,", time_s(i + 1));
+      mark(*whole[i], "earlier than the one after it,", time_s(i + 1));
     } else {
       latest_s = time_s(i);
     }
   }
 }
 
-/// A list of which more than half cannot be understood is none.
+/// Throws InputError if more than half of the lines are damaged.
 void refuse_mostly_damaged(const std::vector<SequenceFrameFiles>& frames) {
   const auto is_damaged = [](const SequenceFrameFiles& frame) { return !frame.damage.empty(); };
   const auto damaged = static_cast<std::size_t>(std::ranges::count_if(frames, is_damaged));
@@ -101,8 +102,8 @@ void refuse_mostly_damaged(const std::vector<SequenceFrameFiles>& frames) {
                                             std::to_string(frames.size()) + " lines are damaged)");
 }
 
-/// Lines that are not understood have no time of their own: that of the line before counts, at the
-/// beginning of the list that of the first line that is understood.
+/// Gives each damaged line the timestamp of the nearest valid line before it or, at the beginning
+/// of the list, of the first valid line.
 void fill_times(std::vector<SequenceFrameFiles>& frames) {
   const auto is_whole = [](const SequenceFrameFiles& frame) { return frame.damage.empty(); };
   double time_s = std::ranges::find_if(frames, is_whole)->timestamp_s;
@@ -173,7 +174,7 @@ SequenceReader::SequenceReader(std::filesystem::path folder, CameraCalibration c
                      "sequence.yaml in it");
   }
   sensor_ = read_sequence_header(folder_ / "sequence.yaml");
-  constexpr double end_of_scale = 65535;  // more than that may have been meant
+  constexpr double end_of_scale = 65535;  // the true amplitude may have been larger
   sensor_.saturation_amplitude = end_of_scale;
   sensor_ = calibrated(sensor_, calibration_);
   files_ = read_frame_list(folder_ / "frames.txt");
@@ -189,7 +190,7 @@ std::optional<SourcedFrame> SequenceReader::next() {
 const SequenceFrameFiles& SequenceReader::files_at(int index) const {
   if (index < 0 || index >= static_cast<int>(files_.size())) {
     throw UsageError("frame " + std::to_string(index) + " of " + folder_.string() +
-                     ": there are frames 0 to " + std::to_string(files_.size() - 1));
+                     ": the frames are 0 to " + std::to_string(files_.size() - 1));
   }
   return files_[static_cast<std::size_t>(index)];
 }
@@ -217,7 +218,7 @@ DualFrequencyFrame SequenceReader::read_frame(int index) const {
   frame.phase_a = phase_from_pixels(read_sized(folder_ / files.phase_a, sensor_.camera));
   frame.phase_b = phase_from_pixels(read_sized(folder_ / files.phase_b, sensor_.camera));
   calibrate(frame, sensor_.modulation, calibration_);
-  // One amplitude says nothing about the other image's noise: it counts as none.
+  // An amplitude of one frequency alone is ignored: it does not tell the noise of the other phase.
   if (files.amplitude_a.empty() || files.amplitude_b.empty()) return frame;
   frame.amplitude_a = read_sized(folder_ / files.amplitude_a, sensor_.camera).cast<float>();
   frame.amplitude_b = read_sized(folder_ / files.amplitude_b, sensor_.camera).cast<float>();

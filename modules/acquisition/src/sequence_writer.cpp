@@ -17,17 +17,18 @@
 namespace tofmap {
 namespace {
 
-constexpr double full_scale = 65535;  // of 16 bits
+constexpr double full_scale = 65535;  // largest value of 16 bits
 
 [[noreturn]] void fail_to_write(const std::filesystem::path& file) {
-  throw InputError(file.string() + ": cannot be written; is the disk full, is it allowed?");
+  throw InputError(file.string() +
+                   ": cannot be written; is the disk full, or is permission missing?");
 }
 
 void make_empty_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
-    throw InputError(folder.string() + ": cannot be made: " + error.message());
+    throw InputError(folder.string() + ": cannot be created: " + error.message());
   }
   const bool empty = std::filesystem::is_empty(folder, error);
   if (error) throw InputError(folder.string() + ": cannot be read: " + error.message());
@@ -39,10 +40,11 @@ void make_empty_folder(const std::filesystem::path& folder) {
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directory(folder, error);
-  if (error) throw InputError(folder.string() + ": cannot be made: " + error.message());
+  if (error) throw InputError(folder.string() + ": cannot be created: " + error.message());
 }
 
-/// Applies `encode`, which returns the 16-bit value as a double, and checks that it fits.
+/// Encodes every pixel with `encode`, which returns the 16-bit value as a double. Throws
+/// UsageError, which names `what` and the pixel, if a value does not fit into 16 bits.
 template <class Encode>
 ImageU16 encoded(const ImageF& image, const char* what, const Encode& encode) {
   ImageU16 pixels(image.rows(), image.cols());
@@ -64,7 +66,7 @@ ImageU16 phase_pixels(const ImageF& phase) {
     if (std::isnan(cycles)) return full_scale;
     if (!(cycles >= 0 && cycles < 1)) return -1.0;
     const double value = std::round(cycles * full_scale);
-    return value < full_scale ? value : 0.0;  // the last half step is nearest to a whole cycle
+    return value < full_scale ? value : 0.0;  // rounds up to a whole cycle, which is phase 0
   });
 }
 
@@ -77,7 +79,7 @@ ImageU16 amplitude_pixels(const ImageF& amplitude, double scale) {
 ImageU16 range_pixels(const ImageF& range_m) {
   return encoded(range_m, "the range", [](double range) {
     const double millimetres = std::round(range * 1000);
-    return millimetres >= 1 && millimetres <= full_scale ? millimetres : 0.0;  // 0: not known
+    return millimetres >= 1 && millimetres <= full_scale ? millimetres : 0.0;  // 0: unknown
   });
 }
 
@@ -126,7 +128,8 @@ void SequenceWriter::add(const DualFrequencyFrame& frame,
                          const std::optional<Pose>& world_from_camera,
                          const std::optional<ImageF>& range_truth_m,
                          const std::optional<ImageU8>& label_truth) {
-  // Compared as written: frames less than a microsecond apart would read back as one instant.
+  // Rounded as in the file: timestamps that differ by less than a microsecond would read back
+  // equal.
   const double timestamp_s = std::round(frame.timestamp_s * 1e6) / 1e6;
   if (!(std::isfinite(timestamp_s) && timestamp_s > last_timestamp_s_)) {
     throw UsageError("frame timestamps must increase: " + std::to_string(frame.timestamp_s) +
@@ -163,7 +166,7 @@ void SequenceWriter::add(const DualFrequencyFrame& frame,
     write_pose(ground_truth_, {timestamp_s, *world_from_camera});
     if (!ground_truth_.flush()) fail_to_write(file);
   }
-  // The line goes last: a frame is listed only once all of it is there.
+  // Written last, so that a frame is listed only when all its files exist.
   frames_ << listed << '\n' << std::flush;
   if (!frames_) fail_to_write(folder_ / "frames.txt");
   last_timestamp_s_ = timestamp_s;

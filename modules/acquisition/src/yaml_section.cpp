@@ -12,6 +12,7 @@ namespace tofmap {
 
 namespace {
 
+/// Largest width and height of a camera.
 constexpr int max_side_px = 16384;
 
 }  // namespace
@@ -23,7 +24,7 @@ YamlSection load_yaml(const std::filesystem::path& file, const std::string& hint
   } catch (const YAML::BadFile&) {
     throw InputError(file.string() + ": cannot be read; " + hint);
   } catch (const YAML::Exception& error) {
-    throw InputError(file.string() + ": no valid YAML: " + error.what());
+    throw InputError(file.string() + ": is not valid YAML: " + error.what());
   }
 }
 

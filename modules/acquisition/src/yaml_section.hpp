@@ -20,7 +20,8 @@
 
 namespace tofmap {
 
-/// A YAML map that knows where it stands, so that every complaint names file and key.
+/// A YAML map that knows its file and key, so that every error message can name them. All functions
+/// throw InputError if the file does not have the expected form.
 class YamlSection {
  public:
   YamlSection(const std::filesystem::path& file, std::string name, const YAML::Node& node)
@@ -29,15 +30,17 @@ class YamlSection {
     std::set<std::string> keys;
     for (const auto& entry : node_) {
       if (!keys.insert(entry.first.as<std::string>()).second) {
-        fail(key(entry.first.as<std::string>()), "stands there twice");
+        fail(key(entry.first.as<std::string>()), "is given twice");
       }
     }
   }
 
+  /// Throws InputError with the file, `key` and `what`.
   [[noreturn]] void fail(const std::string& key, const std::string& what) const {
     throw InputError(file_.string() + ": " + key + " " + what);
   }
 
+  /// The full name of a key of this map, as "camera.width".
   std::string key(const std::string& name) const {
     return name_.empty() ? name : name_ + "." + name;
   }
@@ -49,7 +52,7 @@ class YamlSection {
     return {file_, key(name), node_[name]};
   }
 
-  /// The maps of a list; none if there is no such key.
+  /// The maps of a list. Empty if the key is missing.
   std::vector<YamlSection> list(const std::string& name) const {
     std::vector<YamlSection> sections;
     if (!has(name)) return sections;
@@ -58,12 +61,14 @@ class YamlSection {
     return sections;
   }
 
+  /// The value of a key. `expected` completes the message "must be …".
   template <class T>
   T value(const std::string& name, const char* expected) const {
     if (!has(name)) fail(key(name), std::string("is missing; it must be ") + expected);
     return convert<T>(node_[name], key(name), expected);
   }
 
+  /// The n values of a list. `expected` completes the message "must be …".
   template <class T, std::size_t n>
   std::array<T, n> values(const std::string& name, const char* expected) const {
     const YAML::Node list = node_[name];
@@ -75,7 +80,8 @@ class YamlSection {
     return result;
   }
 
-  /// A misspelt key would otherwise be silently without effect.
+  /// Throws InputError if the map has other keys: a misspelt key would otherwise be ignored
+  /// silently.
   void allow_only(std::initializer_list<std::string_view> names) const {
     std::string known;
     for (const std::string_view name : names) {
@@ -84,7 +90,7 @@ class YamlSection {
     for (const auto& entry : node_) {
       const auto name = entry.first.as<std::string>();
       if (std::ranges::find(names, name) == names.end()) {
-        fail(key(name), "is an unknown key; known here: " + known);
+        fail(key(name), "is an unknown key; known keys: " + known);
       }
     }
   }
@@ -97,7 +103,7 @@ class YamlSection {
       T value = node.as<T>();
       if (is_finite(value)) return value;
     } catch (const YAML::Exception&) {
-      // said below
+      // reported below
     }
     fail(name, std::string("must be ") + expected + given);
   }
@@ -116,19 +122,20 @@ class YamlSection {
   YAML::Node node_;
 };
 
-/// The whole of a file. Throws InputError that names it if it cannot be read (`hint` says what to
-/// do then) or is no YAML.
+/// Reads a YAML file. Throws InputError, which names the file, if the file cannot be read or is not
+/// a YAML map. `hint` ends the message about a file that cannot be read.
 YamlSection load_yaml(const std::filesystem::path& file, const std::string& hint);
 
-/// Throws InputError unless the file says that it is of this format and version.
+/// Throws InputError unless the keys `format` and `version` have these values.
 void check_format(const YamlSection& root, const std::string& format, int version);
 
+/// Reads the keys of a camera. Does not check that the camera is plausible; validate() does.
 CameraModel read_camera(const YamlSection& section);
 
-/// The keys of a camera, indented as below its name.
+/// The lines of a YAML map with the keys of a camera, indented by two spaces.
 std::string camera_text(const CameraModel& camera);
 
-/// The fewest digits that read back as the same bits.
+/// The number with the fewest digits that read back as the same bits.
 std::string shortest(double number);
 
 }  // namespace tofmap

@@ -18,28 +18,29 @@
 namespace tofmap {
 namespace {
 
+/// Harmonics below this number of standard deviations are left out.
 constexpr double least_significance = 4;
 
-/// Pixels of one surface err alike, by lens, by light from elsewhere, by edges: so many count as
-/// one that is independent.
+/// Number of samples that count as one independent sample. Pixels of one surface share errors from
+/// the lens, stray light and edges.
 constexpr double correlated_samples = 30;
 
-/// Motion between both images and pixels that mix surfaces feign about a millimetre in the
-/// residual.
+/// Harmonics below this are left out of fits to the residual, where motion between the two images
+/// and mixed pixels cause harmonics of about a millimetre.
 constexpr double least_by_residual_m = 0.002;
 
-/// Errors are functions of the phase that is measured, which has them in it: each pass knows them
-/// better. After three, an error of a hundredth of a cycle changes by less than its hundredth part.
+/// Number of passes. The errors depend on the measured phase, which contains the errors, so each
+/// pass refines them. After three passes, an error of 0.01 cycles changes by less than 1 %.
 constexpr int passes = 3;
 
-/// Linear least squares, a sample at a time.
+/// Linear least squares that accumulates one sample at a time.
 class LeastSquares {
  public:
   explicit LeastSquares(Eigen::Index unknowns)
       : information_(Eigen::MatrixXd::Zero(unknowns, unknowns)),
         gradient_(Eigen::VectorXd::Zero(unknowns)) {}
 
-  /// Weights are 1 on average.
+  /// Adds the equation row · unknowns = value. The weights of all samples must be 1 on average.
   void add(const Eigen::VectorXd& row, double value, double weight) {
     information_.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
     gradient_ += weight * value * row;
@@ -56,12 +57,13 @@ class LeastSquares {
   Solution solve() const {
     const Eigen::MatrixXd information = information_.selfadjointView<Eigen::Lower>();
     const Eigen::LDLT<Eigen::MatrixXd> solver(information);
-    constexpr double least_share = 1e-6;  // of what one sample tells
+    constexpr double least_share = 1e-6;  // of the mean information of a sample
     if (samples_ == 0 || !solver.isPositive() ||
         solver.vectorD().minCoeff() <= least_share * samples_) {
-      throw InputError("too few pixels, or too much alike, to tell an offset and " +
+      throw InputError("too few pixels, or too similar phases, to determine an offset and " +
                        std::to_string((gradient_.size() - 1) / 2) +
-                       " harmonics; 'tofmap info' tells how many have no return or are saturated");
+                       " harmonics; 'tofmap info' shows how many pixels have no return or are "
+                       "saturated");
     }
     const Eigen::VectorXd values = solver.solve(gradient_);
     const Eigen::MatrixXd covariance =
@@ -82,16 +84,18 @@ class LeastSquares {
   int samples_ = 0;
 };
 
-/// An offset and a cosine and sine of each order: the unknowns of a fit, and their factors.
+/// The series that is fitted: an offset, and a cosine and a sine of each order.
 class HarmonicSeries {
  public:
   explicit HarmonicSeries(const std::vector<int>& orders)
       : orders_(orders), factors_(1 + 2 * static_cast<Eigen::Index>(orders.size())) {}
 
+  /// Number of unknowns.
   Eigen::Index size() const { return factors_.size(); }
 
-  /// Valid until the next call. Of a phase with noise they are the mean over what it may be: else
-  /// the harmonics of noisy samples would be found too small.
+  /// The factors of the unknowns at a phase; the reference is valid until the next call. With
+  /// noise, they are the expectation over a normal distribution of the phase, without which the
+  /// harmonics of noisy samples would be underestimated.
   const Eigen::VectorXd& at(double phase_cycles, double noise_cycles = 0) {
     factors_[0] = 1;
     for (std::size_t i = 0; i < orders_.size(); ++i) {
@@ -104,7 +108,8 @@ class HarmonicSeries {
     return factors_;
   }
 
-  /// The harmonics that stand out of their uncertainty and are not below `least_m`, times a scale.
+  /// The harmonics above `least_significance` standard deviations, multiplied by `scale`. Leaves
+  /// out those below `least_m` after scaling.
   std::vector<WiggleHarmonic> significant(const std::vector<Estimate>& unknowns, double scale,
                                           double least_m) const {
     std::vector<WiggleHarmonic> harmonics;
@@ -124,21 +129,21 @@ class HarmonicSeries {
   Eigen::VectorXd factors_;
 };
 
-/// What a fit is about: a value of each sample, and its noise in an unknown unit.
+/// The value of a sample that is fitted, and the noise of this value in an unknown unit.
 struct SampleValue {
   std::function<double(const RangeSample&)> value_m;
   std::function<double(const RangeSample&)> relative_noise;
 };
 
-/// A sample with what it counts, 1 on average, and the standard deviation of its value's noise.
+/// A sample with its weight in the fit.
 struct WeightedSample {
   RangeSample sample;
-  double weight;
-  double noise_m;
+  double weight;   ///< 1 on average
+  double noise_m;  ///< standard deviation of the noise of the fitted value
 };
 
-/// The samples whose value is near the median of all, or as near as its noise lets it be: a closer
-/// limit would have noisy ones lean to the median.
+/// The samples whose value is within `max_error_m` or three standard deviations of the median. With
+/// the first limit alone, the kept values of noisy samples would be biased towards the median.
 std::vector<WeightedSample> weighted(std::span<const RangeSample> samples, double max_error_m,
                                      const SampleValue& of) {
   if (samples.empty()) return {};
@@ -164,14 +169,15 @@ std::vector<WeightedSample> weighted(std::span<const RangeSample> samples, doubl
   return kept;
 }
 
+/// The errors of one frequency.
 struct FrequencyFit {
   PhaseError error;
   double offset_sigma_m = 0;
   double residual_rms_m = 0;
 };
 
-/// The errors of one frequency against known ranges. The phase that is measured follows from the
-/// known range and the error, without the noise of the measured one.
+/// Fits the errors of one frequency to known ranges. Predicts the measured phase from the known
+/// range and the errors found so far, because the measured phase itself is noisy.
 FrequencyFit fit_frequency(std::span<const RangeSample> all, double wavelength_m,
                            float RangeSample::*measured_m, float RangeSample::*noise,
                            const PhaseErrorFitOptions& options) {
@@ -264,8 +270,8 @@ PhaseErrorFit fit_to_residual(std::span<const RangeSample> all, const Modulation
       const RangeSample& sample = one.sample;
       const double error_a_m = fit.error_a.at_m(sample.a_m / a_m);
       const double error_b_m = fit.error_b.at_m(sample.b_m / b_m);
-      // Phases of one range: noise of their own would make them differ, and what they tell less.
-      // The mean of both has half the noise that their difference has.
+      // Both phases are predicted from one range, so that the noise of the single phases does not
+      // weaken the fit. The mean of the two ranges has half the noise of their difference.
       const double range_m = (sample.a_m - error_a_m + sample.b_m - error_b_m) / 2;
       const double noise_m = one.noise_m / 2;
       Eigen::VectorXd row = a_m * series_a.at((range_m + error_a_m) / a_m, noise_m / a_m) -

@@ -12,15 +12,17 @@
 namespace tofmap {
 namespace {
 
-/// Steps of phase images and lens errors: no value is better.
+/// Smallest standard deviation of a value, from the quantisation of phase images and lens errors.
 constexpr double least_floor_m = 1e-3;
 
-/// Of the noise of the noisier quarter over that of the other: below, both spread alike.
+/// Smallest ratio of the noise of the noisiest quarter of the values to that of the least noisy
+/// quarter. Below it, the spreads of the two differ too little to separate noise from the rest.
 constexpr double telling_ratio = 1.5;
 
+/// Noise and spread of a set of values.
 struct Spread {
-  double noise_squared = 0;  ///< relative; median
-  double variance = 0;       ///< robust, m²
+  double noise_squared = 0;  ///< square of the median relative noise
+  double variance = 0;       ///< robust variance in m², from the median absolute deviation
 };
 
 Spread spread_of(std::span<const NoisyValue> values) {

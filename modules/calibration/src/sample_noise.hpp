@@ -6,29 +6,31 @@
 
 namespace tofmap {
 
-/// A value with the standard deviation of its noise, in an unknown unit.
+/// A value and its noise.
 struct NoisyValue {
-  float relative_noise = 1;
+  float relative_noise = 1;  ///< standard deviation of the noise, in an unknown unit
   float value_m = 0;
 };
 
-/// The standard deviations of values about their mean: noise, and what is the same for all (errors
-/// that are to be found, edges, motion).
+/// A model of the spread of values: noise, and a floor that is the same for all values (systematic
+/// errors, edges, motion).
 struct SampleNoise {
-  double unit_m = 0;   ///< of the relative noise
-  double floor_m = 0;  ///< what is the same for all
+  double unit_m = 0;   ///< metres per unit of NoisyValue::relative_noise
+  double floor_m = 0;  ///< standard deviation that all values share
 
+  /// Standard deviation of the noise of a value with this relative noise.
   double noise_m(double relative) const { return unit_m * relative; }
 
-  /// The inverse variance.
+  /// Inverse of the total variance of a value with this relative noise.
   double weight(double relative) const {
     const double noise = noise_m(relative);
     return 1 / (floor_m * floor_m + noise * noise);
   }
 };
 
-/// By how much farther noisy values spread than less noisy ones; if all are about as noisy, all of
-/// their spread is taken for noise. There must be one at least.
+/// Estimates the unit of the noise and the floor by comparing the spread of the noisiest quarter of
+/// the values with that of the least noisy quarter. If all values are about equally noisy,
+/// attributes all of the spread to noise. `values` must not be empty.
 SampleNoise estimate_noise(std::vector<NoisyValue> values);
 
 }  // namespace tofmap

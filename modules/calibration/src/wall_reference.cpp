@@ -20,14 +20,15 @@
 namespace tofmap {
 namespace {
 
-/// How far a pixel may be from the wall that still tells its tilt: a share of the wavelength at
-/// first, since the tilt is not known, and half of that in each round after it.
+/// Largest error of a pixel that is used to fit the wall in the first round, in wavelengths. It is
+/// wide because the tilt is unknown, and is halved after each round.
 constexpr double first_reach = 0.25;
 constexpr int rounds = 4;
 
+/// Smallest share of the returns that must lie on the wall.
 constexpr double least_share = 0.5;
 
-/// A pixel's ray, and what A measures along it.
+/// The ray of a pixel and the phase that A measures along it.
 struct Beam {
   Eigen::Vector3d ray;
   double phase_cycles;
@@ -43,15 +44,16 @@ std::vector<Beam> beams_of(const DualFrequencyFrame& frame, const PixelRays& ray
   return beams;
 }
 
-/// The range along a ray to the plane normal · x = distance; NaN if it does not meet it.
+/// The range along a ray to the plane normal · x = distance_m. NaN if the ray does not meet the
+/// plane, or only at a grazing angle.
 double range_to(const Eigen::Vector3d& normal, double distance_m, const Eigen::Vector3d& ray) {
   const double cosine = normal.dot(ray);
   constexpr double grazing = 0.05;
   return cosine > grazing ? distance_m / cosine : NAN;
 }
 
-/// How much farther than the plane the beams measure, the wraps taken that come nearest to it; NaN
-/// for those that do not meet it.
+/// Measured range minus range to the plane for each beam, with the wrap count that brings the
+/// measured range nearest to the plane. NaN for beams that do not meet the plane.
 std::vector<double> errors_m(const std::vector<Beam>& beams, const Eigen::Vector3d& normal,
                              double distance_m, double wavelength_m) {
   std::vector<double> errors;
@@ -63,6 +65,7 @@ std::vector<double> errors_m(const std::vector<Beam>& beams, const Eigen::Vector
   return errors;
 }
 
+/// The median of the values that are not NaN; NaN if all are.
 double median_of_known(const std::vector<double>& values) {
   std::vector<double> known;
   std::ranges::copy_if(values, std::back_inserter(known), [](double v) { return !std::isnan(v); });
@@ -74,7 +77,7 @@ double median_of_known(const std::vector<double>& values) {
 WallDistances read_wall_distances(const std::filesystem::path& file) {
   refuse_no_file(file);
   std::ifstream in(file);
-  if (!in) throw InputError(file.string() + ": cannot be read; it holds lines 'frame distance_m'");
+  if (!in) throw InputError(file.string() + ": cannot be read; expected lines 'frame distance_m'");
   WallDistances distances;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
@@ -87,15 +90,15 @@ WallDistances read_wall_distances(const std::filesystem::path& file) {
     const bool is_valid = words >> frame >> distance_m && !(words >> rest) && frame >= 0 &&
                           distance_m > 0 && std::isfinite(distance_m);
     if (!is_valid) {
-      throw InputError(file.string() + ":" + std::to_string(number) + ": '" + line +
-                       "' is no frame and its distance in metres");
+      throw InputError(file.string() + ":" + std::to_string(number) +
+                       ": expected 'frame distance_m', got '" + line + "'");
     }
     if (!distances.emplace(frame, distance_m).second) {
       throw InputError(file.string() + ":" + std::to_string(number) + ": frame " +
-                       std::to_string(frame) + " is there twice");
+                       std::to_string(frame) + " is given twice");
     }
   }
-  if (distances.empty()) throw InputError(file.string() + ": holds no line 'frame distance_m'");
+  if (distances.empty()) throw InputError(file.string() + ": has no line 'frame distance_m'");
   return distances;
 }
 
@@ -110,7 +113,7 @@ std::optional<ImageF> wall_range(const DualFrequencyFrame& frame, const SensorMo
   for (int round = 0; round < rounds; ++round, reach_m /= 2) {
     const std::vector<double> errors = errors_m(beams, normal, distance_m, wavelength_m);
     const double offset_m = median_of_known(errors);
-    // 1 / range is linear in the normal over the distance.
+    // Least squares for normal / distance, in which 1 / range is linear.
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
     on_wall = 0;
@@ -118,7 +121,7 @@ std::optional<ImageF> wall_range(const DualFrequencyFrame& frame, const SensorMo
       const double error_m = errors[i] - offset_m;
       if (!(std::abs(error_m) < reach_m)) continue;
       const double range_m = range_to(normal, distance_m, beams[i].ray) + error_m;
-      const Eigen::Vector3d row = range_m * beams[i].ray;  // errors of ranges count alike
+      const Eigen::Vector3d row = range_m * beams[i].ray;  // gives errors of ranges equal weight
       information += row * row.transpose();
       gradient += row;
       ++on_wall;

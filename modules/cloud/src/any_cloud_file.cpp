@@ -29,7 +29,7 @@
 namespace tofmap {
 namespace {
 
-/// VTK prints to the terminal on its own account; our callers get errors instead.
+/// Suppresses VTK's messages on the terminal during its lifetime. Callers get exceptions instead.
 class QuietVtk {
  public:
   QuietVtk() {
@@ -44,7 +44,7 @@ class QuietVtk {
   }
 };
 
-/// Three doubles a point.
+/// Copies points into a cloud with the fields x, y and z as doubles.
 pcl::PCLPointCloud2 cloud_of(vtkPoints* points) {
   pcl::PCLPointCloud2 cloud;
   const vtkIdType count = points == nullptr ? 0 : points->GetNumberOfPoints();
@@ -109,9 +109,9 @@ double value_at(const std::uint8_t* bytes, std::uint8_t datatype) {
   }
 }
 
-/// PCL crashes on files that have no header of a PCD file.
+/// Whether a file has the header of a PCD file. PCL crashes on other files.
 bool has_pcd_header(const std::filesystem::path& file) {
-  constexpr int most_lines = 100;  // of a header; comments are among them
+  constexpr int most_lines = 100;  // of a header, including comments
   std::ifstream in(file, std::ios::binary);
   bool has_fields = false;
   std::string line;
@@ -122,8 +122,8 @@ bool has_pcd_header(const std::filesystem::path& file) {
   return false;
 }
 
-/// Reads a file by the kind that its ending names. Returns false if that fails, also where the
-/// header promises more points than memory holds. Throws InputError for other endings.
+/// Reads a file in the format that its ending names. Returns false if that fails, or if the header
+/// states more points than fit into memory. Throws InputError for other endings.
 bool read_by_ending(const std::filesystem::path& file, AnyCloud& cloud) try {
   const QuietPcl quiet;
   const std::string kind = file.extension().string();
@@ -142,7 +142,7 @@ bool read_by_ending(const std::filesystem::path& file, AnyCloud& cloud) try {
   } else if (kind == ".vtp") {
     cloud.data = read_with<vtkXMLPolyDataReader>(file);
   } else {
-    throw InputError("none of .ply, .pcd, .vtk and .vtp; convert it to one of them");
+    throw InputError("not a .ply, .pcd, .vtk or .vtp file; convert it to one of these formats");
   }
   cloud.viewpoint = origin.head<3>().cast<double>();
   return status >= 0;
@@ -167,7 +167,7 @@ bool write_points(const std::filesystem::path& file, const pcl::PCLPointCloud2& 
   }
 }
 
-/// PCL's writers refuse a cloud without points, though its header is a whole file.
+/// Writes a file without points, which PCL's writers refuse.
 bool write_header(const std::filesystem::path& file, const pcl::PCLPointCloud2& cloud) {
   const Eigen::Vector4f origin = Eigen::Vector4f::Zero();
   const Eigen::Quaternionf upright = Eigen::Quaternionf::Identity();
@@ -225,7 +225,7 @@ AnyCloud read_any_cloud(const std::filesystem::path& file) {
                           find_field(cloud.data, "y") != nullptr &&
                           find_field(cloud.data, "z") != nullptr;
   if (!is_read || !has_points) {
-    throw InputError(file.string() + ": no point cloud could be read from it; is it whole?");
+    throw InputError(file.string() + ": no point cloud could be read; is the file complete?");
   }
   return cloud;
 }
@@ -235,11 +235,11 @@ void write_any_cloud(const std::filesystem::path& file, const pcl::PCLPointCloud
   const QuietPcl quiet;
   const std::size_t points = std::size_t{cloud.width} * cloud.height;
   const bool written = points == 0 ? write_header(file, cloud) : write_points(file, cloud);
-  // PCL does not notice a full disk: the file then is shorter than its points.
+  // PCL does not report a full disk. The file is then smaller than its points.
   std::error_code missing;
   const auto bytes = std::filesystem::file_size(file, missing);
   if (!written || missing || bytes < points * bytes_per_point) {
-    throw InputError(file.string() + ": cannot be written whole; is the disk full?");
+    throw InputError(file.string() + ": cannot be written; is the disk full?");
   }
 }
 

@@ -11,7 +11,7 @@
 
 namespace tofmap {
 
-/// PCL prints to the terminal on its own account; our callers get errors instead.
+/// Suppresses PCL's messages on the terminal during its lifetime. Callers get exceptions instead.
 class QuietPcl {
  public:
   QuietPcl();
@@ -23,26 +23,27 @@ class QuietPcl {
   int level_;
 };
 
-/// The fields of a cloud as its file has them; x, y and z are among them.
+/// A cloud with the fields of its file, which include x, y and z.
 struct AnyCloud {
   pcl::PCLPointCloud2 data;
-  Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();  ///< zero, too, if the file has none
+  Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();  ///< zero also if the file has none
 };
 
-/// Reads a PLY, PCD or VTK (.vtk, .vtp) file. Throws InputError that names the file if it cannot be
-/// read.
+/// Reads a PLY, PCD or VTK (.vtk, .vtp) file. Of a VTK file, only positions are read. Throws
+/// InputError, which names the file, if it cannot be read.
 AnyCloud read_any_cloud(const std::filesystem::path& file);
 
-/// Where points are, whatever numbers they are stored as; without those that are not finite or at
-/// exactly (0, 0, 0). x, y and z must be among the fields.
+/// Positions of the points, which may be stored as any type of number. Points that are not finite
+/// or at exactly (0, 0, 0) are dropped. The cloud must have the fields x, y and z.
 std::vector<Eigen::Vector3d> finite_positions(const pcl::PCLPointCloud2& cloud);
 
-/// Writes a binary PCD if the file is named .pcd, else a binary PLY. Throws InputError that names
-/// the file if it cannot be written whole; a point takes `bytes_per_point` there.
+/// Writes a binary PCD file if the name ends in .pcd, otherwise a binary PLY file. Throws
+/// InputError, which names the file, if it cannot be written completely: a file that is smaller
+/// than `bytes_per_point` times the number of points is incomplete.
 void write_any_cloud(const std::filesystem::path& file, const pcl::PCLPointCloud2& cloud,
                      std::size_t bytes_per_point);
 
-/// The field of that name, or nullptr.
+/// The field of this name, or nullptr if the cloud has none.
 const pcl::PCLPointField* find_field(const pcl::PCLPointCloud2& cloud, const std::string& name);
 
 }  // namespace tofmap

@@ -39,8 +39,8 @@ void write_map(const std::filesystem::path& file, const MapCloud& map) {
 MapCloud read_map(const std::filesystem::path& file) {
   const pcl::PCLPointCloud2 cloud = read_any_cloud(file).data;
   MapCloud map;
-  if (cloud.data.empty()) return map;  // PCL would take the address of a point there is not
-  // PCL converts no numbers: what is not stored as float it would leave out.
+  if (cloud.data.empty()) return map;  // PCL would take the address of a point that does not exist
+  // PCL does not convert numbers: it would ignore fields that are not stored as floats.
   if (find_field(cloud, "x")->datatype != pcl::PCLPointField::FLOAT32) {
     return map_without_normals(finite_positions(cloud));
   }

@@ -24,7 +24,7 @@ struct PlaceHash {
   std::size_t operator()(const Place& place) const {
     std::uint64_t hash = 0;
     for (const std::int64_t at : place) {
-      // Multiplication by an odd number near 2⁶⁴ over the golden ratio mixes all bits upwards.
+      // Multiplying by an odd number near 2⁶⁴ / golden ratio spreads each bit to higher ones.
       hash = (hash ^ static_cast<std::uint64_t>(at)) * 0x9E3779B97F4A7C15ULL;
       hash ^= hash >> 32U;
     }
@@ -33,16 +33,16 @@ struct PlaceHash {
 };
 
 struct Sum {
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< from the first point: no digits are lost
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< from the first point, to keep precision
   double count = 0;
 };
 
 Place place_of(const Eigen::Vector3d& point, double voxel_m) {
   const Eigen::Array3d scaled = (point.array() / voxel_m).floor();
-  constexpr double most = 9.0e15;  // 2⁵³: above it doubles skip whole numbers
+  constexpr double most = 9.0e15;  // about 2⁵³; above it, doubles skip whole numbers
   if (!(voxel_m > 0) || !(scaled.abs() < most).all()) {
     throw UsageError("voxels of " + std::to_string(voxel_m) +
-                     " m are too small for coordinates like these; choose larger ones");
+                     " m are too small for coordinates this large; choose larger voxels");
   }
   return {static_cast<std::int64_t>(scaled.x()), static_cast<std::int64_t>(scaled.y()),
           static_cast<std::int64_t>(scaled.z())};
@@ -52,7 +52,7 @@ Place place_of(const Eigen::Vector3d& point, double voxel_m) {
 
 std::vector<Eigen::Vector3d> downsample(std::span<const Eigen::Vector3d> points, double voxel_m) {
   std::unordered_map<Place, std::size_t, PlaceHash> index;
-  std::vector<Eigen::Vector3d> out;  // first the first point of each voxel
+  std::vector<Eigen::Vector3d> out;  // the first point of each voxel until the means are known
   std::vector<Sum> sums;
   for (const Eigen::Vector3d& point : points) {
     const auto [known, is_new] = index.try_emplace(place_of(point, voxel_m), out.size());

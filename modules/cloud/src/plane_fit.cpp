@@ -15,7 +15,7 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// Pixels of a row, from one on.
+/// Pixels of a row, starting at some column.
 struct Pixels {
   const float* q;
   const float* variance;
@@ -27,7 +27,7 @@ struct Pixels {
   }
 };
 
-/// Values of all pixels of a row.
+/// `Count` values for each pixel of a row.
 template <std::size_t Count>
 class RowValues {
  public:
@@ -43,16 +43,17 @@ class RowValues {
   std::array<std::vector<float>, Count> values_;
 };
 
-/// Sums of a line through each pixel on one side of it.
+/// Sums for fitting a line through each pixel to its neighbours on one side.
 struct LineSums {
   float* xx;
   float* xq;
   float* qq;
-  float* count;    ///< of neighbours, up to the first without a value
-  float* is_open;  ///< 1 as long as none was without
+  float* count;    ///< number of neighbours before the first one without a value
+  float* is_open;  ///< 1 until a neighbour has no value, then 0
 };
 
-/// Adds the next neighbour on that side. `along` are its tangents on the axis of the line.
+/// Adds the next neighbour on one side. `own_along` and `next_along` are the tangents on the axis
+/// of the line.
 TOFMAP_VECTOR_CLONES void add_to_line(int pixels, const Pixels& own_, const Pixels& next_,
                                       const float* own_along, const float* next_along,
                                       const LineSums& sums_) {
@@ -80,11 +81,11 @@ struct Slopes {
   float* variance;
 };
 
-/// A line of one side.
+/// The line fitted to one side.
 struct Side {
   float slope;
   float variance;
-  float badness;  ///< scatter about the line, and steepness
+  float badness;  ///< scatter about the line times the magnitude of the slope
   bool is_usable;
 
   [[gnu::always_inline]] Side(const LineSums& sums, int i)
@@ -99,8 +100,8 @@ struct Side {
   }
 };
 
-/// Slopes along an axis: of both sides where they agree, else of the side that is straighter (the
-/// other one crosses an edge), in case of warning the flatter.
+/// Slopes along an axis: the weighted mean of both sides where they agree, otherwise the slope of
+/// the side with less badness, since the other one crosses an edge.
 TOFMAP_VECTOR_CLONES void choose_slopes(int pixels, const LineSums& back_, const LineSums& front_,
                                         const Slopes& out_) {
   const LineSums back_sums = back_;
@@ -123,15 +124,15 @@ TOFMAP_VECTOR_CLONES void choose_slopes(int pixels, const LineSums& back_, const
   }
 }
 
-/// Planes that neighbours must be near to, by `slack` more than their own variance: of a start
-/// value, and of slopes.
+/// The current planes, which neighbours must be near. `slack` are the variances of an initial
+/// plane, which are tolerated in addition to the variance of a neighbour.
 struct Planes {
-  float* offset;  ///< of q at the pixel from the pixel's own
+  float* offset;  ///< q of the plane at the pixel minus q of the pixel
   float* a;
   float* b;
-  float* slack;
-  float* slack_a;
-  float* slack_b;
+  float* slack;    ///< variance of q
+  float* slack_a;  ///< variance of a
+  float* slack_b;  ///< variance of b
 };
 
 /// Weighted sums over neighbours.
@@ -149,7 +150,7 @@ struct Sums {
   float* sqq;
 };
 
-/// Adds one neighbour of each pixel, if it is near the pixel's plane.
+/// Adds one neighbour of each pixel if it is near the plane of the pixel.
 TOFMAP_VECTOR_CLONES void add_neighbour(int pixels, const Pixels& own_, const Pixels& other_,
                                         const Planes& planes_, float gate2, const Sums& sums_) {
   const Pixels own = own_;
@@ -160,7 +161,7 @@ TOFMAP_VECTOR_CLONES void add_neighbour(int pixels, const Pixels& own_, const Pi
   for (int i = 0; i < pixels; ++i) {
     const float x = other.x[i] - own.x[i];
     const float y = other.y[i] - own.y[i];
-    const float d = other.q[i] - own.q[i];  // NaN is near nothing
+    const float d = other.q[i] - own.q[i];  // NaN fails the gate below
     const float variance = other.variance[i];
     const float error = d - planes.offset[i] - planes.a[i] * x - planes.b[i] * y;
     const float tolerated = gate2 * (variance + planes.slack[i] + planes.slack_a[i] * x * x +
@@ -185,20 +186,20 @@ TOFMAP_VECTOR_CLONES void add_neighbour(int pixels, const Pixels& own_, const Pi
   }
 }
 
-/// What a fit finds beside the plane.
+/// Results of a fit besides the plane.
 struct Fits {
-  float* neighbours;  ///< 0: the neighbours span no plane
+  float* neighbours;  ///< number of pixels in the fit; 0 if they do not span a plane
   float* q0_variance;
   float* a_variance;
   float* b_variance;
 };
 
-/// Solves the normal equations of each pixel, scaled to a unit diagonal, by the decomposition
-/// L D Lᵀ; tangents are small numbers. Neighbours whose mean squared tangents on an axis are below
-/// `least_spread2` are on one line.
+/// Solves the normal equations of each pixel by the decomposition L D Lᵀ. They are scaled to a unit
+/// diagonal first, since tangents are small numbers. Neighbours whose mean square tangent along an
+/// axis is below `least_spread2` are taken to be on one line.
 TOFMAP_VECTOR_CLONES void solve(int pixels, const Sums& sums_, float least_spread2,
                                 const Planes& planes_, const Fits& fits_) {
-  constexpr float least_pivot = 1e-3F;  // neighbours on one line span no plane
+  constexpr float least_pivot = 1e-3F;  // smaller if the neighbours are on one line
   const Sums sums = sums_;
   const Planes planes = planes_;
   const Fits fits = fits_;
@@ -234,7 +235,7 @@ TOFMAP_VECTOR_CLONES void solve(int pixels, const Sums& sums_, float least_sprea
     const float offset = scale0 * u0;
     const float a = scale1 * u1;
     const float b = scale2 * u2;
-    // Where neighbours scatter more than predicted, the prediction is too good to be true.
+    // If the neighbours scatter more than predicted, the variances are increased accordingly.
     const float chi2 = sums.sqq[i] - offset * sums.sq[i] - a * sums.sxq[i] - b * sums.syq[i];
     const float others = count - 3;
     const float scatter = chi2 / (others > 1 ? others : 1.0F);
@@ -259,7 +260,7 @@ struct Workspace {
   RowValues<6> planes;
   RowValues<11> sums;
   std::vector<float> neighbours;
-  std::vector<float> fewest;  ///< neighbours of any fit so far
+  std::vector<float> fewest;  ///< smallest number of neighbours of the fits so far
 
   explicit Workspace(std::size_t cols)
       : back(cols), front(cols), planes(cols), sums(cols), neighbours(cols), fewest(cols) {}
@@ -300,7 +301,7 @@ PlaneFits::PlaneFits(const RangeImage& image, const PixelRays& rays, const Cloud
     }
   }
   if (rows_ == 0 || cols_ < 2) return;
-  // Of a hundred neighbours one is beside the line.
+  // The spread if one of a hundred neighbours is one pixel off the line.
   const float pitch = tangent_x(rows_ / 2, cols_ / 2) - tangent_x(rows_ / 2, cols_ / 2 - 1);
   least_spread2_ = 0.01F * pitch * pitch;
 }
@@ -352,7 +353,7 @@ void PlaneFits::fit(int row, PlaneRow& out) const {
   }
   for (std::size_t col = 0; col < cols; ++col) {
     const float offset = planes.offset[col];
-    // The pixel must lie on its own plane: else it is a flying one among a surface's.
+    // A pixel that is not on its own plane is a flying pixel in front of or behind a surface.
     const bool is_on_it = offset * offset <= gate2_ * own.variance[col];
     const bool has_plane = work.fewest[col] >= static_cast<float>(min_neighbours_) && is_on_it;
     out.neighbours[col] = has_plane ? static_cast<int>(work.neighbours[col]) : 0;

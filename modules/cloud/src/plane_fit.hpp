@@ -9,10 +9,10 @@
 
 namespace tofmap {
 
-/// Planes q = q0 + a (x − x0) + b (y − y0) of inverse depth q = 1/z over tangents x/z and y/z,
-/// through the surfaces at the pixels (x0, y0) of a row.
+/// One plane for each pixel of a row: q = q0 + a (x − x0) + b (y − y0), where q is inverse depth,
+/// x and y are the tangents of a ray (X/Z and Y/Z), and x0 and y0 are those of the pixel.
 struct PlaneRow {
-  std::vector<int> neighbours;  ///< pixels that take part; 0: there is no plane
+  std::vector<int> neighbours;  ///< number of pixels in the fit; 0 if the pixel has no plane
   std::vector<float> q0;
   std::vector<float> a;
   std::vector<float> b;
@@ -30,17 +30,19 @@ struct PlaneRow {
         b_variance(cols) {}
 };
 
-/// Fits planes to the neighbours of pixels that lie on their own surface, a row at a time: the
-/// window's pixels one after the other, for all pixels of the row together.
+/// Fits a plane to those neighbours of each pixel that lie on the same surface. A row is processed
+/// at a time: the outer loop is over the pixels of the window, the inner one over the row.
 ///
-/// A first plane comes from lines along both axes, on the side that is straight where one crosses
-/// an edge; neighbours near it are fitted, and again those near that fit, twice.
+/// An initial plane comes from lines through the pixel along both axes; where a line crosses an
+/// edge, only its straighter side is used. Then a plane is fitted to the neighbours near the
+/// previous plane, three times.
 class PlaneFits {
  public:
   PlaneFits(const RangeImage& image, const PixelRays& rays, const CloudOptions& options);
 
-  /// Planes with fewer than the options' neighbours, and those that their own pixel does not lie
-  /// on, are none. Rows may be fitted by several threads.
+  /// Fits the planes of a row. A pixel has no plane if any of its fits has fewer than
+  /// `min_neighbours` pixels, or if the pixel does not lie on its own plane. May be called by
+  /// several threads.
   void fit(int row, PlaneRow& out) const;
 
   float tangent_x(int row, int col) const { return tangent_x_[place(row, col)]; }
@@ -53,11 +55,11 @@ class PlaneFits {
 
   int rows_;
   int cols_;
-  int margin_;  ///< around the planes, without values: half the window
+  int margin_;  ///< width of the border of pixels without values: half the window
   int stride_;
   float gate2_;
   int min_neighbours_;
-  float least_spread2_ = 0;      ///< of tangents that do not lie on one line
+  float least_spread2_ = 0;      ///< smallest mean square of tangents that are not all on one line
   std::vector<float> q_;         ///< NaN where invalid
   std::vector<float> variance_;  ///< of q
   std::vector<float> tangent_x_;

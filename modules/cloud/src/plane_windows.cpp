@@ -9,13 +9,13 @@
 namespace tofmap {
 namespace {
 
-/// The radius after doubling it so many times.
+/// The window radius after `widenings` doublings.
 int widened_radius_px(const CloudOptions& options, int widenings) {
   const int largest = std::max(options.window_radius_px, options.max_window_radius_px);
   return std::min(options.window_radius_px << widenings, largest);
 }
 
-/// The tangent from one pixel to the next, amid the image.
+/// Difference of the tangents of two neighbouring pixels in the middle of the image.
 float tangent_pitch(const PixelRays& rays) {
   const Eigen::Index row = rays.x.rows() / 2;
   const Eigen::Index col = rays.x.cols() / 2;
@@ -23,19 +23,19 @@ float tangent_pitch(const PixelRays& rays) {
   return rays.x(row, col) / rays.z(row, col) - rays.x(row, col - 1) / rays.z(row, col - 1);
 }
 
-/// Tilt of a plane seen head on, radians a unit of relative noise, when it is fitted to a full
-/// window: a slope has the variance σ² / Σ x².
+/// Standard deviation of the tilt, in radians per unit of relative noise, of a plane that is seen
+/// head on and fitted to a full window: the slope has the variance σ² / Σ x².
 float tilt_by_noise(int radius_px, float pitch) {
   const auto side = static_cast<float>(2 * radius_px + 1);
   const float sum_x2 = side * side * (side * side - 1) / 12;
   return 1 / (pitch * std::sqrt(sum_x2));
 }
 
-/// How often each pixel's radius doubles.
+/// Number of doublings of each pixel's window radius.
 ImageU8 widenings_of(const RangeImage& image, const PixelRays& rays, const CloudOptions& options) {
   const int largest = widened_radius_px(options, 8);
   const float pitch = tangent_pitch(rays);
-  std::vector<float> most_noise;  // that windows of each radius are enough for
+  std::vector<float> most_noise;  // largest relative noise for which each radius is enough
   for (int k = 0; widened_radius_px(options, k) < largest; ++k) {
     most_noise.push_back(static_cast<float>(options.max_normal_sigma_rad) /
                          tilt_by_noise(widened_radius_px(options, k), pitch));
@@ -101,7 +101,7 @@ void PlaneWindows::count_shared_noise(int row, PlaneRow& out) const {
   for (int col = 0; col < cols_; ++col) {
     const auto i = static_cast<std::size_t>(col);
     if (out.neighbours[i] == 0 || !(averaged_px_(row, col) > 1)) continue;
-    // A fit of pixels that are means already is at worst as uncertain as each of them.
+    // A fit to averaged pixels is at most as uncertain as a single one of them.
     const float own_variance = relative_variance_(row, col) * out.q0[i] * out.q0[i];
     out.q0_variance[i] = std::min(averaged_px_(row, col) * out.q0_variance[i],
                                   std::max(own_variance, out.q0_variance[i]));

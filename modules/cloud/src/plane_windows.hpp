@@ -11,16 +11,16 @@ namespace tofmap {
 
 /// Plane fits whose windows grow with the noise.
 ///
-/// A pixel's window has the options' radius. Where even a full one, seen head on, would leave the
-/// normal less certain than the options allow, by the pixel's noise alone, its radius doubles, and
-/// doubles again, up to the options' largest. Noise that pixels share (RangeImage::averaged_px) is
-/// not averaged by windows within what they share it over: it counts as noise of single pixels of
-/// that much more variance.
+/// The window of a pixel starts with `window_radius_px`. The radius is doubled, up to
+/// `max_window_radius_px`, until the noise of the pixel alone leaves the normal as certain as
+/// `max_normal_sigma_rad`, assuming a full window on a plane seen head on. Windows do not average
+/// noise that neighbouring pixels share (RangeImage::averaged_px); it is treated as independent
+/// noise whose variance is larger by that factor.
 class PlaneWindows {
  public:
   PlaneWindows(const RangeImage& image, const PixelRays& rays, const CloudOptions& options);
 
-  /// As PlaneFits::fit(). Rows may be fitted by several threads.
+  /// Like PlaneFits::fit(), with the window of each pixel. May be called by several threads.
   void fit(int row, PlaneRow& out) const;
 
   float tangent_x(int row, int col) const { return fits_.front().tangent_x(row, col); }
@@ -31,10 +31,10 @@ class PlaneWindows {
   void count_shared_noise(int row, PlaneRow& out) const;
 
   int cols_;
-  std::vector<PlaneFits> fits_;  ///< of each radius that a pixel needs, the smallest first
-  ImageU8 widenings_;            ///< which of them is a pixel's; empty: the first for all
-  ImageF averaged_px_;           ///< empty: pixels are by themselves
-  ImageF relative_variance_;     ///< of ranges, (σ / r)², if they are averaged
+  std::vector<PlaneFits> fits_;  ///< by number of doublings, up to the largest number needed
+  ImageU8 widenings_;            ///< number of doublings of each pixel's radius
+  ImageF averaged_px_;           ///< RangeImage::averaged_px; empty if no pixel was averaged
+  ImageF relative_variance_;     ///< (σ / r)² of ranges; empty if no pixel was averaged
 };
 
 }  // namespace tofmap

@@ -19,7 +19,7 @@ PointSet read_points(const std::filesystem::path& file) {
   if (out.points.empty()) {
     throw InputError(
         file.string() +
-        ": holds no point, those at (0, 0, 0) and not finite aside; is it the right file?");
+        ": has no points, apart from those at (0, 0, 0) or not finite; is it the right file?");
   }
   if (!cloud.viewpoint.isZero(0)) out.viewpoint = cloud.viewpoint;
   return out;

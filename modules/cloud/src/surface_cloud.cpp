@@ -43,9 +43,10 @@ void check_sizes(const RangeImage& image, const PixelRays& rays) {
   }
 }
 
-/// Standard deviation of the plane's normal, radians: the larger of its two tilts.
+/// Standard deviation of the direction of a plane's normal, radians: the larger one of its tilts
+/// about both axes.
 float normal_sigma_rad(const PlaneRow& planes, std::size_t col, float incidence_cos) {
-  // A tilt by an angle changes the slope of q by angle · q / cos² of the incidence, to first order.
+  // To first order, a tilt by an angle changes the slope of q by angle · q / cos²(incidence).
   const float slope_sigma = std::sqrt(std::max(planes.a_variance[col], planes.b_variance[col]));
   return slope_sigma / planes.q0[col] * incidence_cos * incidence_cos;
 }
@@ -59,8 +60,8 @@ SurfacePoint surface_point(const PlaneWindows& fits, const PlaneRow& planes,
   const auto i = static_cast<std::size_t>(col);
   if (!image.valid(row, col) || planes.neighbours[i] == 0 || !(planes.q0[i] > 0)) return raw;
 
-  // q = a (x − x0) + b (y − y0) + q0 = (a, b, q0 − a x0 − b y0) · (x, y, 1) is the plane's
-  // normal, pointing away from the camera, over its distance from the origin.
+  // q = a (x − x0) + b (y − y0) + q0 = (a, b, q0 − a x0 − b y0) · (x, y, 1). That vector is the
+  // normal of the plane, pointing away from the camera, divided by the distance of the plane.
   const float along_z = planes.q0[i] - planes.a[i] * fits.tangent_x(row, col) -
                         planes.b[i] * fits.tangent_y(row, col);
   const Eigen::Vector3f away = Eigen::Vector3f(planes.a[i], planes.b[i], along_z).normalized();
@@ -86,13 +87,14 @@ std::vector<OptionField<CloudOptions>> CloudOptions::fields() {
       {"window_radius_px", &CloudOptions::window_radius_px, 1, 15, "px",
        "half width of the square window of the plane fit, without its centre"},
       {"max_window_radius_px", &CloudOptions::max_window_radius_px, 1, 31, "px",
-       "half width up to which windows grow where noise alone would leave normals uncertain"},
+       "largest half width, up to which windows grow where noise alone would make the normal too "
+       "uncertain"},
       {"gate_sigmas", &CloudOptions::gate_sigmas, 1, 10, "",
-       "a neighbour belongs to the surface within this many standard deviations"},
+       "largest distance of a neighbour from the plane of a pixel, in standard deviations"},
       {"min_neighbours", &CloudOptions::min_neighbours, 3, 961, "",
-       "pixels a plane needs; below, the point has no normal"},
+       "smallest number of pixels that a plane is fitted to; a pixel with fewer has no normal"},
       {"max_normal_sigma_rad", &CloudOptions::max_normal_sigma_rad, 0.001, 3.2, "rad",
-       "normals less certain than this are left out"},
+       "largest standard deviation of the direction of a normal; a pixel above it has no normal"},
   };
 }
 

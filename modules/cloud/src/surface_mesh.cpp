@@ -10,7 +10,7 @@
 
 namespace tofmap {
 
-// PCL's and VTK's writers do not notice a full disk, and VTK's writes no normals.
+// PCL's and VTK's writers do not report a full disk, and VTK's writer writes no normals.
 void write_mesh(const std::filesystem::path& file, const SurfaceMesh& mesh) {
   static_assert(std::endian::native == std::endian::little);
   std::ofstream out(file, std::ios::binary);
@@ -32,7 +32,7 @@ void write_mesh(const std::filesystem::path& file, const SurfaceMesh& mesh) {
     write(triangle.data(), triangle.size());
   }
   out.close();
-  if (!out) throw InputError(file.string() + ": cannot be written whole; is the disk full?");
+  if (!out) throw InputError(file.string() + ": cannot be written; is the disk full?");
 }
 
 }  // namespace tofmap

@@ -17,11 +17,14 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// What no camera has: a lens longer than so many sides of its image, an optical centre so many
-/// sides off, a distortion that moves the corners so many times nearer to the centre, or farther
-/// off. (Images that were cropped have their centre elsewhere.)
+/// Limits of plausible cameras. Largest focal length, in units of the longer side of the image.
 constexpr double most_sides_of_focal_length = 120;
+
+/// Largest offset of the principal point from the image centre, in units of the side of the image.
+/// The limit is wide because the principal point of a cropped image may lie far outside.
 constexpr double most_sides_off = 20;
+
+/// Largest factor by which distortion moves an image corner towards or away from the axis.
 constexpr double most_distorted = 3;
 
 /// The tangent of a ray's angle to the optical axis.
@@ -34,9 +37,10 @@ bool is_distorted(const CameraModel& camera) {
   return false;
 }
 
+/// Result of the distortion model for one point.
 struct Distorted {
   Eigen::Vector2d point;     ///< distorted normalised coordinates
-  Eigen::Matrix2d jacobian;  ///< of the distorted by the undistorted ones
+  Eigen::Matrix2d jacobian;  ///< derivative of `point` with respect to the undistorted coordinates
 };
 
 Distorted distort(const std::array<double, 5>& k, const Eigen::Vector2d& p) {
@@ -61,7 +65,7 @@ Eigen::Vector2d undistort(const std::array<double, 5>& k, const Eigen::Vector2d&
   Eigen::Vector2d p = distorted;
   for (int i = 0; i < max_iterations; ++i) {
     const Distorted d = distort(k, p);
-    // Past the fold of the radial polynomial the inverse is another branch's.
+    // Beyond the fold of the radial polynomial, the iteration would find another branch.
     if (d.jacobian.determinant() <= 0) return {nan, nan};
     const Eigen::Vector2d error = d.point - distorted;
     if (error.squaredNorm() < tolerance * tolerance) return p;
@@ -95,7 +99,7 @@ void validate(const CameraModel& camera) {
   const double longest_focal_px = most_sides_of_focal_length * longer_side_px;
   if (std::max(camera.fx_px, camera.fy_px) > longest_focal_px) {
     fail("fx and fy must be at most " + std::to_string(std::lround(longest_focal_px)) +
-         " pixels, half a degree for the image; are they in pixels?");
+         " pixels, a field of view of half a degree; are they in pixels?");
   }
   const double cx_off_px = std::abs(camera.cx_px - camera.width_px / 2.0);
   const double cy_off_px = std::abs(camera.cy_px - camera.height_px / 2.0);
@@ -108,7 +112,7 @@ void validate(const CameraModel& camera) {
   }
   CameraModel pinhole = camera;
   pinhole.distortion = {};
-  // The corners are the farthest from the axis: if they have rays, so have all pixels.
+  // The corners are the farthest from the axis: if they have rays, all pixels have rays.
   for (const double u : {0.0, camera.width_px - 1.0}) {
     for (const double v : {0.0, camera.height_px - 1.0}) {
       const Eigen::Vector3d ray = pixel_ray(camera, u, v);
@@ -118,7 +122,7 @@ void validate(const CameraModel& camera) {
       const double ratio = off_axis(ray) / off_axis(pixel_ray(pinhole, u, v));
       if (ratio > most_distorted || ratio < 1 / most_distorted) {
         fail(
-            "the distortion coefficients move the corners of the image by more than any lens; "
+            "the distortion coefficients move the image corners farther than any lens does; "
             "are they k1 k2 p1 p2 k3?");
       }
     }

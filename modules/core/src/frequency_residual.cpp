@@ -9,6 +9,7 @@
 namespace tofmap {
 namespace {
 
+/// The difference from the nearest whole number, −1/2 … 1/2.
 double wrapped(double cycles) { return cycles - std::round(cycles); }
 
 }  // namespace

@@ -12,8 +12,8 @@ void refuse_no_file(const std::filesystem::path& path) {
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return;
   throw InputError(path.string() + (std::filesystem::is_directory(status)
-                                        ? ": is a folder, where a file is wanted"
-                                        : ": is no regular file"));
+                                        ? ": is a folder; a file is expected"
+                                        : ": is not a regular file"));
 }
 
 }  // namespace tofmap

@@ -19,12 +19,12 @@ void validate(const Modulation& modulation) {
     message << "modulation: frequencies must be positive, got " << a << " and " << b << " Hz";
     throw InputError(message.str());
   }
-  constexpr double lowest_hz = 1e4;    // 15 km of range; megahertz taken for hertz are far below
-  constexpr double highest_hz = 1e11;  // 1.5 mm
+  constexpr double lowest_hz = 1e4;    // λ = 15 km; a number of megahertz would be far below
+  constexpr double highest_hz = 1e11;  // λ = 1.5 mm
   if (std::min(a, b) < lowest_hz || std::max(a, b) > highest_hz) {
     std::ostringstream message;
     message << "modulation: frequencies of " << a << " and " << b
-            << " Hz are none of a time-of-flight camera; they are given in hertz, as 29e6";
+            << " Hz are implausible for a time-of-flight camera; give them in hertz, e.g. 29e6";
     throw InputError(message.str());
   }
   if (std::abs(a - b) < 1e-6 * a) {
@@ -38,8 +38,9 @@ void validate(const Modulation& modulation) {
 double combined_range_m(const Modulation& modulation, double tolerance_cycles) {
   const double longer = std::max(modulation.wavelength_a_m(), modulation.wavelength_b_m());
   const double shorter = std::min(modulation.wavelength_a_m(), modulation.wavelength_b_m());
-  // The phase of the shorter advances by longer / shorter a wrap of the longer; by
-  // Dirichlet's theorem it returns within 1 / n after at most n wraps.
+  // During one wrap of the longer wavelength, the phase of the shorter one advances by
+  // longer / shorter cycles. By Dirichlet's approximation theorem it returns to within 1 / n of a
+  // whole cycle after at most n wraps.
   const int last = static_cast<int>(std::ceil(1 / std::max(tolerance_cycles, 1e-6)));
   for (int n = 1; n < last; ++n) {
     const double cycles = n * longer / shorter;

@@ -33,7 +33,7 @@ std::optional<bool> parse_bool(const std::string& text) {
   return std::nullopt;
 }
 
-/// The shortest text that reads back as the same number.
+/// The shortest text that reads back as the same bits.
 std::string number_text(double number) {
   char buffer[32];
   const auto result = std::to_chars(buffer, buffer + sizeof buffer, number);
@@ -49,7 +49,7 @@ std::string range_text(double min, double max) {
   return "any number";
 }
 
-/// Whether the word is one of "a | b | c".
+/// True if the word is one of `choices`, which has the form "a | b | c".
 bool is_choice(const std::string& word, const std::string& choices) {
   std::istringstream words(choices);
   for (std::string choice; words >> choice;) {
@@ -108,7 +108,7 @@ void OptionTable::add(Entry entry) { entries_.push_back(std::move(entry)); }
 OptionTable::Entry& OptionTable::find(const std::string& key, const std::string& value) {
   const auto found = std::ranges::find_if(entries_, [&](const Entry& e) { return e.key() == key; });
   if (found != entries_.end()) return *found;
-  // Name what stands in the same group; if there is no such group, name the groups.
+  // List the options of the same group; if there is no such group, list the groups.
   const std::string group = key.substr(0, key.find('.'));
   std::vector<std::string> names;
   std::vector<std::string> groups;
@@ -154,9 +154,9 @@ void OptionTable::load(const std::filesystem::path& file, const OptionTable& oth
   try {
     root = YAML::LoadFile(file.string());
   } catch (const YAML::BadFile&) {
-    throw InputError(file.string() + ": cannot be read; is it there?");
+    throw InputError(file.string() + ": cannot be read; does it exist?");
   } catch (const YAML::Exception& error) {
-    throw InputError(file.string() + ": no valid YAML: " + error.what());
+    throw InputError(file.string() + ": is not valid YAML: " + error.what());
   }
   if (root.IsNull()) return;  // an empty file sets nothing
   if (!root.IsMap()) throw InputError(file.string() + ": expected a map of option groups");

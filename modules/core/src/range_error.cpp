@@ -13,7 +13,8 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// `scale` is that of the pixel: c m.
+/// Fills `sigma` for `count` pixels. `scale` is c of PhaseNoise, `ambient` is m, and
+/// `rounding_variance` is q² / 12.
 TOFMAP_VECTOR_CLONES void fill_sigma(int count, const float* phase, const float* amplitude,
                                      const float* ambient, float scale, float rounding_variance,
                                      float* sigma) {

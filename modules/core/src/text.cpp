@@ -9,7 +9,7 @@
 namespace tofmap {
 namespace {
 
-/// How many bytes a character takes that begins with this one; 0 if none does.
+/// Number of bytes of a UTF-8 character that begins with the byte `first`; 0 if no character does.
 std::size_t length_from(std::uint8_t first) {
   if (first < 0x80) return 1;
   if (first >= 0xC2 && first < 0xE0) return 2;
@@ -17,8 +17,8 @@ std::size_t length_from(std::uint8_t first) {
   return first >= 0xF0 && first < 0xF5 ? 4 : 0;
 }
 
-/// The length of the character at the beginning of a text that is not empty; 0 if it is not valid
-/// (RFC 3629: neither overlong, nor a surrogate, nor beyond U+10FFFF).
+/// Number of bytes of the character at the beginning of `text`, which must not be empty. 0 if the
+/// character is not valid by RFC 3629: overlong, a surrogate, or beyond U+10FFFF.
 std::size_t valid_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text[i]); };
   const std::size_t length = length_from(byte(0));

@@ -57,10 +57,11 @@ std::optional<Pose> pose_at(const Trajectory& trajectory, double timestamp_s, do
 
 namespace {
 
-/// No place on Earth is farther from any origin in use; a number that is, is none of metres.
+/// Larger coordinates are certainly not in metres: no place on Earth is that far from any origin in
+/// use.
 constexpr double farthest_m = 1e8;
 
-/// Nothing if a line is no pose.
+/// Parses a line of a trajectory file. Empty if the line is not a pose.
 std::optional<StampedPose> parse_pose(const std::string& line) {
   std::istringstream fields(line);
   StampedPose pose;
@@ -72,8 +73,8 @@ std::optional<StampedPose> parse_pose(const std::string& line) {
   fields >> pose.timestamp_s >> t.x() >> t.y() >> t.z() >> x >> y >> z >> w;
   const Eigen::Quaterniond q(w, x, y, z);
   const bool has_eight = !fields.fail() && (fields >> std::ws).eof();
-  const bool is_near = t.cwiseAbs().maxCoeff() <= farthest_m;  // false for NaN, too
-  // A quaternion off unit length by rounding is mended; a zero one is no rotation.
+  const bool is_near = t.cwiseAbs().maxCoeff() <= farthest_m;  // false for NaN as well
+  // Normalises a quaternion whose length is off by rounding; a zero quaternion is no rotation.
   if (!has_eight || !is_near || !std::isfinite(q.norm()) || q.norm() < 1e-3) return std::nullopt;
   pose.world_from_camera.linear() = q.normalized().toRotationMatrix();
   pose.world_from_camera.translation() = t;
@@ -85,7 +86,7 @@ std::optional<StampedPose> parse_pose(const std::string& line) {
 UsableTrajectory read_usable_trajectory(const std::filesystem::path& file) {
   refuse_no_file(file);
   std::ifstream in(file);
-  if (!in) throw InputError(file.string() + ": cannot be read; is it there?");
+  if (!in) throw InputError(file.string() + ": cannot be read; does it exist?");
   UsableTrajectory usable;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {

@@ -10,17 +10,18 @@
 namespace tofmap {
 namespace {
 
-/// Phases near the end of a cycle, by where the cycle would end for depth along the axis.
+/// Counts phases of one frequency just before and beyond the cosine of the pixel's ray, at which
+/// phases computed from depth end.
 struct EndOfCycle {
   int all = 0;
   int before = 0;
   int beyond = 0;
 
-  /// Of pixels that see far enough from the axis.
+  /// Adds an image. Pixels whose rays are close to the optical axis are left out.
   void add(const ImageF& phase, const ImageF& cosine) {
     constexpr float most_cosine = 0.93F;
     constexpr float near_end = 0.93F;
-    constexpr float rounding = 0.005F;  // of depth in millimetres, and of the lens
+    constexpr float rounding = 0.005F;  // depth in whole millimetres; inexact intrinsics
     for (Eigen::Index i = 0; i < phase.size(); ++i) {
       if (!(cosine.data()[i] < most_cosine)) continue;
       const float share = phase.data()[i] / cosine.data()[i];
@@ -30,10 +31,11 @@ struct EndOfCycle {
     }
   }
 
-  /// As many are to be expected beyond as before, if phases do not end there.
+  /// Whether phases end at the cosine. If they did not, about as many phases would lie beyond it as
+  /// before it.
   bool is_there() const {
     constexpr int enough = 300;
-    constexpr int some = 50;  // one of so many: less may be one object
+    constexpr int some = 50;  // a smaller share than 1 / 50 may come from a single object
     return before >= enough && before * some >= all && beyond * some <= before;
   }
 };
@@ -55,8 +57,9 @@ bool looks_like_axial_depth(const std::vector<DualFrequencyFrame>& frames,
 std::optional<std::string> axial_depth_warning(const std::vector<DualFrequencyFrame>& frames,
                                                const SensorModel& sensor) {
   if (!looks_like_axial_depth(frames, sensor)) return std::nullopt;
-  return "towards the border of the image ranges end where depth along the optical axis does; was "
-         "it taken for ranges along rays? device.depth=z turns it into them when it is recorded";
+  return "towards the border of the image, ranges wrap where depth along the optical axis would; "
+         "was depth recorded as if it were range? record again with device.depth=z, which converts "
+         "depth to range";
 }
 
 }  // namespace tofmap

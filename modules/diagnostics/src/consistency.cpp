@@ -25,11 +25,11 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : nan; }
 
-/// A difference of phases, between minus and plus half a cycle.
+/// A phase difference, wrapped to −1/2 … 1/2 cycles.
 double nearest_cycle(double cycles) { return cycles - std::round(cycles); }
 
-/// By how much phase B differs from what wrap count and phase of A say, in cycles; NaN where one of
-/// them is missing.
+/// The inter-frequency residual of each pixel at its wrap count, in cycles of B. NaN where the
+/// range is invalid or a phase is missing.
 ImageF phase_b_residuals(const RangedFrame& ranged, const Modulation& modulation) {
   const double ratio = modulation.wavelength_a_m() / modulation.wavelength_b_m();
   const RangeImage& image = *ranged.image;
@@ -49,7 +49,8 @@ ImageF phase_b_residuals(const RangedFrame& ranged, const Modulation& modulation
   return residuals;
 }
 
-/// The mean residual around a pixel, of pixels with the same wrap count.
+/// The mean residual of the pixels around a pixel that have the same wrap count, including the
+/// pixel itself.
 double mean_around(const ImageF& residuals, const ImageU8& counts, Eigen::Index row,
                    Eigen::Index col) {
   constexpr Eigen::Index radius = 2;
@@ -60,7 +61,7 @@ double mean_around(const ImageF& residuals, const ImageU8& counts, Eigen::Index 
   for (Eigen::Index r = std::max<Eigen::Index>(0, row - radius); r <= last_row; ++r) {
     for (Eigen::Index c = std::max<Eigen::Index>(0, col - radius); c <= last_col; ++c) {
       if (std::isnan(residuals(r, c)) || counts(r, c) != counts(row, col)) continue;
-      // Relative to the pixel's own, so that nothing wraps on the way.
+      // Average the differences from the pixel's own residual: residuals wrap at half a cycle.
       sum += nearest_cycle(residuals(r, c) - residuals(row, col));
       ++pixels;
     }
@@ -68,8 +69,8 @@ double mean_around(const ImageF& residuals, const ImageU8& counts, Eigen::Index 
   return nearest_cycle(residuals(row, col) + sum / pixels);
 }
 
-/// By how little another wrap count of A moves phase B, in cycles: of counts up to three away,
-/// since farther ones are as many wavelengths off, and no near miss. NaN if they can tell none.
+/// The smallest change of the residual that another wrap count of A makes, in cycles of B. Only
+/// wrap counts up to three away are considered. NaN if none of them changes the residual.
 double smallest_step_cycles(const Modulation& modulation) {
   constexpr int counts = 4;
   const double step_cycles =
@@ -78,7 +79,8 @@ double smallest_step_cycles(const Modulation& modulation) {
   return step_cycles < 1 ? step_cycles : nan;
 }
 
-/// Points of one frame in another: how many fall on a range, and how many of these it sees through.
+/// Points of one frame that are projected into another: how many fall on a valid range and are not
+/// hidden, and how many of these violate free space.
 struct Overlap {
   int points = 0;
   int free_space_violation = 0;
@@ -87,7 +89,7 @@ struct Overlap {
 Overlap overlap(const RangedFrame& from, const RangedFrame& to, const CameraModel& camera,
                 const PixelRays& rays) {
   constexpr Eigen::Index stride = 4;
-  constexpr double least_tolerance_m = 0.1;  // what a coarse map blurs anyway
+  constexpr double least_tolerance_m = 0.1;  // a coarse map is blurred by this much anyway
   constexpr double sigmas = 4;
   const Pose to_from_from = to.world_from_camera->inverse() * *from.world_from_camera;
   Overlap result;
@@ -106,7 +108,7 @@ Overlap overlap(const RangedFrame& from, const RangedFrame& to, const CameraMode
       const double behind_m = to.image->range_m(row, col) - point_m.norm();
       const double variance_m2 = from.image->variance_m2(v, u) + to.image->variance_m2(row, col);
       const double tolerance_m = std::max(least_tolerance_m, sigmas * std::sqrt(variance_m2));
-      if (behind_m < -tolerance_m) continue;  // hidden: neither for nor against
+      if (behind_m < -tolerance_m) continue;  // hidden: no evidence either way
       ++result.points;
       result.free_space_violation += behind_m > tolerance_m ? 1 : 0;
     }
@@ -116,8 +118,8 @@ Overlap overlap(const RangedFrame& from, const RangedFrame& to, const CameraMode
 
 using Tree = pcl::KdTreeFLANN<MapPoint>;
 
-/// Root mean square distance of the points around one from their plane; nothing where the surface
-/// is not planar.
+/// RMS distance of the points around a map point from their common plane, metres. Empty if the
+/// surface is not planar there or has too few points.
 std::optional<double> thickness_at(const MapCloud& map, const Tree& tree, int index) {
   constexpr double radius_m = 0.15;
   constexpr double same_direction = 0.94;  // cosine of 20 degrees
@@ -130,7 +132,7 @@ std::optional<double> thickness_at(const MapCloud& map, const Tree& tree, int in
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const int i : neighbours) {
     const Eigen::Vector3f other = map[i].getNormalVector3fMap();
-    if (other.dot(normal) < -same_direction) continue;  // the other side of a panel
+    if (other.dot(normal) < -same_direction) continue;  // the back of a thin object
     if (!(other.dot(normal) > same_direction)) return std::nullopt;
     points.emplace_back(map[i].getVector3fMap().cast<double>());
     mean += points.back();
@@ -182,7 +184,7 @@ double ambiguous_percent(const std::vector<RangedFrame>& frames) {
 }
 
 double contradicted_percent(const std::vector<RangedFrame>& frames, const CameraModel& camera) {
-  constexpr int least_points = 50;  // fewer is chance
+  constexpr int least_points = 50;  // smaller overlaps may be chance
   const PixelRays rays = pixel_rays(camera);
   std::int64_t points = 0;
   std::int64_t free_space_violation = 0;
@@ -236,20 +238,20 @@ Consistency consistency_of(const std::vector<RangedFrame>& unwrapped,
 }
 
 std::vector<std::string> warnings_about(const Consistency& consistency) {
-  // Measured: docs/evaluation.md. NaN exceeds no limit.
+  // docs/evaluation.md has the measurements behind these limits. NaN exceeds no limit.
   constexpr double most_contradicted_percent = 3;
   constexpr double most_misfit_percent = 10;
   std::vector<std::string> warnings;
   if (consistency.contradicted_percent > most_contradicted_percent) {
     warnings.push_back(fmt::format(
-        "frames contradict each other in {:.1f} % of what they both see: ranges or path are wrong",
+        "frames contradict each other in {:.1f} % of what they both see: ranges or poses are wrong",
         consistency.contradicted_percent));
   }
   if (consistency.residual_misfit_percent > most_misfit_percent) {
     warnings.push_back(
         fmt::format("{:.0f} % of the pixels would fit both frequencies better with another "
-                    "wrap count: wraps are wrong, or the frequencies' offsets differ "
-                    "('tofmap info' tells)",
+                    "wrap count: wrap counts are wrong, or there is an offset between the "
+                    "frequencies (see 'tofmap info')",
                     consistency.residual_misfit_percent));
   }
   return warnings;

@@ -13,8 +13,8 @@
 namespace tofmap {
 namespace {
 
-/// Errors from here on are told. Calibrated cameras stay below; motion and light that comes by
-/// other ways make some millimetres of each.
+/// Smaller errors are not reported. The errors of calibrated cameras stay below these limits:
+/// camera motion and multipath alone cause some millimetres of each.
 constexpr double least_offset_m = 0.01;
 constexpr double least_periodic_m = 0.008;
 constexpr double least_per_decade_m = 0.005;
@@ -67,44 +67,44 @@ std::vector<std::string> remarks_about(const ErrorSurvey& survey) {
     const double per_decade_m = survey.camera.per_decade_m();
     if (std::abs(offset_m) >= least_offset_m) {
       remarks.push_back(fmt::format(
-          "offset between the frequencies: A measures {:.0f} mm {} than B; allowed for in "
-          "unwrapping, "
-          "but ranges keep the error of A or B: 'tofmap calibrate' against known ranges "
-          "tells which",
+          "offset between the frequencies: A measures {:.0f} mm {} than B; unwrapping compensates "
+          "for it, but ranges keep the error of A or B: 'tofmap calibrate' with known ranges finds "
+          "out which",
           millimetres(std::abs(offset_m)), offset_m < 0 ? "less" : "more"));
     }
     if (periodic_m >= least_periodic_m) {
       remarks.push_back(fmt::format(
-          "the frequencies disagree periodically, by {:.0f} mm (RMS); allowed for in unwrapping",
+          "the ranges of A and B differ by a periodic error of {:.0f} mm (RMS); unwrapping "
+          "compensates for it",
           millimetres(periodic_m)));
     }
     if (std::abs(per_decade_m) >= least_per_decade_m) {
       remarks.push_back(fmt::format(
-          "A measures {:.0f} mm {} than B for every factor of ten in amplitude; allowed "
-          "for in unwrapping",
+          "A measures {:.0f} mm {} than B for every factor of ten in amplitude; unwrapping "
+          "compensates for it",
           millimetres(std::abs(per_decade_m)), per_decade_m < 0 ? "less" : "more"));
     }
     if (survey.camera.systematic_m >= least_systematic_m) {
       remarks.push_back(fmt::format(
-          "the frequencies disagree by {:.0f} mm (RMS) beyond noise, offset and periodic errors; "
-          "wrap counts are taken for less sure by as much",
+          "the ranges of A and B differ by {:.0f} mm (RMS) beyond noise, offset and periodic "
+          "errors; unwrapping gives them less confidence",
           millimetres(survey.camera.systematic_m)));
     }
   }
   if (survey.flow_px >= least_flow_px) {
     remarks.push_back(fmt::format(
-        "the image moves by {:.1f} pixels (median) from A's exposure to B's; B is brought back "
-        "to where A was exposed",
+        "the image moves by {:.1f} pixels (median) from A's exposure to B's; unwrapping moves B's "
+        "pixels back to where A saw them",
         survey.flow_px));
   }
   if (survey.ambient_share >= least_ambient_share) {
-    const char* compared =
-        survey.has_amplitudes ? "as their amplitudes say, as under ambient light" : "as the others";
-    remarks.push_back(
-        fmt::format("{:.0f} % of the pixels are at least {:.1f} times as noisy {}; taken into "
-                    "account where they "
-                    "are",
-                    100 * survey.ambient_share, survey.ambient_factor, compared));
+    const char* compared = survey.has_amplitudes
+                               ? "as their amplitudes predict, as under ambient light"
+                               : "as the others";
+    remarks.push_back(fmt::format(
+        "{:.0f} % of the pixels are at least {:.1f} times as noisy {}; unwrapping gives "
+        "them less weight",
+        100 * survey.ambient_share, survey.ambient_factor, compared));
   }
   return remarks;
 }
@@ -115,9 +115,10 @@ std::vector<std::string> warnings_about(const ErrorSurvey& survey) {
   const double periodic_m = survey.camera.periodic_rms_m;
   if (survey.camera.frames == 0 || periodic_m < most_periodic_m) return {};
   return {fmt::format(
-      "ranges have a periodic error of about {:.0f} mm, and the map is wrong by as much "
-      "or more; 'tofmap calibrate' finds it. If a calibration is in use, it does not "
-      "fit this recording",
+      "ranges have a periodic error of about {:.0f} mm, and the error of the map is at least as "
+      "large; 'tofmap calibrate' finds and corrects it. If a calibration is in use already, it "
+      "does "
+      "not fit this recording",
       millimetres(periodic_m))};
 }
 

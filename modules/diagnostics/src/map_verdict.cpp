@@ -12,9 +12,9 @@
 namespace tofmap {
 
 Judgement judge(const MapEvidence& evidence) {
-  constexpr double half_percent = 50;        // with fewer frames it is a map of something else
+  constexpr double half_percent = 50;        // with fewer frames, most of the recording is missing
   constexpr double nearly_all_percent = 95;  // every recording loses some frames
-  constexpr double some_percent = 10;        // so many frames may rely on the motion before them
+  constexpr double some_percent = 10;        // up to this, frames may rely on the motion prior
   Judgement judgement;
   const auto hold_against = [&](Verdict verdict, const std::string& reason) {
     judgement.verdict = std::max(judgement.verdict, verdict);
@@ -32,23 +32,24 @@ Judgement judge(const MapEvidence& evidence) {
                                  ? verdict_on_accuracy(*evidence.accuracy_m, evidence.voxel_m)
                                  : Verdict::good;
   if (of_surface != Verdict::good) {
-    hold_against(of_surface, "its error is larger than its voxels");
+    hold_against(of_surface, "the error of its surface is larger than a voxel");
   }
   const double degenerate_percent = percent_of_frames(evidence, evidence.degenerate);
   if (degenerate_percent > some_percent) {
     hold_against(
         Verdict::doubtful,
-        fmt::format("in {:.0f} % of the frames no surface held a direction", degenerate_percent));
+        fmt::format("in {:.0f} % of the frames, no surface constrained one direction of motion",
+                    degenerate_percent));
   }
   if (!evidence.is_seen_twice) hold_against(Verdict::doubtful, "no place was seen by two frames");
   if (evidence.is_interrupted) hold_against(Verdict::doubtful, "the run was interrupted");
-  if (evidence.is_warned) hold_against(Verdict::doubtful, "the warnings below");
+  if (evidence.is_warned) hold_against(Verdict::doubtful, "there are warnings, see below");
   return judgement;
 }
 
 std::string told_reasons(const Judgement& judgement) {
   if (judgement.reasons.empty()) return "";
-  return " Held against it: " + joined(judgement.reasons, "; ") + ".";
+  return " Reasons: " + joined(judgement.reasons, "; ") + ".";
 }
 
 Verdict verdict_on_accuracy(double accuracy_m, double voxel_m) {
@@ -58,7 +59,7 @@ Verdict verdict_on_accuracy(double accuracy_m, double voxel_m) {
 }
 
 Verdict verdict_on_wraps(double wrong_wrap_percent) {
-  // Filters drop a few percent of wrong wraps; a fifth ruins a map (docs/experiments.md).
+  // Filters remove a few percent of wrong wraps; 20 % ruin a map (docs/experiments.md).
   constexpr double few_percent = 2;
   constexpr double many_percent = 10;
   if (wrong_wrap_percent > many_percent) return Verdict::bad;

@@ -16,15 +16,16 @@
 namespace tofmap {
 namespace {
 
-/// Frames whose frequencies are compared, spread evenly.
+/// The frequencies are compared in at most this many frames, spread evenly over the recording.
 constexpr int compared_frames = 12;
 
-/// Images with fewer returns may be of one range.
+/// With fewer returns, all pixels of an image may have the same phase by chance.
 constexpr int least_returns = 100;
 
-/// Below what phases of 16 bits can differ by.
+/// Smaller than the step between two phases of 16 bits, cycles.
 constexpr float no_difference = 1e-5F;
 
+/// Whether an image has the same phase in all pixels with a return.
 bool is_constant(const ImageF& phase) {
   float least = 2;
   float most = -1;
@@ -38,8 +39,8 @@ bool is_constant(const ImageF& phase) {
   return returns >= least_returns && most - least < no_difference;
 }
 
-/// Whether phases are the same in all pixels that have a return in both images. An amplitude of
-/// zero makes a return missing in one of two copies.
+/// Whether phases are the same in all pixels that have a return in both images. Only these pixels
+/// are compared, because a copy of an image may lack returns where its amplitude is zero.
 bool same_returns(const ImageF& phase, const ImageF& other) {
   if (!same_size(phase, other)) return false;
   int returns = 0;
@@ -56,7 +57,7 @@ bool is_without_return(const DualFrequencyFrame& frame) {
   return (frame.phase_a.isNaN() || frame.phase_b.isNaN()).all();
 }
 
-/// Pixels of all frames.
+/// Pixel counts, summed over all frames.
 struct PixelTotals {
   double all = 0;
   double without_return = 0;  ///< at either frequency
@@ -96,15 +97,15 @@ void warn_of_returns(const RecordingSurvey& survey, std::vector<std::string>& wa
                        " without any return; was the camera covered?");
   } else if (survey.no_return_share > most_without_return) {
     warnings.push_back(
-        fmt::format("{:.0f} % of the pixels have no return; is the exposure too short, or the "
-                    "scene out of reach?",
+        fmt::format("{:.0f} % of the pixels have no return; is the exposure too short, or is the "
+                    "scene too far away?",
                     100 * survey.no_return_share));
   }
   constexpr double most_saturated = 0.05;
   if (survey.saturated_share > most_saturated) {
     warnings.push_back(
-        fmt::format("{:.0f} % of the pixels are saturated, and left out; a shorter exposure "
-                    "would keep them",
+        fmt::format("{:.0f} % of the pixels are saturated and therefore left out; a shorter "
+                    "exposure would keep them",
                     100 * survey.saturated_share));
   }
 }
@@ -112,8 +113,8 @@ void warn_of_returns(const RecordingSurvey& survey, std::vector<std::string>& wa
 void warn_of_images(const RecordingSurvey& survey, std::vector<std::string>& warnings) {
   if (!survey.constant_images.empty()) {
     warnings.push_back(
-        fmt::format("{} images hold one phase everywhere, {} the first; they are no "
-                    "measurement",
+        fmt::format("images with the same phase in all pixels: {}, the first of them {}; such "
+                    "images are not measurements",
                     survey.constant_images.size(), survey.constant_images.front().c_str()));
   }
   if (const auto warning = repetition_warning(survey.repeated)) warnings.push_back(*warning);
@@ -121,8 +122,8 @@ void warn_of_images(const RecordingSurvey& survey, std::vector<std::string>& war
     warnings.push_back(
         counted(static_cast<std::size_t>(survey.repeated_single), "frame") +
         (survey.repeated_single == 1 ? " has" : " have") +
-        " the phases of the one before at one frequency, and new ones at the other; are files of "
-        "one folder copies of each other?");
+        " the phases of the previous frame at one frequency, and new phases at the other; are "
+        "files of one folder copies of each other?");
   }
 }
 
@@ -134,14 +135,14 @@ void warn_of_times(const RecordingSurvey& survey, std::vector<std::string>& warn
       (survey.median_period_s > 0 && survey.median_period_s < shortest_period_s);
   if (is_none_of_a_camera) {
     warnings.push_back(
-        fmt::format("{:.3g} s from frame to frame; are the times in frames.txt seconds?",
+        fmt::format("frames are {:.3g} s apart; are the times in frames.txt in seconds?",
                     survey.median_period_s));
   }
   constexpr double most_periods = 5;
   if (survey.longest_gap_s > most_periods * survey.median_period_s) {
     warnings.push_back(
-        fmt::format("after frame {} nothing was recorded for {:.2f} s, {:.0f} frame periods; the "
-                    "camera may be lost there",
+        fmt::format("after frame {}, nothing was recorded for {:.2f} s ({:.0f} frame periods); "
+                    "tracking may be lost there",
                     survey.frame_before_gap, survey.longest_gap_s,
                     survey.longest_gap_s / survey.median_period_s));
   }
@@ -157,7 +158,7 @@ std::optional<std::string> repetition_warning(int repeated) {
   if (repeated == 0) return std::nullopt;
   return counted(static_cast<std::size_t>(repeated), "frame") +
          (repeated == 1 ? " repeats" : " repeat") +
-         " the one before; did the camera's software stand still?";
+         " the previous frame; did the camera or its software stall?";
 }
 
 RecordingSurvey survey_recording(const SequenceReader& recording,
@@ -211,14 +212,15 @@ std::vector<std::string> warnings_about(const RecordingSurvey& survey, const Sen
   add(pair_warning);
   if (sensor.max_range_m > combined_range_m(sensor.modulation)) {
     warnings.emplace_back(
-        "the scene reaches farther than this pair of frequencies can tell apart; are they right?");
+        "the scene reaches farther than the combined range of this pair of frequencies; are "
+        "max_range_m, frequency_a_hz and frequency_b_hz right?");
   }
   warn_of_returns(survey, warnings);
   warn_of_images(survey, warnings);
   warn_of_times(survey, warnings);
   add(survey.axial_depth_warning);
-  // Where there is a warning about the images themselves, A and B cannot agree, and say nothing
-  // else.
+  // If there is a warning about the images themselves, A and B cannot agree, and a comparison of
+  // the frequencies tells nothing new.
   const bool is_comparable = survey.residual && !pair_warning && !survey.axial_depth_warning &&
                              survey.constant_images.empty() && survey.repeated_single == 0;
   if (!is_comparable) return warnings;

@@ -17,11 +17,13 @@
 namespace tofmap {
 namespace {
 
-/// Every how manieth pixel is looked at, and how many at least must have returns.
+/// Every third pixel is compared.
 constexpr int pixel_stride = 3;
+
+/// At least this many of the compared pixels must have returns at both frequencies.
 constexpr std::size_t least_pixels = 300;
 
-/// Phases with returns at both frequencies.
+/// The phases of a pixel with returns at both frequencies.
 struct PhasePair {
   double a_cycles;
   double b_cycles;
@@ -38,12 +40,13 @@ std::vector<PhasePair> phase_pairs(const std::vector<DualFrequencyFrame>& frames
   return pairs;
 }
 
-/// What A can measure more than B, by the wraps that both may have.
+/// The possible differences of A's range minus B's range, given the phases of a pixel and the wrap
+/// counts that both frequencies may have.
 class Differences {
  public:
   explicit Differences(const SensorModel& sensor)
       : a_m_(sensor.modulation.wavelength_a_m()), b_m_(sensor.modulation.wavelength_b_m()) {
-    constexpr double tolerance_cycles = 0.05;  // beyond, noise lets no pair of counts be told
+    constexpr double tolerance_cycles = 0.05;  // more noise hides which wrap counts are right
     const double combined_m = combined_range_m(sensor.modulation, tolerance_cycles);
     const double farthest_m =
         sensor.max_range_m > 0 ? std::min(sensor.max_range_m, combined_m) : combined_m;
@@ -54,7 +57,7 @@ class Differences {
   double most_m() const { return std::min(a_m_, b_m_) / 2; }
   double ambiguity_m() const { return std::abs(a_m_ - b_m_); }
 
-  /// Calls `use` with each difference of a pixel that is nearest to `about_m` for a count of A.
+  /// Calls `use` once per wrap count of A, with the difference nearest to `about_m` that it allows.
   template <class Use>
   void of(const PhasePair& phases, double about_m, Use use) const {
     for (int n = 0; n < count_a_; ++n) {
@@ -68,7 +71,7 @@ class Differences {
     }
   }
 
-  /// The one that is nearest; nothing if there is none.
+  /// The difference that is nearest to `about_m`. Empty if no pair of wrap counts is possible.
   std::optional<double> nearest_m(const PhasePair& phases, double about_m) const {
     std::optional<double> nearest;
     of(phases, about_m, [&](double difference_m) {
@@ -86,7 +89,8 @@ class Differences {
   int count_a_;
 };
 
-/// How many pixels could have a difference near each of those that are looked at.
+/// A histogram over the differences of A's range minus B's range: counts the pixels in which each
+/// difference is possible.
 class Support {
  public:
   explicit Support(double most_m)
@@ -98,8 +102,7 @@ class Support {
     if (std::abs(bin) <= half_) ++counts_[static_cast<std::size_t>(bin + half_)];
   }
 
-  /// Local maxima that nearly all pixels agree with that agree with the highest, nearest to zero
-  /// first.
+  /// The local maxima that are at least 95 % as high as the highest, nearest to zero first.
   std::vector<double> peaks_m() const {
     const std::vector<double> smooth = smoothed();
     constexpr double nearly_all = 0.95;
@@ -116,9 +119,9 @@ class Support {
 
  private:
   static constexpr double step_m = 0.002;
-  static constexpr int reach = 30;  ///< steps over which it is smoothed
+  static constexpr int reach = 30;  ///< half width of the smoothing kernel, steps
 
-  /// With a bell whose standard deviation is a third of the reach: 2 cm.
+  /// The histogram smoothed with a Gaussian whose standard deviation is a third of `reach`: 2 cm.
   std::vector<double> smoothed() const {
     std::vector<double> smooth(counts_.size(), 0.0);
     for (int shift = -reach; shift <= reach; ++shift) {
@@ -144,18 +147,20 @@ class Support {
   std::vector<double> counts_;
 };
 
-/// About the median.
+/// Robust standard deviation about the median.
 double spread_of(std::vector<float> values) {
   const float middle = median(values);
   for (float& value : values) value = std::abs(value - middle);
   return sigma_of_median_deviation * double{median(values)};
 }
 
+/// See ResidualSurvey for the meaning of offsets and spread.
 struct Agreement {
-  std::vector<double> offsets_m;  ///< that fit equally well, nearest to zero first
-  double spread_m = 0;
+  std::vector<double> offsets_m;  ///< all that fit equally well, nearest to zero first
+  double spread_m = 0;            ///< about the first of the offsets
 };
 
+/// Finds the offsets that fit the phases best. No offsets are found if no wrap counts are possible.
 Agreement agreement(const std::vector<PhasePair>& pairs, const SensorModel& sensor) {
   const Differences differences(sensor);
   Support support(differences.most_m());
@@ -177,6 +182,7 @@ Agreement agreement(const std::vector<PhasePair>& pairs, const SensorModel& sens
   return found;
 }
 
+/// "133 mm more".
 std::string more_or_less(double offset_m) {
   return fmt::format("{:.0f} mm {}", 1000 * std::abs(offset_m), offset_m < 0 ? "less" : "more");
 }
@@ -214,18 +220,18 @@ std::optional<std::string> pairing_warning(const ResidualSurvey& residual) {
   constexpr double telling_ratio = 0.5;
   if (residual.swapped_spread_m < telling_ratio * residual.spread_m) {
     return fmt::format(
-        "both frequencies agree within {:.0f} mm if they are swapped, and within {:.0f} mm as they "
-        "are; are frequency_a_hz and frequency_b_hz mixed up, or the folders of A and B?",
+        "A and B agree within {:.0f} mm if the frequencies are swapped, but only within {:.0f} mm "
+        "as they are; are frequency_a_hz and frequency_b_hz mixed up, or the folders of A and B?",
         1000 * residual.swapped_spread_m, 1000 * residual.spread_m);
   }
-  // Differences that chance alone makes have a spread of .37 of the ambiguity, or more where ranges
-  // are known to be short.
+  // Differences of unrelated phases have a spread of 0.37 times the ambiguity, or more if
+  // max_range_m is small.
   constexpr double no_agreement = 0.3;
   if (residual.spread_m > no_agreement * residual.ambiguity_m) {
     return fmt::format(
-        "A and B agree within {:.0f} mm only, no better than images of different places: are "
-        "their folders or files mixed up, does device.layout fit the device, or is there "
-        "nothing but noise?",
+        "A and B agree only within {:.0f} mm, no better than images of different places; are "
+        "their folders or files mixed up, is device.layout wrong for the device, or do the images "
+        "show nothing but noise?",
         1000 * residual.spread_m);
   }
   return std::nullopt;
@@ -233,19 +239,19 @@ std::optional<std::string> pairing_warning(const ResidualSurvey& residual) {
 
 std::optional<std::string> offset_warning(const ResidualSurvey& residual,
                                           const CameraErrors* camera) {
-  constexpr double least_m = 0.02;  // motion between both images makes some millimetres
-  constexpr double same_m = 0.03;   // both estimates have the errors of what they look at
+  constexpr double least_m = 0.02;  // motion between the exposures causes some millimetres
+  constexpr double same_m = 0.03;   // the two estimates use different pixels and frames
   const bool is_known = camera != nullptr && camera->frames > 0;
   const double estimate_m = is_known ? camera->offset_m() : residual.offset_m;
   const bool agree = std::abs(estimate_m - residual.offset_m) < same_m;
   if (std::max(std::abs(estimate_m), std::abs(residual.offset_m)) < least_m) return std::nullopt;
   const std::string remedy =
-      "; 'tofmap calibrate' against known ranges finds the phase offsets of both";
+      "; 'tofmap calibrate' with known ranges finds the phase offset of each frequency";
   if (!agree) {
-    return "the offset between the frequencies is not sure: A measures " +
+    return "the offset between the frequencies is uncertain: A measures " +
            more_or_less(estimate_m) + " than B, or " + offset_text(residual) + remedy;
   }
-  // The next offsets that fit are about `ambiguity_m` away: three times as large as this one.
+  // The next offsets that fit are about `ambiguity_m` away, and so at least three times as large.
   const bool is_smallest_by_far = std::abs(estimate_m) < residual.ambiguity_m / 4;
   if (is_known && is_smallest_by_far) return std::nullopt;
   return "A measures " + offset_text(residual) + remedy;
@@ -256,8 +262,8 @@ std::optional<std::string> frequency_pair_warning(const Modulation& modulation) 
   const double combined_m = combined_range_m(modulation);
   if (combined_m >= least_wavelengths * modulation.wavelength_a_m()) return std::nullopt;
   return fmt::format(
-      "this pair of frequencies tells no wrap counts apart: it is unambiguous up to {:.2f} m, one "
-      "frequency alone up to {:.2f} m; are frequency_a_hz and frequency_b_hz right?",
+      "this pair of frequencies cannot tell wrap counts apart: it is unambiguous up to {:.2f} m, "
+      "and frequency A alone up to {:.2f} m; are frequency_a_hz and frequency_b_hz right?",
       combined_m, modulation.wavelength_a_m());
 }
 

@@ -34,7 +34,7 @@ std::int64_t voxel_key(const Eigen::Vector3d& point) {
   return key;
 }
 
-/// Normal of the plane through a point's neighbours within 12 cm, at most 24 of them.
+/// The normal of the plane through the neighbours of a point within 12 cm, at most 24 of them.
 Eigen::Vector3f plane_normal(const Cloud& cloud, const Tree& tree, int index) {
   constexpr double radius_m = 0.12;
   constexpr unsigned max_neighbours = 24;
@@ -66,7 +66,8 @@ struct Nearest {
 
 constexpr double anywhere_m = std::numeric_limits<double>::infinity();
 
-/// Beyond `most_m` there is none, and its gap is that.
+/// The point of the tree that is nearest to `point`. If none is within `most_m`, the index is −1
+/// and the distance `most_m`.
 Nearest nearest(const Tree& tree, const pcl::PointXYZ& point, double most_m) {
   std::vector<int> index(1);
   std::vector<float> square(1);
@@ -75,7 +76,7 @@ Nearest nearest(const Tree& tree, const pcl::PointXYZ& point, double most_m) {
   return found > 0 ? Nearest{index[0], std::sqrt(square[0])} : Nearest{-1, most_m};
 }
 
-/// A map and the reference, both relative to the reference's origin.
+/// A map and the reference surface, both relative to the origin of the reference.
 struct Clouds {
   Clouds(const MapCloud& map, const Pose& truth_from_map, const ReferenceSurface& reference) {
     if (reference.points().empty()) throw UsageError("map score: the reference surface is empty");
@@ -143,7 +144,8 @@ Eigen::Vector3d origin_near(const Trajectory& poses) {
 
 std::vector<float> map_errors_m(const MapCloud& map, const Pose& truth_from_map,
                                 const ReferenceSurface& reference, double most_m) {
-  if (!(most_m > 0)) throw UsageError("map errors: the greatest is " + std::to_string(most_m));
+  if (!(most_m > 0))
+    throw UsageError("map errors: most_m must be above 0, and is " + std::to_string(most_m));
   const Clouds clouds(map, truth_from_map, reference);
   return errors_m(clouds, most_m);
 }

@@ -19,13 +19,13 @@ UnwrappingRecord record_of_frame(const PreparedFrame& frame, const SequenceReade
                    recorded.range_m(frame.index), recording.sensor().modulation.wavelength_a_m());
 }
 
-/// A frame that was only unwrapped; it is empty if the recorded one is damaged.
+/// A frame that is unwrapped but not mapped. Empty if the recorded frame is damaged.
 struct UnwrappedOnly {
   std::optional<PreparedFrame> prepared;
   std::optional<UnwrappingRecord> record;
 };
 
-/// The options without any filter.
+/// The options with an empty filter chain.
 PipelineOptions without_filters(PipelineOptions options) {
   options.filters.chain = "";
   return options;

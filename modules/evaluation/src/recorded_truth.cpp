@@ -11,7 +11,7 @@
 namespace tofmap {
 namespace {
 
-/// "2 true poses are damaged and left out of all comparisons, the first: …".
+/// A message such as "2 true poses are damaged and left out of all comparisons, the first: …".
 std::string remark_on(std::size_t count, std::string_view what, const std::string& first) {
   return counted(count, what) + (count == 1 ? " is" : " are") +
          " damaged and left out of all comparisons" + (count == 1 ? ": " : ", the first: ") + first;

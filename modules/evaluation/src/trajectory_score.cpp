@@ -59,7 +59,7 @@ std::vector<PoseError> errors_of(const Matched& matched, const Pose& truth_from_
   return errors;
 }
 
-/// Length of the true path from the first pose to each.
+/// The length of the path from the first pose to each pose.
 std::vector<double> path_lengths(const std::vector<Pose>& poses) {
   std::vector<double> lengths{0};
   for (std::size_t i = 1; i < poses.size(); ++i) {

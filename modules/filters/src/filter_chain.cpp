@@ -27,7 +27,7 @@ namespace {
 
 constexpr double rad_per_deg = std::numbers::pi / 180;
 
-/// What filters know of a frame besides its ranges.
+/// What filters use besides the ranges.
 struct FilterInput {
   const DualFrequencyFrame& frame;
   const Modulation& modulation;
@@ -37,7 +37,7 @@ struct FilterInput {
 
 struct NamedFilter {
   std::string_view name;
-  InvalidReason reason;  ///< of what it drops; none if it drops nothing
+  InvalidReason reason;  ///< of the pixels that it drops; none if it drops nothing
   RangeImage (*apply)(const RangeImage&, const FilterInput&);
 };
 
@@ -93,10 +93,10 @@ const NamedFilter& find_filter(const std::string& name) {
   const auto* found = std::ranges::find(all_filters, name, &NamedFilter::name);
   if (found != all_filters.end()) return *found;
   throw UsageError("option filters.chain: '" + name +
-                   "' is no filter; allowed: " + filter_names(", "));
+                   "' is not a filter; allowed: " + filter_names(", "));
 }
 
-/// Pixels that are valid in both with different wrap counts.
+/// The number of pixels that are valid after filtering and have another wrap count than before.
 int count_corrected(const RangeImage& before, const RangeImage& after) {
   return static_cast<int>((after.reason == 0 && before.wrap_count != after.wrap_count).count());
 }
@@ -106,41 +106,40 @@ int count_corrected(const RangeImage& before, const RangeImage& after) {
 std::vector<OptionField<FilterOptions>> FilterOptions::fields() {
   using O = FilterOptions;
   static const std::string chain_meaning =
-      "names of the filters, in their order: " + filter_names(", ");
+      "names of the filters in the order in which they run, from: " + filter_names(", ");
   return {
       {"chain", &O::chain, 0, 0, "", chain_meaning},
       {"min_amplitude", &O::min_amplitude, 0, 1e9, "",
-       "amplitude: pixels with a weaker signal are dropped; in the camera's units"},
+       "amplitude: drops pixels with a weaker signal; in the units of the camera"},
       {"min_confidence", &O::min_confidence, 0, 1, "",
-       "confidence: pixels less sure than this are dropped"},
+       "confidence: drops pixels with a lower confidence"},
       {"min_phasor_noise_cycles", &O::min_phasor_noise_cycles, 0, 1, "",
-       "phasor_mean: pixels with less noise, as a share of A's wavelength, are left alone"},
+       "phasor_mean: averages only pixels with more range noise, as a fraction of A's wavelength"},
       {"max_phasor_radius_px", &O::max_phasor_radius_px, 0, 64, "px",
-       "phasor_mean: windows grow no farther; 0 turns it off"},
+       "phasor_mean: largest radius of the averaging windows; below 2, nothing is averaged"},
       {"max_isolated_share", &O::max_isolated_share, 0, 1, "",
-       "isolated_wrap: regions of a larger share of the image are left alone"},
+       "isolated_wrap: leaves regions alone that are a larger fraction of the image"},
       {"max_edge_angle_deg", &O::max_edge_angle_deg, 90, 180, "deg",
-       "jump_edge: a pixel with a neighbour this straight behind it is a flying one"},
+       "jump_edge: drops a pixel if the angle at its point, between the lines to the camera and to "
+       "a neighbour, is larger"},
       {"min_edge_gap_sigmas", &O::min_edge_gap_sigmas, 0, 100, "",
-       "jump_edge: neighbours closer than this many standard deviations of the noise are no edge"},
+       "jump_edge: ignores neighbours that are closer than this many standard deviations"},
       {"max_step_incidence_deg", &O::max_step_incidence_deg, 0, 89.9, "deg",
-       "step_edge: surfaces seen at more than this look like steps"},
+       "step_edge: angle of incidence of the steepest surface that is not taken for a step"},
       {"min_step_sigmas", &O::min_step_sigmas, 0, 100, "",
-       "step_edge: steps below this many standard deviations of the noise are none"},
+       "step_edge: standard deviations that are added to the smallest height of a step"},
       {"max_plane_sigmas", &O::max_plane_sigmas, 0, 100, "",
-       "plane_edge: pixels off the planes around them by more standard deviations are dropped"},
+       "plane_edge: drops pixels that lie more standard deviations off the planes around them"},
       {"max_edge_sigmas", &O::max_edge_sigmas, 0, 100, "",
-       "plane_edge: the same at a step between two surfaces"},
+       "plane_edge: the same limit as max_plane_sigmas for pixels at a step between two surfaces"},
       {"plane_tolerance_m", &O::plane_tolerance_m, 0, 10, "m",
-       "plane_edge: but not if they are no farther off than this"},
+       "plane_edge: deviation from a plane that is always accepted"},
       {"max_smooth_sigmas", &O::max_smooth_sigmas, 0, 100, "",
-       "smooth: pixels that differ by more standard deviations are not averaged"},
+       "smooth: averages only pixels that differ by fewer standard deviations"},
       {"smooth_tolerance_m", &O::smooth_tolerance_m, 0, 10, "m",
-       "smooth: unless they differ by less than this"},
+       "smooth: difference in depth that is always accepted"},
       {"max_outlier_deviations", &O::max_outlier_deviations, 0, 1000, "",
-       "outlier: points that much farther from those around them than most are dropped, in "
-       "standard "
-       "deviations"},
+       "outlier: drops points whose spacing exceeds the median by more standard deviations"},
   };
 }
 

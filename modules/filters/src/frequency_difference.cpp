@@ -17,7 +17,7 @@
 namespace tofmap {
 namespace {
 
-/// Rows of a frame, its wrap counts and its rays.
+/// One row of a frame, of its wrap counts and of its rays.
 struct FrameRow {
   const float* phase_a;
   const float* phase_b;
@@ -28,6 +28,8 @@ struct FrameRow {
   const std::uint8_t* wrap_count;
 };
 
+/// Calculates the differences of a row, and their variances for the noise scale 1. Terms times 0
+/// make them NaN where an input is NaN, without branches.
 TOFMAP_VECTOR_CLONES void fill_difference(int pixels, const FrameRow& from_, float wavelength_a_m,
                                           float wavelength_b_m, float* value, float* variance) {
   const FrameRow from = from_;
@@ -89,7 +91,7 @@ FrequencyDifference::FrequencyDifference(const RangeImage& image, const DualFreq
 }
 
 double FrequencyDifference::noise_scale() const {
-  // About 4000 differences tell the noise to 2 %.
+  // About 4000 differences determine the noise to 2 %.
   constexpr int enough = 4000;
   const int step = std::max(1, rows_ * cols_ / enough);
   std::vector<float> normalised;

@@ -14,23 +14,26 @@
 
 namespace tofmap {
 
-/// The depth that A measured minus the nearest that B's phase allows, of every pixel, metres. NaN
-/// where the pixel is invalid, and in a margin around the image, as in InverseDepth.
+/// For each pixel, the depth that A measured minus the nearest depth that the phase of B allows,
+/// metres. NaN where the pixel is invalid, and in a margin around the image, as in InverseDepth.
 ///
-/// Its noise follows the amplitudes, σ² = s² ((λ_A / a_A)² + (λ_B / a_B)²), at a scale s that the
-/// differences between neighbours tell: half of them lie within their median. So nothing that both
-/// of two neighbours are off by, such as an offset between the frequencies, is taken for noise.
+/// The noise follows the amplitudes, σ² = s² ((λ_A / a_A)² + (λ_B / a_B)²). The scale s is
+/// estimated from the median of the differences between neighbours, so that an error that both
+/// neighbours have, such as an offset between the frequencies, is not taken for noise.
 class FrequencyDifference {
  public:
   /// Throws UsageError if image, frame and rays differ in size.
   FrequencyDifference(const RangeImage& image, const DualFrequencyFrame& frame,
                       const Modulation& modulation, const PixelRays& rays);
 
-  /// The first pixel of a row.
+  /// The difference at the first pixel of a row, metres. The rest of the row follows it.
   const float* value(int row) const { return values_.data() + place(row); }
+
+  /// The variance of the difference at the first pixel of a row, m².
   const float* variance(int row) const { return variances_.data() + place(row); }
 
  private:
+  /// The scale s; 0 if no two neighbours have a difference.
   double noise_scale() const;
 
   std::size_t place(int row) const {

@@ -17,13 +17,13 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// Ranges are never surer than that: 0.1 mm a metre.
+/// Lower limit of the standard deviation of a range, relative to the range: 0.1 mm per metre.
 constexpr float least_relative_sigma = 1e-4F;
 
-/// Confidences below weigh as much as that.
+/// Lower limit of the confidence in weights.
 constexpr float least_trust = 0.01F;
 
-/// Rows of pixels of a RangeImage and their rays.
+/// One row of a RangeImage and of its rays.
 struct RangeRow {
   const float* range_m;
   const float* sigma_m;
@@ -41,15 +41,15 @@ TOFMAP_VECTOR_CLONES void fill_inverse(int pixels, const RangeRow& from_, float*
     const float sigma = relative > least_relative_sigma ? relative : least_relative_sigma;
     const float confidence = from.confidence[i];
     const float depth_variance = sigma * sigma * depth_m * depth_m;
-    // The mean of 1 / (z + noise) is larger than 1 / z by its (sigma / z)², as long as that is
-    // small.
+    // The mean of 1 / (z + noise) exceeds 1 / z by the factor 1 + (sigma / z)², as long as that is
+    // close to 1.
     value[i] = 1 / (depth_m * (1 + sigma * sigma));
     variance[i] = depth_variance;
     weight[i] = (confidence > least_trust ? confidence : least_trust) / depth_variance;
   }
 }
 
-/// Sums over pairs, for each pixel of a row.
+/// Sums over the pixel itself and its pairs, for each pixel of a row.
 struct Sums {
   std::vector<float> value;  ///< weighted
   std::vector<float> weight;
@@ -59,7 +59,7 @@ struct Sums {
       : value(static_cast<std::size_t>(cols)), weight(value.size()), variance(value.size()) {}
 };
 
-/// Rows of an InverseDepth from one pixel on.
+/// One row of an InverseDepth, from some pixel on.
 struct DepthRow {
   const float* value;
   const float* variance;
@@ -77,7 +77,7 @@ TOFMAP_VECTOR_CLONES void begin_sums(int pixels, const DepthRow& own_, float* va
   }
 }
 
-/// Two opposite pixels of each pixel of a row.
+/// The two opposite neighbours of each pixel of a row.
 struct PairRow {
   DepthRow one;
   DepthRow other;
@@ -89,8 +89,8 @@ struct SquaredLimits {
   float tolerance;
 };
 
-/// Of one pair: its mean and the half of its difference, with their variance, and its weight in
-/// means.
+/// The mean and half the difference of one pair, the variance of either, and the weight of the pair
+/// in averages.
 struct Pair {
   float mean;
   float half_difference;
@@ -105,9 +105,10 @@ struct Pair {
                (row.one.weight[i] + row.other.weight[i])) {}
 };
 
-/// How far an inverse depth may still be off, as a share of what is tolerated; negative if it is
-/// too far. Noise of depths is that of inverse depths by the fourth power of these: of the farther
-/// one of two, so that what is very near tolerates nothing far away.
+/// 1 minus the squared deviation `off` of an inverse depth over the tolerated squared deviation;
+/// negative if `off` exceeds the limits. The variance of an inverse depth q is q⁴ times the
+/// variance of the depth. The smaller q of the two pixels is used: the q of a very near pixel would
+/// tolerate pixels that are far away.
 [[gnu::always_inline]] inline float room_for(float off, float depth_variance, float value,
                                              float other_value, const SquaredLimits& limits) {
   const float square = value * value;
@@ -116,10 +117,11 @@ struct Pair {
   return 1 - off * off / ((limits.sigmas * depth_variance + limits.tolerance) * least * least);
 }
 
-/// Adds the means of two pairs along an axis, one and two pixels away, as far as they agree with
-/// the pixel. On a plane the farther pair differs by twice as much as the nearer one; across an
-/// edge by as much, which is seen even where the pixel's own noise hides that their mean is neither
-/// surface.
+/// Adds the means of the two pairs along an axis, one and two pixels away, as far as they agree
+/// with the pixel. On a plane the two pixels of the farther pair differ by twice as much as those
+/// of the nearer pair. Across an edge both pairs differ by the same amount (`bend` is not zero).
+/// This shows the edge even if the pixel's own noise hides that the means of the pairs lie between
+/// the two surfaces.
 TOFMAP_VECTOR_CLONES void add_axis(int pixels, const DepthRow& own_, const PairRow& near_,
                                    const PairRow& far_, const SquaredLimits& limits_, float* value,
                                    float* weight, float* variance) {

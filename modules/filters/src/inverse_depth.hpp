@@ -10,25 +10,25 @@
 
 namespace tofmap {
 
-/// 1 / z of every pixel, 1 / m: a plane is linear in it over the pixels, however slanted (but for
-/// lens distortion). NaN where the pixel is invalid, and in a margin around the image, so that
-/// neighbours need no care.
+/// 1 / z of every pixel, 1 / m. Except for lens distortion, the inverse depth of a plane is linear
+/// in the pixel coordinates, however slanted the plane is. Values are NaN where the pixel is
+/// invalid, and in a margin around the image, so that neighbours need no check of the border.
 class InverseDepth {
  public:
-  /// Pixels that may be asked for beyond each border.
+  /// Number of pixels that may be read beyond each border.
   static constexpr int margin = 2;
 
-  /// An image without values.
+  /// An image in which all values are NaN.
   InverseDepth(Eigen::Index rows, Eigen::Index cols);
 
-  /// Throws UsageError if image and rays differ in size.
+  /// The inverse depths of a range image. Throws UsageError if image and rays differ in size.
   InverseDepth(const RangeImage& image, const PixelRays& rays);
 
   int rows() const { return rows_; }
   int cols() const { return cols_; }
-  int stride() const { return cols_ + 2 * margin; }  ///< from a pixel to the one below it
+  int stride() const { return cols_ + 2 * margin; }  ///< from a pixel to the pixel below it
 
-  /// The first pixel of a row.
+  // The first pixel of a row. The rest of the row follows it.
   const float* value(int row) const { return values_.data() + place(row); }
   const float* variance(int row) const { return variances_.data() + place(row); }
   const float* weight(int row) const { return weights_.data() + place(row); }
@@ -45,20 +45,20 @@ class InverseDepth {
   int cols_;
   std::vector<float> values_;
   std::vector<float> variances_;  ///< of the depth z, m²
-  std::vector<float> weights_;    ///< in means: confidence over that variance
+  std::vector<float> weights_;    ///< in averages: confidence / variance of the depth
 };
 
 /// How pixels are averaged.
 struct PairAverage {
-  double max_sigmas;  ///< pairs farther off the pixel than that, in the noise of both, are left out
-  double tolerance_m;  ///< but not if they are no farther off than that in depth
+  double max_sigmas;   ///< largest deviation of a pair from the pixel, standard deviations of both
+  double tolerance_m;  ///< always accepted, in depth; added to max_sigmas in quadrature
 };
 
-/// Averages each pixel with pairs of opposite pixels, one and two pixels away along rows, columns
-/// and diagonals, whose means agree with it: on a plane the mean of each pair is the pixel's own
-/// value, whatever the slant. Pairs weigh the less the farther off they are (Tukey's biweight), and
-/// both of an axis are left out where they do not lie on one line, as across an edge. Pixels that
-/// have no value get none. Averages have no weights.
+/// Averages each pixel with the pairs of opposite pixels, one and two pixels away along rows,
+/// columns and diagonals, whose means agree with it. On a plane the mean of each pair is the
+/// pixel's own value, whatever the slant. The weight of a pair falls with its deviation (Tukey's
+/// biweight). Both pairs of an axis are left out if they do not lie on one line, as across an edge.
+/// Pixels that are NaN stay NaN. The weights of the result are NaN.
 InverseDepth averaged_over_pairs(const InverseDepth& depth, const PairAverage& options);
 
 }  // namespace tofmap

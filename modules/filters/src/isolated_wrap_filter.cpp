@@ -23,7 +23,7 @@ struct Pixel {
   int col;
 };
 
-/// Two neighbours, the first in a region and the second outside.
+/// Two neighbours, one in a region and one outside it.
 struct BorderPair {
   Pixel inside;
   Pixel outside;
@@ -34,7 +34,7 @@ struct Region {
   std::vector<BorderPair> border;
 };
 
-/// Parts of an image that hang together without a step of half a wavelength.
+/// Finds regions: 4-connected valid pixels without a step of half a wavelength between neighbours.
 class RegionFinder {
  public:
   RegionFinder(const RangeImage& image, double wavelength_m)
@@ -44,7 +44,8 @@ class RegionFinder {
 
   bool is_seen(int row, int col) const { return is_seen_(row, col); }
 
-  /// The region of a pixel, all of whose pixels are seen then.
+  /// The region that contains a valid pixel. All of its pixels are marked as seen. The reference is
+  /// valid until the next call.
   const Region& find(int row, int col) {
     region_.pixels.clear();
     region_.border.clear();
@@ -85,15 +86,16 @@ class RegionFinder {
   Region region_;
 };
 
-/// What the surroundings say of a region.
+/// What the surroundings of a region vote for.
 struct Vote {
-  int wraps = 0;  ///< that the region lacks
-  float confidence = 0;
+  int wraps = 0;         ///< wraps to be added to the region
+  float confidence = 0;  ///< mean confidence of the pixels outside that voted
 };
 
-/// How many wavelengths a region lacks to fit what is around it, if most of its border agrees.
+/// How many wavelengths must be added to a region so that it fits its surroundings. Empty unless
+/// more than half of its border agrees.
 std::optional<Vote> vote(const Region& region, const RangeImage& image, double wavelength_m) {
-  constexpr double tolerated_wavelengths = 1.0 / 16;  // slant, from a pixel to the next
+  constexpr double tolerated_wavelengths = 1.0 / 16;  // for the slant between two pixels
   constexpr double tolerated_sigmas = 3;
   struct Ballot {
     int pairs = 0;
@@ -119,12 +121,12 @@ std::optional<Vote> vote(const Region& region, const RangeImage& image, double w
   return std::nullopt;
 }
 
-/// Differences of costs below that say nothing: three standard deviations of one pixel, in nats.
-/// What the residual of a pixel costs is bounded by the same, so that none outvotes a region.
+/// Smallest difference of costs, in nats, that decides: that of three standard deviations at one
+/// pixel. It also limits the cost of a single pixel, so that no pixel outvotes a region.
 constexpr double sure_nats = 4.5;
 
-/// How badly the residual fits a region whose counts are all changed alike: the sum of half the
-/// squared residuals over their variances.
+/// How badly the residuals fit a region if `change` is added to all of its wrap counts: the sum
+/// over its pixels of half the squared residual over its variance (docs/filters.md, equation 1).
 double residual_cost(const Region& region, int change, const RangeImage& image,
                      const DualFrequencyFrame& frame, const Modulation& modulation) {
   const double b_per_a = modulation.frequency_b_hz / modulation.frequency_a_hz;
@@ -134,7 +136,8 @@ double residual_cost(const Region& region, int change, const RangeImage& image,
         frame.phase_a(at.row, at.col) + image.wrap_count(at.row, at.col) + change;
     const double residual = frequency_residual_cycles(
         static_cast<float>(a_cycles), frame.phase_b(at.row, at.col), static_cast<float>(b_per_a));
-    // The range is the mean of A's and B's, their difference twice as uncertain.
+    // range_m is the mean of the ranges of A and B. The standard deviation of their difference is
+    // twice that of their mean.
     const double wavelength_m = modulation.wavelength_a_m();
     const double variance = 4 * image.variance_m2(at.row, at.col) / (wavelength_m * wavelength_m);
     sum += std::min(sure_nats, residual * residual / (2 * variance));
@@ -142,6 +145,7 @@ double residual_cost(const Region& region, int change, const RangeImage& image,
   return sum;
 }
 
+/// Whether all wrap counts stay valid if `change` is added to them.
 bool allows(const Region& region, int change, const RangeImage& image) {
   return std::ranges::all_of(region.pixels, [&](const Pixel at) {
     const int count = image.wrap_count(at.row, at.col) + change;
@@ -149,6 +153,7 @@ bool allows(const Region& region, int change, const RangeImage& image) {
   });
 }
 
+/// Gives a region the wrap counts of its surroundings, and the ranges of A.
 void correct(const Region& region, const Vote& vote, const DualFrequencyFrame& frame,
              double wavelength_m, RangeImage& image) {
   for (const Pixel at : region.pixels) {
@@ -161,7 +166,7 @@ void correct(const Region& region, const Vote& vote, const DualFrequencyFrame& f
   }
 }
 
-/// Corrects or drops a region that is an isolated wrap.
+/// Corrects or drops a region if it is an isolated wrap.
 void mend(const Region& region, const DualFrequencyFrame& frame, const Modulation& modulation,
           const RangeImage& image, RangeImage& out) {
   const double wavelength_m = modulation.wavelength_a_m();

@@ -20,7 +20,7 @@ struct EdgeLimits {
   float min_gap_sigmas2;  ///< squared
 };
 
-/// True if some neighbour lies behind the pixel, as the limits have it.
+/// Whether some neighbour lies behind the pixel according to the limits.
 bool has_neighbour_behind(const RangeImage& image, const PixelRays& rays, Eigen::Index row,
                           Eigen::Index col, const EdgeLimits& limits) {
   const Eigen::Vector3f ray = ray_at(rays, row, col);

@@ -22,12 +22,12 @@ constexpr int window_radius_px = 2;
 constexpr std::size_t most_nearest = 6;  // of the 24 around a pixel inside the image
 constexpr int least_neighbours = 4;
 
-/// Slant alone spreads the spacing by that much; less spread than that is none.
+/// Lower limit of the standard deviation of the spacing: slant alone makes the spacing vary by it.
 constexpr float least_deviation = 0.1F;
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// Pixels of a row, from one on.
+/// Pixels of a row, from column `col` on.
 struct RowPixels {
   const float* range_m;
   const float* sigma_m;
@@ -43,8 +43,9 @@ struct RowPixels {
         ray_z(&rays.z(row, col)) {}
 };
 
-/// The distances between the points of two rows over those of points on a sphere around the camera,
-/// with noise; squared, and infinite where a pixel is invalid. Counts those that are not.
+/// The squared spacing between the points of two rows: their squared distance over the squared
+/// distance of two points on a sphere around the camera plus noise (docs/filters.md, equation 8).
+/// Infinite where a pixel is invalid. Adds 1 to `neighbours` where both pixels are valid.
 TOFMAP_VECTOR_CLONES void find_spacing(int pixels, const RowPixels& own_, const RowPixels& other_,
                                        float* squared, int* neighbours) {
   const RowPixels own = own_;
@@ -66,7 +67,8 @@ TOFMAP_VECTOR_CLONES void find_spacing(int pixels, const RowPixels& own_, const 
   }
 }
 
-/// Puts values into their places among the smallest so far, and what they displace into `values`.
+/// One step of an insertion sort: puts the smaller of `smallest` and `values` into `smallest`, and
+/// the larger into `values`.
 TOFMAP_VECTOR_CLONES void sort_in(int pixels, float* smallest, float* values) {
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
@@ -77,7 +79,7 @@ TOFMAP_VECTOR_CLONES void sort_in(int pixels, float* smallest, float* values) {
   }
 }
 
-/// Spacing of the pixels of a row to the nearest quarter of the pixels around them.
+/// Mean spacing of each pixel of a row to the nearest quarter of the valid pixels around it.
 class RowSpacing {
  public:
   explicit RowSpacing(Eigen::Index cols)
@@ -96,7 +98,7 @@ class RowSpacing {
     }
   }
 
-  /// The mean; infinite where there are too few.
+  /// The mean spacing of a pixel. Infinite if too few pixels around it are valid.
   float mean(Eigen::Index col) const {
     const auto i = static_cast<std::size_t>(col);
     if (neighbours_[i] < least_neighbours) return infinity;

@@ -7,7 +7,8 @@
 
 namespace tofmap {
 
-/// An image with a margin, so that neighbours beyond the border need no care.
+/// An image with a margin on all sides, so that neighbours need no check of the border. All pixels
+/// and the margin start with `value`.
 class PaddedImage {
  public:
   PaddedImage(int rows, int cols, int margin, float value = 0)
@@ -16,7 +17,7 @@ class PaddedImage {
         values_(static_cast<std::size_t>(rows + 2 * margin) * static_cast<std::size_t>(stride_),
                 value) {}
 
-  /// The first pixel of a row.
+  // The first pixel of a row, −margin … rows + margin − 1. The rest of the row follows it.
   const float* row(int v) const { return values_.data() + place(v); }
   float* row(int v) { return values_.data() + place(v); }
 

@@ -18,25 +18,26 @@ namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
 
-/// Windows need not know a phase better than that: 4 cm of range at 40 MHz.
+/// Standard deviation of a phase that the largest windows are to reach. At 40 MHz it is 6 cm of
+/// range from one frequency, and 4 cm from both.
 constexpr double enough_sigma_rad = 0.1;
 
-/// Windows that choose the pixels that agree leave more noise than fixed ones: so many times its
-/// standard deviation. Chosen on random rooms of the seeds 11 to 18.
+/// Factor by which the standard deviation of a mean over a window that selects agreeing pixels
+/// exceeds that over a fixed window. Chosen on random rooms of the seeds 11 to 18.
 constexpr double selection = 1.4;
 
-/// Probability that a window holds parts of several surfaces, and its count means nothing. Chosen
-/// on random rooms of the seeds 21 to 32.
+/// Probability that a window contains several surfaces, so that its wrap count means nothing.
+/// Chosen on random rooms of the seeds 21 to 32.
 constexpr double mixed_share = 0.005;
 
-/// The noise of valid pixels, as a share of λ_A; NaN elsewhere.
+/// The range noise of valid pixels as a fraction of λ_A; NaN for invalid pixels.
 ImageF noise_cycles(const RangeImage& image, const Modulation& modulation) {
   return image.sigma_m / static_cast<float>(modulation.wavelength_a_m());
 }
 
-/// The radius of windows that know the phase well enough where nothing stops them, for the median
-/// noisy pixel. A window of radius h, weighted with 1 − r² / h², has as much noise as ¾ π h²
-/// pixels.
+/// The radius at which a window without edges reaches `enough_sigma_rad`, for the median noise of
+/// the noisy pixels. A window of radius h with the weights 1 − r² / h² averages noise as much as
+/// ¾ π h² equal pixels do.
 double wanted_radius_px(const ImageF& noise, float least_noise) {
   std::vector<float> noisy;
   for (const float cycles : noise.reshaped()) {
@@ -47,19 +48,19 @@ double wanted_radius_px(const ImageF& noise, float least_noise) {
                    (enough_sigma_rad * enough_sigma_rad * 0.75 * std::numbers::pi * information));
 }
 
-/// 0 … 1
+/// The phase at a pixel, 0 … 1 cycles.
 double cycles_of(const PhasorImage& phasors, int v, int u) {
   const double cycles = std::atan2(phasors.im.row(v)[u], phasors.re.row(v)[u]) / two_pi;
   return cycles - std::floor(cycles);
 }
 
-/// Phases of both frequencies at a pixel, in metres of range but for whole wavelengths.
+/// The wrapped ranges of both frequencies at a pixel, from its plane.
 struct PhasePair {
   double wrapped_a_m;
   double wrapped_b_m;
   double variance_a_m2;
   double variance_b_m2;
-  double common_variance_m2;  ///< of both alike
+  double common_variance_m2;  ///< of the error that both have in common
 
   PhasePair(const PhasePlanes& planes, int v, int u, const Modulation& modulation) {
     constexpr double least_coherence = 0.05;
@@ -67,7 +68,7 @@ struct PhasePair {
     const double b_m = modulation.wavelength_b_m();
     wrapped_a_m = cycles_of(planes.a, v, u) * a_m;
     wrapped_b_m = cycles_of(planes.b, v, u) * b_m;
-    // Where phasors of the window cancel more than predicted, noise is as much larger.
+    // If the phasors of the window cancel more than predicted, noise is larger by that factor.
     const double coherence = std::max<double>(least_coherence, planes.coherence.row(v)[u]);
     const double scale = selection / (coherence * two_pi);
     const double cycles2 = scale * scale * planes.variance.row(v)[u];
@@ -81,13 +82,14 @@ struct PhasePair {
   }
 };
 
-/// A range by both frequencies.
+/// A range from both frequencies for one wrap count.
 struct CountedRange {
   double range_m = 0;
   double probability = 0;
 };
 
-/// The likeliest of `counts` counts of A; range_m is 0 if there is none.
+/// The most probable range among the wrap counts 0 … `counts` − 1 of A (docs/filters.md, equation
+/// 14). range_m is 0 if no count is possible.
 CountedRange likeliest_range(const PhasePair& pair, const Modulation& modulation, int counts,
                              double own_range_m, double own_confidence) {
   const double a_m = modulation.wavelength_a_m();
@@ -111,7 +113,7 @@ CountedRange likeliest_range(const PhasePair& pair, const Modulation& modulation
   return best;
 }
 
-/// Counts that valid pixels have, from 0.
+/// 1 + the largest wrap count of a valid pixel.
 int count_limit(const RangeImage& image) {
   return 1 + (image.reason == 0).select(image.wrap_count, std::uint8_t{0}).maxCoeff();
 }
@@ -121,8 +123,8 @@ int count_limit(const RangeImage& image) {
 RangeImage average_phasors(const RangeImage& image, const DualFrequencyFrame& frame,
                            const Modulation& modulation, const PixelRays& rays,
                            const PhasorMeanLimits& limits) {
-  // Single noisy pixels are dark ones, far off or grazed, among quiet ones: the filters for those
-  // do better with them.
+  // The few noisy pixels of a quiet frame are dark, far away, or seen at a grazing angle. Averaging
+  // them over windows makes their ranges worse.
   constexpr double least_share = 0.5;
   check_size(image, rays, "phasor_mean filter");
   const auto least_noise = static_cast<float>(limits.min_noise_cycles);

@@ -17,10 +17,10 @@ namespace {
 
 constexpr float two_pi = 2 * std::numbers::pi_v<float>;
 
-/// The mean phasor of a pixel with this noise, along the true phase, and its variance across.
+/// Moments of the unit phasor of a pixel with this phase noise (docs/filters.md, equation 10).
 struct PhasorMoments {
-  float mean;
-  float variance_across;
+  float mean;             ///< R, along the true phase
+  float variance_across;  ///< V, across the true phase
 
   explicit PhasorMoments(float sigma_cycles) {
     constexpr float least_sigma_rad = 0.01F;
@@ -39,7 +39,7 @@ struct Complex {
   return {one.re * other.re - one.im * other.im, one.re * other.im + one.im * other.re};
 }
 
-/// Turned back by the phase of `by`.
+/// `one` times the complex conjugate of `by`: rotates `one` back by the phase of `by`.
 [[gnu::always_inline]] inline Complex turned_back(Complex one, Complex by) {
   return {one.re * by.re + one.im * by.im, one.im * by.re - one.re * by.im};
 }
@@ -48,7 +48,7 @@ struct Complex {
   return one.re * other.re + one.im * other.im;
 }
 
-/// Phasors of a row, from one pixel on.
+/// Phasors of a row, from column `offset` on.
 struct PhasorRow {
   const float* re;
   const float* im;
@@ -59,7 +59,7 @@ struct PhasorRow {
   [[gnu::always_inline]] Complex operator[](int i) const { return {re[i], im[i]}; }
 };
 
-/// Phasors of pixels in a row that are calculated on the way.
+/// Buffer for the phasors of a row.
 class RowPhasors {
  public:
   explicit RowPhasors(int cols) : re_(static_cast<std::size_t>(cols)), im_(re_) {}
@@ -72,7 +72,8 @@ class RowPhasors {
   std::vector<float> im_;
 };
 
-/// What the slopes of a row's pixels add to both phases from them to an offset.
+/// Unit phasors of the phase that the plane of each pixel of a row adds between the pixel and an
+/// offset, for both frequencies.
 struct Rotors {
   RowPhasors a;
   RowPhasors b;
@@ -89,6 +90,7 @@ struct RotorRow {
   [[gnu::always_inline]] Complex operator[](int i) const { return {re[i], im[i]}; }
 };
 
+/// Multiplies each rotor by the corresponding one of `by`.
 TOFMAP_VECTOR_CLONES void turn(int pixels, const RotorRow& rotors_, const RotorRow& by_) {
   const RotorRow rotors = rotors_;
   const RotorRow by = by_;
@@ -105,7 +107,7 @@ void turn(int pixels, Rotors& rotors, Rotors& by) {
   turn(pixels, RotorRow(rotors.b), RotorRow(by.b));
 }
 
-/// The rotors of one offset.
+/// Sets `out` to the rotors of the offset (x, y). `ratio` is λ_A / λ_B.
 void set_rotors(int pixels, const float* slope_x, const float* slope_y, int x, int y, float ratio,
                 Rotors& out) {
   for (int i = 0; i < pixels; ++i) {
@@ -117,7 +119,7 @@ void set_rotors(int pixels, const float* slope_x, const float* slope_y, int x, i
   }
 }
 
-/// Weighted sums of phasors over windows, by themselves and times the offsets.
+/// Weighted sums of phasors z over windows: of z, x z and y z, where (x, y) is the offset.
 struct FrequencySums {
   float *re, *im, *x_re, *x_im, *y_re, *y_im;
 
@@ -135,10 +137,11 @@ struct FrequencySums {
 struct SumRow {
   FrequencySums a;
   FrequencySums b;
-  float *s, *sx, *sy, *sxx, *sxy, *syy;  ///< of information, times products of offsets
-  float* s2;                             ///< of information, with squared weights
+  float *s, *sx, *sy, *sxx, *sxy, *syy;  ///< weighted information, times products of the offset
+  float* s2;                             ///< information times squared weights
 };
 
+/// Memory of the sums of a row.
 class WindowSums {
  public:
   explicit WindowSums(int cols) {
@@ -166,7 +169,7 @@ class WindowSums {
   std::array<std::vector<float>, 19> values_;
 };
 
-/// Planes of a row, from one pixel on.
+/// Planes of a row, from column `offset` on.
 struct PhasePlaneRow {
   PhasorRow a;
   PhasorRow b;
@@ -180,7 +183,7 @@ struct PhasePlaneRow {
         slope_variance(planes.slope_variance.row(v) + offset) {}
 };
 
-/// Measurements of a row, from one pixel on.
+/// Measurements of a row, from column `offset` on.
 struct MeasuredRow {
   PhasorRow a;
   PhasorRow b;
@@ -192,16 +195,17 @@ struct MeasuredRow {
         information(phasors.information.row(v) + offset) {}
 };
 
-/// One place in the window.
+/// One offset in the window.
 struct Place {
   float x;
   float y;
   float weight;
-  float inverse_misfit;  ///< 1 / the largest misfit; 0: all agree
+  float inverse_misfit;  ///< 1 / the largest accepted misfit; 0 accepts all pixels
 };
 
-/// Adds the pixels at one place of the windows, as far as their planes agree. Pixels whose misfit
-/// is below a third of the largest weigh in full.
+/// Adds the pixels at one offset to the windows, weighted by how well their planes agree with the
+/// plane of the window's pixel (docs/filters.md, equation 13). The weight is full up to a third of
+/// the largest accepted misfit, and falls linearly to 0 at the largest.
 TOFMAP_VECTOR_CLONES void add_place(int pixels, const Place& place_, const RotorRow& rotor_a_,
                                     const RotorRow& rotor_b_, const PhasePlaneRow& own_,
                                     const PhasePlaneRow& other_, const MeasuredRow& measured_,
@@ -240,13 +244,12 @@ TOFMAP_VECTOR_CLONES void add_place(int pixels, const Place& place_, const Rotor
   }
 }
 
-/// The mean phasor of one frequency, and what the offset terms say of the slope: how fast phases
-/// turn away from the mean along x and y.
+/// The sum phasor of one frequency over a window, and the score of the slope.
 struct MeanPhasor {
   float length;
-  Complex direction;
-  float turn_x;
-  float turn_y;
+  Complex direction;  ///< unit
+  float turn_x;       ///< derivative of the log likelihood by the slope along x
+  float turn_y;       ///< derivative of the log likelihood by the slope along y
 
   MeanPhasor(const FrequencySums& sums, int i)
       : length(std::hypot(sums.re[i], sums.im[i])),
@@ -254,14 +257,16 @@ struct MeanPhasor {
         turn_x(turned_back({sums.x_re[i], sums.x_im[i]}, direction).im),
         turn_y(turned_back({sums.y_re[i], sums.y_im[i]}, direction).im) {}
 
-  /// The direction a bit farther on.
+  /// The direction, rotated by `angle`, radians.
   Complex turned(float angle) const {
     return product(direction, {std::cos(angle), std::sin(angle)});
   }
 };
 
-/// The plane of one pixel: a step of Fisher scoring from the plane before, whose slopes the sums
-/// are turned back by. The phases at both frequencies are free, the slope is common to both.
+/// Estimates the plane of one pixel by one step of Fisher scoring, starting at the plane of
+/// `before`, by whose slopes the sums were rotated back (docs/filters.md, equations 11 and 12). The
+/// phases of both frequencies are independent; the slope is common to both. Leaves the plane empty
+/// if no pixel of the window contributes.
 void solve(const SumRow& sums, int v, int i, const WindowGrowth& growth, const PhasePlanes& before,
            PhasePlanes& out) {
   const float s = sums.s[i];
@@ -284,7 +289,8 @@ void solve(const SumRow& sums, int v, int i, const WindowGrowth& growth, const P
   const float score_y = a.turn_y + ratio * b.turn_y - prior * slope_y;
   const float step_x = (yy * score_x - xy * score_y) / determinant;
   const float step_y = (xx * score_y - xy * score_x) / determinant;
-  // The mean phasor is that of the middle of the window; the plane's that of the pixel.
+  // The sum phasor gives the phase at the centroid of the window; the plane needs that at the
+  // pixel.
   const float back = -(mean_x * step_x + mean_y * step_y);
   const Complex at_a = a.turned(back);
   const Complex at_b = b.turned(ratio * back);
@@ -302,7 +308,8 @@ void solve(const SumRow& sums, int v, int i, const WindowGrowth& growth, const P
   out.coherence.row(v)[i] = (a.length + b.length) / (2 * s);
 }
 
-/// One step.
+/// Estimates the planes of all pixels from windows of one radius. Its buffers are used again in
+/// each step.
 class WindowStep {
  public:
   WindowStep(const Phasors& phasors, int rows, int cols, int margin, const WindowGrowth& growth)
@@ -317,6 +324,7 @@ class WindowStep {
         row_start_(cols),
         rotors_(cols) {}
 
+  /// The planes from windows of `radius_px`, given those of the previous step.
   PhasePlanes grow(const PhasePlanes& before, double radius_px, double inverse_misfit) {
     PhasePlanes out(rows_, cols_, margin_);
     for (int v = 0; v < rows_; ++v) {
@@ -328,6 +336,7 @@ class WindowStep {
   }
 
  private:
+  /// Adds up the windows of all pixels of row v.
   void add_window(const PhasePlanes& before, int v, float radius_px, float inverse_misfit) {
     const int reach = static_cast<int>(std::ceil(radius_px)) - 1;
     const int top = std::max(-reach, -v);
@@ -400,7 +409,7 @@ PhasePlanes::PhasePlanes(int rows, int cols, int margin)
       b(a),
       slope_x(a.re),
       slope_y(a.re),
-      variance(rows, cols, margin, 1e6F),  // nothing is known
+      variance(rows, cols, margin, 1e6F),  // phase unknown
       lever_variance(a.re),
       slope_variance(a.re),
       coherence(a.re) {}
@@ -408,12 +417,12 @@ PhasePlanes::PhasePlanes(int rows, int cols, int margin)
 PhasePlanes grow_phase_planes(const Phasors& phasors, int rows, int cols,
                               const WindowGrowth& growth) {
   const int margin = static_cast<int>(std::ceil(growth.last_radius_px));
-  // Steps of one ratio that end at the last radius.
+  // The radius grows by the same ratio in each step and ends at the last radius.
   const double whole = growth.last_radius_px / growth.first_radius_px;
   const int steps =
       std::max(1, static_cast<int>(std::ceil(std::log(whole) / std::log(growth.growth))));
   WindowStep step(phasors, rows, cols, margin, growth);
-  // The first windows know nothing to agree with.
+  // In the first step there are no planes to compare: all pixels of the window are accepted.
   PhasePlanes planes = step.grow(PhasePlanes(rows, cols, margin),
                                  std::min(growth.first_radius_px, growth.last_radius_px), 0);
   for (int i = 1; i <= steps; ++i) {

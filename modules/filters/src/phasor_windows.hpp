@@ -8,7 +8,7 @@
 
 namespace tofmap {
 
-/// Complex numbers of all pixels.
+/// A complex number for each pixel.
 struct PhasorImage {
   PaddedImage re;
   PaddedImage im;
@@ -16,39 +16,44 @@ struct PhasorImage {
   PhasorImage(int rows, int cols, int margin) : re(rows, cols, margin), im(re) {}
 };
 
-/// What pixels measure at both frequencies, weighted so that sums of phasors are the best estimates
-/// of a common phase. A pixel whose phase is normal with the standard deviation s, wrapped, has the
-/// mean phasor R = exp(−s²/2) along the true phase and the variance V = (1 − R⁴) / 2 across it; it
-/// weighs R / V and holds the information R² / V on the phase, which is 1 / s² where noise is
-/// small.
+/// The phasors that pixels measure at both frequencies, weighted so that sums of them are optimal
+/// estimates of a common phase (docs/filters.md, equation 10). If the phase noise of a pixel is
+/// normal with the standard deviation s, its phasor has the mean R = exp(−s²/2) along the true
+/// phase and the variance V = (1 − R⁴) / 2 across it. Its weight is R / V, and its Fisher
+/// information about the phase is R² / V, which is 1 / s² if noise is small.
 struct Phasors {
   PhasorImage a;
   PhasorImage b;
-  PaddedImage information;  ///< on the phase at either frequency, 1 / rad²; 0 without a return
+  PaddedImage information;  ///< about the phase of each frequency, 1 / rad²; 0 without a return
 
+  /// No pixel has a return.
   Phasors(int rows, int cols, int margin);
 
-  /// Phases and the standard deviation of either, cycles; NaN where there is no return. The margin
-  /// is at least that of the windows that are to be summed.
+  /// `phase_a` and `phase_b` are in cycles, and `sigma_cycles` is the standard deviation of each of
+  /// them. A pixel has no return if one of them is NaN. The margin must be at least the radius of
+  /// the windows, pixels.
   Phasors(const ImageF& phase_a, const ImageF& phase_b, const ImageF& sigma_cycles, int margin);
 };
 
-/// Information on a phase, 1 / rad², of a pixel with this noise.
+/// Fisher information about the phase of a pixel with this phase noise, 1 / rad².
 float phase_information(float sigma_cycles);
 
-/// Planes in phase, one a pixel: at the offset (x, y) from its pixel the phase is
-/// arg(a) + slope · (x, y) at A, and arg(b) + slope · (x, y) λ_A / λ_B at B. Variances are those of
-/// weighted sums of independent pixels.
+/// A plane in phase for each pixel: at the offset (x, y) from the pixel, the phase of A is
+/// arg(a) + slope · (x, y), and that of B is arg(b) + slope · (x, y) λ_A / λ_B. Variances are those
+/// of weighted sums of independent pixels.
 struct PhasePlanes {
-  PhasorImage a;  ///< of length 1; 0 without a return in the window
-  PhasorImage b;
-  PaddedImage slope_x;         ///< radians of A a pixel
-  PaddedImage slope_y;         ///< downwards
-  PaddedImage variance;        ///< of either phase by itself, rad²
-  PaddedImage lever_variance;  ///< what the slopes add to both phases at a window's edge, rad² of A
-  PaddedImage slope_variance;  ///< of a component
-  PaddedImage coherence;       ///< length of the sums over what the noise of the pixels predicts
+  PhasorImage a;         ///< unit phasor; 0 if no pixel of the window has a return
+  PhasorImage b;         ///< likewise
+  PaddedImage slope_x;   ///< to the right, radians of A per pixel
+  PaddedImage slope_y;   ///< downwards, radians of A per pixel
+  PaddedImage variance;  ///< of the phase of each frequency if the slope is exact, rad²
+  /// Variance that errors of the slope add to both phases, since the centroid of the window is not
+  /// at the pixel, rad² of A.
+  PaddedImage lever_variance;
+  PaddedImage slope_variance;  ///< mean of both components, (radians of A per pixel)²
+  PaddedImage coherence;       ///< length of the sum phasors over that predicted from the noise
 
+  /// No plane is known: phasors and slopes are 0, the variance is very large.
   PhasePlanes(int rows, int cols, int margin);
 };
 
@@ -57,19 +62,20 @@ struct WindowGrowth {
   double wavelength_ratio = 1;  ///< λ_A / λ_B
   double last_radius_px = 12;
   double first_radius_px = 4;
-  double growth = 1.4;       ///< of the radius from a step to the next, at most
-  double max_misfit = 10;    ///< between planes that are one surface: squared standard deviations
-  double slope_sigma = 0.1;  ///< of surfaces, a component: radians of A a pixel
+  double growth = 1.4;       ///< largest factor of the radius between two steps
+  double max_misfit = 10;    ///< between planes of one surface, squared standard deviations
+  double slope_sigma = 0.1;  ///< prior of each component of the slope, radians of A per pixel
 };
 
-/// Planes from windows that grow along surfaces and not across edges: the propagation–separation
-/// of J. Polzehl and V. Spokoiny (Propagation-separation approach for local likelihood estimation,
-/// 2006) for phases of two frequencies.
+/// Estimates planes from windows that grow along surfaces but not across edges: the
+/// propagation-separation approach of J. Polzehl and V. Spokoiny (Propagation-separation approach
+/// for local likelihood estimation, 2006), for the phases of two frequencies (docs/filters.md,
+/// equations 11 to 13).
 ///
-/// Step by step the radius grows. In each step a pixel sums the phasors of its window, turned back
-/// by the slope that it knows, and a pixel of the window takes part as far as its plane of the step
-/// before agrees with the own one, at both frequencies, within the uncertainty of both. Wraps do
-/// not matter to that.
+/// The radius grows step by step. In each step, every pixel sums the phasors of its window, after
+/// rotating them back by the slope of its plane. The weight of a pixel in the window depends on how
+/// well its plane of the previous step agrees with that of the window's own pixel, at both
+/// frequencies, given the uncertainty of both planes. Wrap counts are not used.
 PhasePlanes grow_phase_planes(const Phasors& phasors, int rows, int cols,
                               const WindowGrowth& growth);
 

@@ -13,9 +13,10 @@ namespace {
 
 constexpr auto directions = static_cast<std::size_t>(Neighbourhood::directions);
 
-/// Decides about the pixels of one image.
+/// Decides which pixels of one image are kept.
 class SurfaceKeeper {
  public:
+  /// The first pass: keeps valid pixels that lie on a surface or on a strip.
   SurfaceKeeper(const RangeImage& image, Depths depths, const AgreementLimits& limits)
       : depths_(std::move(depths)),
         agreement_(depths_, limits),
@@ -27,7 +28,7 @@ class SurfaceKeeper {
     });
   }
 
-  /// Gives up pixels at steps that agree only with pixels that are not kept.
+  /// The second pass: drops kept pixels at steps that agree only with pixels that are not kept.
   void drop_what_flying_pixels_keep() {
     const Image<bool> before = kept_;
     for_each(before, [&](int row, int col) {
@@ -37,7 +38,7 @@ class SurfaceKeeper {
     });
   }
 
-  /// Takes back valid pixels that are as deep as two neighbours that are kept.
+  /// The last pass: restores valid pixels that have the same depth as two kept neighbours.
   void take_back(const RangeImage& image) {
     const Image<bool> before = kept_;
     for_each(image.reason == 0, [&](int row, int col) {
@@ -48,7 +49,7 @@ class SurfaceKeeper {
   const Image<bool>& kept() const { return kept_; }
 
  private:
-  /// Decides about the pixels among those given by what is said of each.
+  /// Sets `kept_` to says(row, col) for all pixels for which `candidates` is true.
   template <class Candidates, class Says>
   void for_each(const Candidates& candidates, const Says& says) {
     for (int row = 0; row < depths_.own.rows(); ++row) {
@@ -58,7 +59,8 @@ class SurfaceKeeper {
     }
   }
 
-  /// Neighbours that are kept, a bit each; what is outside the image counts as kept.
+  /// One bit for each direction whose neighbour is kept. Neighbours outside the image count as
+  /// kept.
   unsigned kept_neighbours(const Image<bool>& kept, int row, int col) const {
     unsigned bits = Neighbourhood::all;
     for (std::size_t d = 0; d < directions; ++d) {
@@ -73,13 +75,13 @@ class SurfaceKeeper {
     return row >= 0 && col >= 0 && row < depths_.own.rows() && col < depths_.own.cols();
   }
 
-  /// Whether a pixel and one beside it are parts of two parallel lines that are equally deep: a
-  /// strip two pixels wide.
+  /// Whether a pixel and a neighbour lie on two parallel lines of the same depth: on a strip that
+  /// is two pixels wide.
   bool lies_on_a_strip(int row, int col, unsigned among) const {
     const unsigned lines = agreement_.lines(row, col) & among & among >> Neighbourhood::axes;
     if (lines == 0) return false;
     for (std::size_t d = 0; d < directions; ++d) {
-      const unsigned along = 1U << d % Neighbourhood::axes;  // both lie on this line anyhow
+      const unsigned along = 1U << d % Neighbourhood::axes;  // the line through both pixels
       const unsigned beside =
           agreement_.lines(row + Neighbourhood::rows[d], col + Neighbourhood::cols[d]);
       if ((lines & beside & ~along) == 0 || (among >> d & 1U) == 0) continue;
@@ -98,7 +100,8 @@ class SurfaceKeeper {
     return count >= 2;
   }
 
-  /// Whether a pixel and its neighbour are equally deep, as both frequencies and as A alone tell.
+  /// Whether a pixel and its neighbour have the same depth, both by the range from both frequencies
+  /// and by that from A alone.
   bool is_as_deep(int row, int col, std::size_t direction) const {
     const int to = col + Neighbourhood::offset(direction, depths_.own.stride());
     const float depth_m = 1 / depths_.own.value(row)[col] - 1 / depths_.smooth.value(row)[to];
@@ -123,8 +126,8 @@ class SurfaceKeeper {
 RangeImage drop_off_planes(const RangeImage& image, const DualFrequencyFrame& frame,
                            const Modulation& modulation, const PixelRays& rays,
                            const PlaneEdgeLimits& limits) {
-  // Stricter than for smoothing: what is left out only adds noise, what is taken in wrongly moves
-  // predictions.
+  // The limits are stricter than those for smoothing: a pixel that is left out without need only
+  // adds noise, but a pixel that is included wrongly displaces predictions.
   constexpr PairAverage average{.max_sigmas = 2.5, .tolerance_m = 0.005};
   const InverseDepth depth(image, rays);
   SurfaceKeeper keeper(image,

@@ -10,7 +10,7 @@
 
 namespace tofmap {
 
-/// Throws UsageError, in the name of `filter`, if the rays are those of another camera.
+/// Throws UsageError if image and rays differ in size. The message begins with `filter`.
 inline void check_size(const RangeImage& image, const PixelRays& rays, const std::string& filter) {
   if (same_size(image.range_m, rays.x)) return;
   throw UsageError(filter + ": range image and camera differ in size");

@@ -11,7 +11,7 @@
 namespace tofmap {
 namespace {
 
-/// Offset to a neighbour.
+/// Offset to a neighbour, pixels.
 struct Offset {
   Eigen::Index rows;
   Eigen::Index cols;
@@ -36,7 +36,8 @@ class StepFinder {
   }
 
  private:
-  /// 1 where the neighbour is a step behind the pixel, −1 where it is one before it, 0 else.
+  /// 1 if the neighbour (r, c) is behind the pixel by a step, −1 if it is in front of it by a step,
+  /// 0 if there is no step between them or no valid neighbour.
   int step(Eigen::Index row, Eigen::Index col, Eigen::Index r, Eigen::Index c) const {
     const bool is_inside = r >= 0 && r < image_.rows() && c >= 0 && c < image_.cols();
     if (!is_inside || !image_.valid(r, c)) return 0;
@@ -55,7 +56,7 @@ class StepFinder {
 
   const RangeImage& image_;
   const PixelRays& rays_;
-  float slope_;  ///< range over the arc between two pixels
+  float slope_;  ///< largest ratio of range difference and arc between two pixels of a surface
   float sigmas_;
 };
 

@@ -11,7 +11,7 @@ namespace {
 constexpr auto directions = static_cast<std::size_t>(Neighbourhood::directions);
 constexpr auto axes = static_cast<std::size_t>(Neighbourhood::axes);
 
-/// The pixels of a row themselves.
+/// The pixels of a row: inverse depths, which are not averaged, and frequency differences.
 struct OwnRow {
   const float* value;
   const float* variance;
@@ -19,7 +19,8 @@ struct OwnRow {
   const float* difference_variance;
 };
 
-/// The next pixel in one direction, and the one after it: inverse depths averaged, differences not.
+/// The next and the second next pixel in one direction, for each pixel of a row. Inverse depths are
+/// averaged over pairs, frequency differences are not.
 struct DirectionRow {
   const float* next;
   const float* next_variance;
@@ -31,8 +32,9 @@ struct DirectionRow {
   const float* second_difference_variance;
 };
 
-/// How far the pixels of a row are off what one direction predicts: depths towards the camera, and
-/// differences of the frequencies, with the variances of the predictions.
+/// Deviations of the pixels of a row from the predictions of one direction: of the depth (positive
+/// towards the camera) and of the frequency difference, metres, with the variances of the
+/// predictions.
 template <class Number>
 struct OffsetRow {
   Number* depth;
@@ -41,25 +43,26 @@ struct OffsetRow {
   Number* difference_variance;
 };
 
-/// AgreementLimits squared.
+/// Squares of AgreementLimits, and of limits that follow from them.
 struct SquaredLimits {
   float plane;
-  float same;  ///< of predictions by one surface at a step; and of pixels that cannot be a mixture
+  float same;  ///< for a single direction at a step, and for pixels that cannot be a mixture
   float edge;
   float step;
   float tolerance;
   float mixing;
 };
 
-/// Offsets of a pixel from a surface: as both frequencies tell it and as A alone does, squared,
-/// with their variances.
+/// Squared deviations of the depth of a pixel from a surface, from both frequencies and from A
+/// alone, with their variances.
 struct Offsets {
   float fused;
   float fused_variance;
   float a;
   float a_variance;
 
-  /// A's depth is the fused one and half the difference.
+  /// The depth from A is the fused depth plus half the frequency difference; `depth` counts towards
+  /// the camera.
   [[gnu::always_inline]] Offsets(float depth, float variance, float difference,
                                  float difference_variance)
       : fused(depth * depth),
@@ -76,7 +79,8 @@ struct Offsets {
 constexpr unsigned same_shift = Neighbourhood::directions;
 constexpr unsigned line_shift = 2 * Neighbourhood::directions;
 
-/// Sets a bit for each limit within which the two pixels of a direction predict the pixel.
+/// Compares each pixel with the prediction of one direction (docs/filters.md, equations 2 to 4),
+/// and sets a bit for each of the limits `plane`, `same` and `edge` within which they agree.
 TOFMAP_VECTOR_CLONES void predict(int pixels, const OwnRow& own_, const DirectionRow& from_,
                                   const SquaredLimits& limits_, unsigned bit,
                                   const OffsetRow<float>& out_, unsigned* agrees) {
@@ -106,8 +110,8 @@ TOFMAP_VECTOR_CLONES void predict(int pixels, const OwnRow& own_, const Directio
   }
 }
 
-/// Sets the bit where opposite sides of the pixel are two surfaces: neither do both predict the
-/// same for the pixel, nor does one of them predict the first pixel of the other.
+/// Sets the bit where the opposite sides of the pixel are two surfaces: the two sides predict
+/// different depths for the pixel, and neither side predicts the nearest pixel of the other side.
 TOFMAP_VECTOR_CLONES void find_steps(int pixels, const DirectionRow& one_,
                                      const DirectionRow& other_, const SquaredLimits& limits_,
                                      unsigned bit, unsigned* sectors) {
@@ -140,7 +144,8 @@ TOFMAP_VECTOR_CLONES void find_steps(int pixels, const DirectionRow& one_,
   }
 }
 
-/// The offsets from what three adjacent directions predict, and from the opposite side.
+/// Deviations from the predictions of three adjacent directions, and from that of the direction
+/// opposite to the middle one.
 struct SectorRow {
   OffsetRow<const float> left;
   OffsetRow<const float> middle;
@@ -148,13 +153,14 @@ struct SectorRow {
   OffsetRow<const float> opposite;
 };
 
-/// Sets the bit where the pixel agrees with the mean of what three directions predict. It need not
-/// agree as closely where it lies on the far side of that surface, seen from a surface opposite
-/// that is so near to it that both mix to ranges between them.
+/// Sets the bit where the pixel agrees with the mean of the predictions of three directions. The
+/// limit is wider for a pixel that cannot be a mixture of that surface and the opposite one,
+/// because it does not lie between them and they are closer than the mixing limit.
 TOFMAP_VECTOR_CLONES void judge_sector(int pixels, const OwnRow& own_, const SectorRow& sector_,
                                        const SquaredLimits& limits_, unsigned bit,
                                        unsigned* sectors) {
-  // Averages over pairs share pixels, so their mean is not as sure as that of three.
+  // The averages over pairs share pixels, so the variance of the mean of three predictions is
+  // larger than that of independent ones.
   constexpr float shared = 2;
   constexpr float least_variance = 1e-8F;
   const OwnRow own = own_;
@@ -186,7 +192,8 @@ TOFMAP_VECTOR_CLONES void judge_sector(int pixels, const OwnRow& own_, const Sec
   }
 }
 
-/// The middle ones of three adjacent directions that lead to one surface.
+/// The directions, one bit each, that are in the middle of three adjacent directions which agree
+/// with the pixel.
 [[gnu::always_inline]] inline unsigned surfaces_of(unsigned agrees, unsigned sectors, bool at_step,
                                                    unsigned among) {
   const unsigned bits = (at_step ? agrees >> same_shift : agrees) & among;
@@ -196,7 +203,7 @@ TOFMAP_VECTOR_CLONES void judge_sector(int pixels, const OwnRow& own_, const Sec
   return at_step ? middles & sectors : middles;
 }
 
-/// Sets the bit where some surface is found.
+/// Sets `surface_bit` where the pixel lies on some surface.
 TOFMAP_VECTOR_CLONES void find_surfaces(int pixels, const unsigned* agrees, unsigned step_bit,
                                         unsigned surface_bit, unsigned* sectors) {
 #pragma GCC ivdep
@@ -210,7 +217,7 @@ TOFMAP_VECTOR_CLONES void find_surfaces(int pixels, const unsigned* agrees, unsi
 float squared(double number) { return static_cast<float>(number * number); }
 
 SquaredLimits squared_limits(const AgreementLimits& limits) {
-  constexpr double same_sigmas = 1.75;  // over those at an edge
+  constexpr double same_sigmas = 1.75;  // relative to edge_sigmas
   constexpr double step_sigmas = 2;
   return {.plane = squared(limits.plane_sigmas),
           .same = squared(same_sigmas * limits.edge_sigmas),
@@ -220,7 +227,7 @@ SquaredLimits squared_limits(const AgreementLimits& limits) {
           .mixing = squared(limits.mixing_m)};
 }
 
-/// Offsets of a row from all directions.
+/// Memory for the deviations of a row from the predictions of all directions.
 class OffsetBuffers {
  public:
   explicit OffsetBuffers(int cols)

@@ -11,53 +11,55 @@
 
 namespace tofmap {
 
-/// The pixels around one, counter-clockwise from the right; opposite ones are `axes` apart.
+/// The 8 directions to the neighbours of a pixel, counter-clockwise from the right. Opposite
+/// directions are `axes` apart.
 struct Neighbourhood {
   static constexpr int directions = 8;
   static constexpr int axes = directions / 2;
-  static constexpr unsigned all = (1U << directions) - 1;  ///< a bit each
+  static constexpr unsigned all = (1U << directions) - 1;  ///< one bit per direction
   static constexpr std::array<int, directions> rows{0, -1, -1, -1, 0, 1, 1, 1};
   static constexpr std::array<int, directions> cols{1, 1, 0, -1, -1, -1, 0, 1};
 
-  /// How far a neighbour lies from the pixel in memory, if the pixel below is `stride` away.
+  /// Offset in memory from a pixel to its neighbour; `stride` is the offset to the pixel below.
   static constexpr int offset(std::size_t direction, int stride) {
     return rows[direction] * stride + cols[direction];
   }
 };
 
-/// What drop_off_planes() knows of an image.
+/// The depths of an image, as drop_off_planes() uses them.
 struct Depths {
-  InverseDepth own;
+  InverseDepth own;     ///< not averaged
   InverseDepth smooth;  ///< averaged over pairs
   FrequencyDifference difference;
 };
 
-/// Limits of SurfaceAgreement: standard deviations, and metres that always agree.
+/// Limits of SurfaceAgreement.
 struct AgreementLimits {
-  double plane_sigmas;  ///< where no step is
-  double edge_sigmas;   ///< at a step
-  double tolerance_m;
-  double mixing_m;  ///< two surfaces no farther apart than this mix to ranges between them
+  double plane_sigmas;  ///< standard deviations, for pixels that are not at a step
+  double edge_sigmas;   ///< standard deviations, for pixels at a step
+  double tolerance_m;   ///< always accepted, in depth; added to the others in quadrature
+  double mixing_m;      ///< mixed pixels of surfaces closer than this lie between the surfaces
 };
 
-/// For each pixel, with which of the surfaces around it it agrees (docs/filters.md).
+/// Tells for each pixel which of the surfaces around it agree with it (docs/filters.md, section
+/// plane_edge).
 class SurfaceAgreement {
  public:
   SurfaceAgreement(const Depths& depths, const AgreementLimits& limits);
 
-  /// Whether a surface passes from one side of the pixel to the other only by a step.
+  /// Whether two opposite sides of the pixel are different surfaces.
   bool is_at_step(int row, int col) const { return (sectors_[place(row, col)] & step_bit) != 0; }
 
-  /// Whether three adjacent directions lead to one surface that the pixel is on.
+  /// Whether three adjacent directions agree with the pixel, so that it lies on their surface.
   bool lies_on_surface(int row, int col) const {
     return (sectors_[place(row, col)] & surface_bit) != 0;
   }
 
-  /// The same of the directions given, a bit each.
+  /// Whether three adjacent directions of `among`, one bit per direction, agree with the pixel.
   bool lies_on_surface(int row, int col, unsigned among) const;
 
-  /// The axes along which both directions predict the pixel closely, a bit each; none outside the
-  /// image.
+  /// One bit per axis along which both directions agree with the pixel within edge_sigmas. 0 for
+  /// pixels up to one beyond the border of the image.
   unsigned lines(int row, int col) const;
 
  private:
@@ -70,9 +72,12 @@ class SurfaceAgreement {
   }
 
   int stride_;
-  std::vector<unsigned> agrees_;  ///< by direction: within the widest, the middle, the least limit
-  std::vector<unsigned>
-      sectors_;  ///< by the middle direction of three; and whether there is a step
+  /// For each pixel and direction, whether they agree within the limits for planes (lowest 8 bits),
+  /// for a single direction at a step (next 8), and for edges (next 8).
+  std::vector<unsigned> agrees_;
+  /// For each pixel, one bit per direction that is in the middle of three whose mean agrees with
+  /// the pixel; then step_bit and surface_bit.
+  std::vector<unsigned> sectors_;
 };
 
 }  // namespace tofmap

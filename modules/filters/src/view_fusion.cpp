@@ -13,12 +13,12 @@
 namespace tofmap {
 namespace {
 
-/// What is seen at more than that is not told from an edge.
+/// Surfaces that are seen at a larger angle of incidence cannot be told from edges.
 constexpr double steepest_rad = 80 * std::numbers::pi / 180;
 
 double square(double value) { return value * value; }
 
-/// Of a range or a depth. Averaging lowers that of noise alone.
+/// Variance of a range or depth. Averaging lowers only the part of the noise.
 struct Variance {
   double noise_m2;
   double systematic_m2;
@@ -26,14 +26,14 @@ struct Variance {
   double sum_m2() const { return noise_m2 + systematic_m2; }
 };
 
-/// The surface of a view at a place between its pixels.
+/// The surface of a view, interpolated between four pixels.
 struct Sample {
   double depth_m;
   Variance variance;  ///< of the depth
   double confidence;
 };
 
-/// One other view.
+/// Another view, as seen from the camera whose frame is fused.
 class OtherView {
  public:
   OtherView(const PosedView& view, const Pose& world_from_camera, const CameraModel& camera,
@@ -43,13 +43,13 @@ class OtherView {
         camera_(camera),
         rays_(rays) {}
 
-  /// A point of the camera's frame in that of the other camera.
+  /// Transforms a point from the frame of the camera into that of the other camera.
   Eigen::Vector3d point_m(const Eigen::Vector3d& in_camera_m) const {
     return other_from_camera_ * in_camera_m;
   }
 
-  /// The surface where a point of the other camera's frame falls; nothing where that is outside or
-  /// between surfaces.
+  /// The surface at the pixel onto which a point in the other camera's frame projects. Empty if
+  /// that is outside the image or between two surfaces.
   std::optional<Sample> sample(const Eigen::Vector3d& point_m) const {
     const std::optional<Eigen::Vector2d> pixel = project(camera_, point_m);
     if (!pixel) return std::nullopt;
@@ -63,7 +63,7 @@ class OtherView {
   }
 
  private:
-  /// The mean of four pixels, in inverse depth, in which planes are linear.
+  /// Interpolates between four pixels in inverse depth, in which planes are linear.
   std::optional<Sample> between(Eigen::Index row, Eigen::Index col, double down,
                                 double right) const {
     if (!have_one_surface(row, col)) return std::nullopt;
@@ -83,6 +83,7 @@ class OtherView {
     return Sample{1 / inverse, {variance, square(systematic_m)}, confidence};
   }
 
+  /// Whether the four pixels from (row, col) on are valid and without a step between them.
   bool have_one_surface(Eigen::Index row, Eigen::Index col) const {
     const auto ranges = image_.range_m.block<2, 2>(row, col);
     if (!ranges.isFinite().all()) return false;
@@ -106,23 +107,23 @@ class OtherView {
 /// Where a ray meets the surface of another view.
 struct Meeting {
   double range_m;
-  Variance variance;  ///< of the range, by the errors of the other view
+  Variance variance;  ///< of the range, from the errors of the other view
   double confidence;
 };
 
-/// What another view says of a pixel.
+/// Result of comparing a pixel with another view.
 struct Finding {
-  std::optional<Meeting> meeting;
-  bool violates_free_space = false;
+  std::optional<Meeting> meeting;    ///< empty if the ray meets no surface within reach
+  bool violates_free_space = false;  ///< the other view sees through the pixel's point
 };
 
-/// Follows a ray from a range on to where it meets the surface of the other view.
+/// Searches along a ray, starting at `range_m`, for the point where it meets the surface of the
+/// other view (secant method).
 Finding look(const OtherView& other, const Eigen::Vector3d& ray, double range_m, double variance_m2,
              const FusionOptions& options) {
-  /// How far the surface is behind the point of the ray, in the other camera's depth.
   struct Gap {
     Sample sample;
-    double behind_m;
+    double behind_m;  ///< depth of the surface minus that of the ray's point, other camera
   };
   const auto gap_at = [&](double at_m) -> std::optional<Gap> {
     const Eigen::Vector3d point = other.point_m(at_m * ray);
@@ -133,7 +134,8 @@ Finding look(const OtherView& other, const Eigen::Vector3d& ray, double range_m,
   Finding finding;
   const std::optional<Gap> first = gap_at(range_m);
   if (!first) return finding;
-  // Along the ray a surface may be off by noise and, the more it slants, by what poses shift it.
+  // Along the ray a surface may be displaced by noise, and by errors of the poses, which slanted
+  // surfaces amplify.
   const double reach_m =
       2 * (options.max_sigmas * std::sqrt(variance_m2 + first->sample.variance.sum_m2()) +
            options.tolerance_m / std::cos(steepest_rad));
@@ -145,7 +147,7 @@ Finding look(const OtherView& other, const Eigen::Vector3d& ray, double range_m,
   std::optional<Gap> gap = first;
   constexpr int steps = 2;
   for (int i = 0; i < steps; ++i) {
-    if (!(slope > 0)) return finding;  // the ray does not come nearer to the surface
+    if (!(slope > 0)) return finding;  // the ray does not approach the surface
     const double next_m = at_m + behind_m / slope;
     if (std::abs(next_m - range_m) > reach_m) return finding;
     if (next_m == at_m) break;
@@ -164,11 +166,11 @@ Finding look(const OtherView& other, const Eigen::Vector3d& ray, double range_m,
   return finding;
 }
 
-/// A weighted mean and the variance of its noise.
+/// Sums of a weighted mean and of the variance of its noise.
 struct Mean {
-  double value = 0;
-  double weight = 0;
-  double variance = 0;  ///< weighted by the square of the weight
+  double value = 0;     ///< sum of weighted values
+  double weight = 0;    ///< sum of weights
+  double variance = 0;  ///< sum of variances times squared weights
 
   void add(double with_weight, double of, double its_variance) {
     value += with_weight * of;
@@ -177,16 +179,17 @@ struct Mean {
   }
 };
 
-/// Confidences below weigh as much as that.
+/// Lower limit of the confidence in weights.
 constexpr double least_trust = 0.01;
 
-/// Ranges are never surer than that.
+/// Lower limit of the standard deviation of a range in weights.
 constexpr double least_sigma_m = 1e-4;
 
 double weight_of(double confidence, const Variance& variance) {
   return std::max(confidence, least_trust) / std::max(variance.sum_m2(), square(least_sigma_m));
 }
 
+/// Fuses or drops one valid pixel of `out`.
 void fuse_pixel(Eigen::Index row, Eigen::Index col, const std::vector<OtherView>& others,
                 const PixelRays& rays, const FusionOptions& options, RangeImage& out) {
   constexpr int least_violations = 2;
@@ -224,10 +227,12 @@ void fuse_pixel(Eigen::Index row, Eigen::Index col, const std::vector<OtherView>
 std::vector<OptionField<FusionOptions>> FusionOptions::fields() {
   using O = FusionOptions;
   return {
-      {"views", &O::views, 0, 100, "", "frames before and after each that it is fused with"},
+      {"views", &O::views, 0, 100, "",
+       "number of frames before and after each frame that are fused with it; 0 turns fusion off"},
       {"max_sigmas", &O::max_sigmas, 0, 100, "",
-       "ranges of other views that differ by more standard deviations are not averaged"},
-      {"tolerance_m", &O::tolerance_m, 0, 10, "m", "how far poses may shift surfaces"},
+       "averages only ranges of other views that differ by fewer standard deviations"},
+      {"tolerance_m", &O::tolerance_m, 0, 10, "m",
+       "accepted displacement of surfaces by errors of the poses"},
   };
 }
 

@@ -11,7 +11,7 @@
 namespace tofmap {
 namespace {
 
-/// A keyframe, and what is needed to tell fast what it cannot see.
+/// A keyframe, prepared for testing many points.
 class View {
  public:
   View(const Keyframe& keyframe, const CameraModel& camera, double margin_m)
@@ -42,8 +42,9 @@ class View {
     const std::optional<float> before = share_before(row, col, at_m);
     if (!before) return Verdict::nothing;
     if (std::abs(*before) <= 1) return Verdict::agrees;
-    if (*before < 0) return Verdict::nothing;  // behind what the keyframe sees
-    // At the outline of an object a small error of the pose shows its background.
+    if (*before < 0) return Verdict::nothing;  // the point is occluded
+    // At the outline of an object, a small error of the pose makes a point project onto the
+    // background. So the point must be in front of the surfaces around as well.
     for (int r = row - 1; r <= row + 1; ++r) {
       for (int c = col - 1; c <= col + 1; ++c) {
         const std::optional<float> beside = share_before(r, c, at_m);
@@ -54,8 +55,8 @@ class View {
   }
 
  private:
-  /// How far a point is before the surface at a pixel, as a share of what is tolerated; negative if
-  /// it is behind. Nothing if there is no surface.
+  /// Distance of a point in front of the surface at a pixel, divided by the tolerance; negative if
+  /// the point is behind the surface. Empty if the pixel has no surface.
   std::optional<float> share_before(int row, int col, const Eigen::Vector3f& point_m) const {
     constexpr float sigmas = 3;
     const SurfacePoint& surface = cloud_.at(col, row);

@@ -11,12 +11,12 @@
 
 namespace tofmap {
 
-/// Grid coordinates of 21 bits an axis: at voxels of 1 cm they span 21 km.
+/// Grid coordinates have 21 bits per axis: with voxels of 1 cm they span 21 km.
 inline constexpr int grid_axis_bits = 21;
 inline constexpr std::int64_t grid_axis_half = std::int64_t{1} << (grid_axis_bits - 1);
 
-/// One number for a place in a grid; their order is that of x, then y, then z. Throws UsageError
-/// that names the voxels' size if the place is too far out.
+/// Packs grid coordinates into one number, whose order is that of x, then y, then z. Throws
+/// UsageError, which states the voxel size, if a coordinate does not fit.
 inline std::int64_t grid_key(const Eigen::Vector3i& place, double voxel_m) {
   std::int64_t packed = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -29,6 +29,7 @@ inline std::int64_t grid_key(const Eigen::Vector3i& place, double voxel_m) {
   return packed;
 }
 
+/// The grid coordinates of a key.
 inline Eigen::Vector3i grid_place(std::int64_t key) {
   constexpr std::int64_t mask = (std::int64_t{1} << grid_axis_bits) - 1;
   Eigen::Vector3i place;

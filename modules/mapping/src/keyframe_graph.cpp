@@ -8,7 +8,8 @@
 namespace tofmap {
 namespace {
 
-/// Errors add up from tie to tie: so many are hardly noticed.
+/// Largest number of registrations between two keyframes. The error of their relative pose grows
+/// with that number; over five it is still small.
 constexpr int max_ties = 5;
 
 }  // namespace
@@ -40,7 +41,7 @@ std::vector<const Keyframe*> KeyframeGraph::around(int id, const Pose& pose, int
     return steps.between((*this)[other].world_from_camera, pose);
   };
   std::vector<int> ids = within_reach(id);
-  // Of equally near ones the recent are taken.
+  // Of keyframes at equal distance, the most recent ones are taken.
   std::ranges::sort(ids, std::ranges::greater());
   std::ranges::stable_sort(ids, std::ranges::less(), steps_away);
   if (static_cast<int>(ids.size()) > count - 1) ids.resize(static_cast<std::size_t>(count - 1));

@@ -9,21 +9,22 @@
 namespace tofmap {
 namespace {
 
-/// How far off a pose may be that registration puts right, wherever drift has brought it.
+/// Smallest standard deviations of the drift prior: registration corrects errors of this size.
 constexpr double least_prior_m = 0.05;
 constexpr double least_prior_rad = 0.03;
 
-/// Errors that neighbouring frames share, and that no covariance of one registration tells of.
+/// Standard deviations of errors that neighbouring frames share, which the covariance of a
+/// registration does not include.
 constexpr double shared_sigma_m = 0.002;
 constexpr double shared_sigma_rad = 0.0005;
 
-/// Places that differ more are not tried.
+/// Largest PlaceDescriptor::difference() of a keyframe that is tried.
 constexpr double alike_difference = 0.3;
 
-/// How many standard deviations of drift a loop may mend.
+/// Largest correction by a loop, in standard deviations of drift.
 constexpr double most_drift_sigmas = 3;
 
-/// Earlier keyframes that may see what the keyframe sees, as far as positions tell.
+/// Earlier keyframes that, by their poses, may see the same place as `keyframe`.
 std::vector<const Keyframe*> earlier_around(const Keyframe& keyframe,
                                             std::span<const Keyframe> keyframes,
                                             const LoopOptions& options) {
@@ -44,7 +45,8 @@ MotionPrior drift_prior(const Keyframe& keyframe, const Keyframe& other,
   return drift_prior(keyframe.world_from_camera, keyframe.path_m - other.path_m, options);
 }
 
-/// Those that see most of what the keyframe sees, the best first.
+/// The three keyframes of `earlier` that see most of the points of `keyframe`, and at least
+/// `min_overlap` of them, in descending order of overlap.
 std::vector<const Keyframe*> best_overlaps(const Keyframe& keyframe,
                                            const std::vector<const Keyframe*>& earlier,
                                            const CameraModel& camera, const LoopOptions& options,
@@ -55,7 +57,7 @@ std::vector<const Keyframe*> best_overlaps(const Keyframe& keyframe,
   };
   constexpr std::size_t most = 3;
   RegistrationOptions coarse = registration;
-  coarse.source_stride_px = 4 * registration.source_stride_px;  // a few hundred points tell enough
+  coarse.source_stride_px = 4 * registration.source_stride_px;  // a few hundred points are enough
   std::vector<Overlap> overlaps;
   for (const Keyframe* other : earlier) {
     const double share = overlap_share(*keyframe.cloud, keyframe.world_from_camera,
@@ -69,7 +71,7 @@ std::vector<const Keyframe*> best_overlaps(const Keyframe& keyframe,
   return best;
 }
 
-/// Registers the keyframe from where it is believed to be, against those it overlaps most.
+/// Registers `keyframe` from its current pose with the earlier keyframes that it overlaps most.
 LoopCandidate find_where_believed(const Keyframe& keyframe,
                                   const std::vector<const Keyframe*>& earlier,
                                   const CameraModel& camera, const LoopOptions& options,
@@ -86,8 +88,8 @@ LoopCandidate find_where_believed(const Keyframe& keyframe,
   return candidate;
 }
 
-/// Registers the keyframe from where the one stands that looks most like it; nothing if that is not
-/// verified.
+/// Registers `keyframe` with the most similar earlier keyframe, from the pose of that one. Empty if
+/// no keyframe is similar enough, or if the result is not verified.
 std::optional<LoopCandidate> find_where_alike(const Keyframe& keyframe,
                                               std::span<const Keyframe> keyframes,
                                               const std::vector<const Keyframe*>& earlier,
@@ -112,18 +114,24 @@ std::optional<LoopCandidate> find_where_alike(const Keyframe& keyframe,
 std::vector<OptionField<LoopOptions>> LoopOptions::fields() {
   using O = LoopOptions;
   return {
-      {"close", &O::close, 0, 1, "", "look for places seen before, and correct the path by them"},
-      {"radius_m", &O::radius_m, 0.1, 100, "m", "how far apart cameras of one place may stand"},
+      {"close", &O::close, 0, 1, "", "searches for loops, and corrects the path by them"},
+      {"radius_m", &O::radius_m, 0.1, 100, "m",
+       "loops are searched for among keyframes at most this far away"},
       {"max_rotation_rad", &O::max_rotation_rad, 0.01, 3.2, "rad",
-       "how far apart directions of view of one place may be"},
-      {"min_gap", &O::min_gap, 1, 100000, "", "keyframes closer in time than this are no loop"},
-      {"min_overlap", &O::min_overlap, 0.01, 1, "", "share of a keyframe that must be seen again"},
+       "loops are searched for among keyframes that are rotated by at most this"},
+      {"min_gap", &O::min_gap, 1, 100000, "",
+       "smallest number of keyframes from one end of a loop to the other"},
+      {"min_overlap", &O::min_overlap, 0.01, 1, "",
+       "smallest share of a keyframe's points that must have a correspondence in earlier "
+       "keyframes"},
       {"min_inlier_ratio", &O::min_inlier_ratio, 0, 1, "",
-       "share of the correspondences that must agree"},
+       "smallest share of the correspondences of a loop that must fit its pose"},
       {"drift_share", &O::drift_share, 0, 1, "",
-       "how far off the path may be, as a share of its length since the place was seen"},
+       "standard deviation of the drift in position, as a share of the length of the path since "
+       "the place was seen first"},
       {"kernel_width", &O::kernel_width, 0.5, 100, "",
-       "loops farther off than this, in standard deviations, lose their say"},
+       "width of the kernel that down-weights loop constraints with large errors, in standard "
+       "deviations"},
   };
 }
 
@@ -145,7 +153,8 @@ PoseEdge edge_of(const Keyframe& from, int to, const Pose& world_from_camera,
   edge.from = from.id;
   edge.to = to;
   edge.from_from_to = from.world_from_camera.inverse() * world_from_camera;
-  // Registration's twist is along the world's axes.
+  // The covariance of a registration is along the world's axes, that of an edge along those of
+  // `from`.
   Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
   turn.topLeftCorner<3, 3>() = from.world_from_camera.linear().transpose();
   turn.bottomRightCorner<3, 3>() = turn.topLeftCorner<3, 3>();

@@ -13,10 +13,10 @@
 namespace tofmap {
 namespace {
 
-/// So many loops that agree with each other tell of an error of the path.
+/// Smallest number of agreeing loops that can prove the path wrong.
 constexpr std::size_t least_agreeing = 2;
 
-/// Standard deviations within which loops agree.
+/// Two loops agree within this many standard deviations.
 constexpr double most_deviations = 2;
 
 using Loops = std::vector<const PoseEdge*>;
@@ -25,7 +25,8 @@ const Keyframe& at(std::span<const Keyframe> keyframes, int id) {
   return keyframes[static_cast<std::size_t>(id)];
 }
 
-/// Whether one loop puts the keyframe of the other, up to the drift between, where that puts it.
+/// Whether both loops correct the path in the same way: the correction by one loop moves the later
+/// keyframe of the other loop to where that loop puts it, up to the drift between both.
 bool agree(const PoseEdge& one, const PoseEdge& other, std::span<const Keyframe> keyframes,
            const LoopOptions& options) {
   const auto found = [&](const PoseEdge& loop) {
@@ -41,7 +42,7 @@ bool agree(const PoseEdge& one, const PoseEdge& other, std::span<const Keyframe>
   return deviation(prior, found(other)) < most_deviations;
 }
 
-/// The loop with which most agree, and those.
+/// The loop that agrees with most others, together with these others.
 Loops most_that_agree(const Loops& loops, std::span<const Keyframe> keyframes,
                       const LoopOptions& options) {
   Loops most;
@@ -55,7 +56,8 @@ Loops most_that_agree(const Loops& loops, std::span<const Keyframe> keyframes,
   return most;
 }
 
-/// These loops, and the other edges with errors that come to those of drift in the end.
+/// Edges for the second fit: `loops`, and the edges of odometry with covariances increased so that
+/// they add up to the drift of the whole path.
 std::vector<PoseEdge> with_drift(std::span<const PoseEdge> edges, const Loops& loops,
                                  std::span<const Keyframe> keyframes, const LoopOptions& options) {
   const double drift_m = options.drift_share * keyframes.back().path_m;

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// How a RoomMapper is put aside and taken up again.
+// Saves and loads the state of a RoomMapper.
 
-#include "tofmap/mapping/archive.hpp"
+#include "archive.hpp"
 #include "tofmap/mapping/room_mapper.hpp"
+#include "tofmap/mapping/tracking_state.hpp"
 
 #include <istream>
 #include <ostream>
@@ -122,6 +123,18 @@ void RoomMapper::load(std::istream& in) {
   archive >> parts >> part_of_;
   parts_.assign(parts, {0, SurfaceMap(surface_options_)});
   for (Part& part : parts_) archive >> part.anchor >> part.surface;
+}
+
+void save_tracking(const std::vector<TrackingResult>& results, std::ostream& out) {
+  boost::archive::binary_oarchive archive(out);
+  archive << results;
+}
+
+std::vector<TrackingResult> load_tracking(std::istream& in) {
+  boost::archive::binary_iarchive archive(in);
+  std::vector<TrackingResult> results;
+  archive >> results;
+  return results;
 }
 
 }  // namespace tofmap

@@ -26,10 +26,11 @@ namespace {
 using Eigen::Vector3f;
 using Eigen::Vector3i;
 
-/// Corners of cells that the surface passes are up to √3 voxels from it.
+/// How far from a point corners are updated. The corners of a cell that contains surface are up to
+/// √3 voxels away from it.
 constexpr float reach_voxels = 2;
 
-/// A corner of the grid, near points.
+/// Weighted sums at a corner of the grid that is near points.
 struct Corner {
   float distance_sum = 0;
   float weight = 0;
@@ -38,11 +39,11 @@ struct Corner {
   float distance() const { return distance_sum / weight; }
 };
 
-/// Corners of a cell in VTK's order of a hexahedron.
+/// Offsets of the corners of a cell in the order of VTK_HEXAHEDRON.
 const std::array<Vector3i, 8> cell_corners{
     {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
 
-/// Distances to the surface at the corners of a grid.
+/// Signed distances to the surface at the corners of a grid.
 class DistanceGrid {
  public:
   explicit DistanceGrid(double voxel_m) : voxel_m_(static_cast<float>(voxel_m)) {}
@@ -69,7 +70,7 @@ class DistanceGrid {
     return found == corners_.end() ? nullptr : &found->second;
   }
 
-  /// Places of all corners, in order.
+  /// Grid coordinates of all corners, in the order of x, then y, then z.
   std::vector<Vector3i> places() const {
     std::vector<std::int64_t> keys;
     keys.reserve(corners_.size());
@@ -84,8 +85,8 @@ class DistanceGrid {
   float voxel_m() const { return voxel_m_; }
 
  private:
-  /// Whether the cell of a point, in voxels, belongs to a surface that faces the other way: the
-  /// other side of something thin.
+  /// Whether the cell of a point already has a surface that faces the other way, as the other side
+  /// of a thin panel does. `at` is in voxels.
   bool is_behind_another(const Vector3f& at, const Vector3f& normal) const {
     Vector3f sum = Vector3f::Zero();
     const Vector3i cell = at.array().floor().cast<int>();
@@ -107,7 +108,7 @@ class DistanceGrid {
   std::unordered_map<std::int64_t, Corner> corners_;
 };
 
-/// The cells that the surface passes through, as VTK wants them.
+/// The cells that contain surface, as a VTK grid with distances and normals.
 class SurfaceCells {
  public:
   explicit SurfaceCells(const DistanceGrid& grid) : grid_(grid) {
@@ -207,7 +208,7 @@ SurfaceMesh extract_mesh(const MapCloud& map, double voxel_m) {
   contour->SetValue(0, 0);
   contour->MergePointsOn();
   contour->InterpolateAttributesOn();
-  contour->SequentialProcessingOn();  // the same order of vertices everywhere
+  contour->SequentialProcessingOn();  // makes the order of vertices reproducible
   contour->Update();
   auto* surface = vtkPolyData::SafeDownCast(contour->GetOutputDataObject(0));
   return mesh_of(*surface);

@@ -16,12 +16,12 @@ MotionUncertainty::MotionUncertainty(double rotation_sigma_rad, double translati
 void MotionUncertainty::learn(int frames, const Covariance& information) {
   Joint step = Joint::Identity();
   step.topRightCorner<6, 6>().diagonal().setConstant(frames);
-  // A step that differs changes pose and velocity alike.
+  // A change of the motion between frames changes pose and velocity by the same twist.
   const Covariance change = (frames * change_sigmas_).cwiseAbs2().asDiagonal();
   const Joint expected = step * joint_ * step.transpose() + change.replicate<2, 2>();
   const Covariance of_pose = expected.topLeftCorner<6, 6>();
   const Covariance known = (of_pose.inverse() + information).inverse();
-  // What is learnt of the pose tells of the velocity by how both are correlated.
+  // The update of the pose also updates the velocity through their correlation.
   const Eigen::Matrix<double, 6, 12> gain =
       of_pose.ldlt().solve(Eigen::Matrix<double, 6, 12>(expected.topRows<6>()));
   joint_ = expected - gain.transpose() * (of_pose - known) * gain;

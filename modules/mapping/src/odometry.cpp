@@ -9,10 +9,11 @@
 namespace tofmap {
 namespace {
 
-/// One that has not been registered for longer may have moved otherwise than before.
+/// Longest time, in frame periods, since the last registered frame for which the camera is assumed
+/// to have kept its motion.
 constexpr double periods_of_steady_tracking = 3.5;
 
-/// Share of the frame's points that agree with the targets; 0 if registration failed.
+/// Share of the frame's points that fit the targets. 0 if registration failed.
 double support(const RegistrationResult& result) {
   return succeeded(result.status) ? result.overlap * result.inlier_ratio : 0;
 }
@@ -31,22 +32,24 @@ std::vector<OptionField<OdometryOptions>> OdometryOptions::fields() {
   using O = OdometryOptions;
   return {
       {"keyframe_translation_m", &O::keyframe_translation_m, 0.01, 10, "m",
-       "a frame this far from all keyframes around becomes one; twice as far from those of an "
-       "earlier visit"},
+       "distance from all keyframes around at which a frame becomes a keyframe; twice the distance "
+       "from those of an earlier visit"},
       {"keyframe_rotation_rad", &O::keyframe_rotation_rad, 0.01, 3.2, "rad",
-       "a frame turned this far from all keyframes around becomes one; twice as far from those of "
-       "an earlier visit"},
+       "rotation from all keyframes around at which a frame becomes a keyframe; twice the rotation "
+       "from those of an earlier visit"},
       {"keyframes_around", &O::keyframes_around, 1, 1000, "",
-       "how many keyframes are looked at to register against"},
-      {"targets", &O::targets, 1, 16, "", "how many of them, those that overlap most, are used"},
+       "number of keyframes around the camera that a frame may be registered with"},
+      {"targets", &O::targets, 1, 16, "",
+       "largest number of keyframes that a frame is registered with: those that overlap it most"},
       {"min_target_overlap", &O::min_target_overlap, 0, 1, "",
-       "share of the frame a keyframe must see to be used"},
+       "smallest share of a frame's points that a keyframe must see to be registered with"},
       {"prior_rotation_sigma_rad", &O::prior_rotation_sigma_rad, 1e-4, 3.2, "rad",
-       "how much the turn between two frames may change from one to the next"},
+       "standard deviation of the change in frame-to-frame rotation, per axis and frame"},
       {"prior_translation_sigma_m", &O::prior_translation_sigma_m, 1e-4, 10, "m",
-       "how much the step between two frames may change from one to the next"},
+       "standard deviation of the change in frame-to-frame translation, per axis and frame"},
       {"max_prior_mahalanobis", &O::max_prior_mahalanobis, 1, 1000, "",
-       "a pose more of these standard deviations off the expected one is not believed"},
+       "largest difference from the predicted pose, in standard deviations; a pose that differs "
+       "more is rejected"},
   };
 }
 
@@ -96,7 +99,7 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
   MotionPrior standing = prior;
   standing.world_from_camera = last_->world_from_camera;
   if (is_after_gap(timestamp_s) && deviation(prior, standing.world_from_camera) > 0) {
-    // It may as well have stood still.
+    // The camera may have stood still instead.
     TrackingResult other;
     register_from(standing, cloud, around, other);
     if (support(other.registration) > support(result.registration)) {
@@ -114,7 +117,8 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
   } else {
     result.status = TrackingStatus::tracked;
     result.world_from_camera = result.registration.world_from_camera;
-    // The prior of one frame does not tell of those before it that left a direction open, too.
+    // The covariance of this registration includes the prior of one frame only. It would be too
+    // small where frames before it had degenerate directions, too.
     const double periods = std::max(1.0, periods_since_registered(timestamp_s));
     uncertainty_.learn(static_cast<int>(std::lround(periods)),
                        result.registration.surface_information);
@@ -133,7 +137,7 @@ void Odometry::register_from(const MotionPrior& prior, const SurfaceCloud& cloud
     result.targets.push_back(keyframe->id);
   }
   RegistrationOptions registration = registration_;
-  // From far off more steps are needed.
+  // A distant initial pose takes more iterations.
   constexpr int times = 3;
   if (prior.translation_sigma_m > periods_of_steady_tracking * options_.prior_translation_sigma_m) {
     registration.max_iterations *= times;
@@ -167,7 +171,7 @@ double Odometry::periods_since_registered(double timestamp_s) const {
   if (!last_) return 0;
   double periods = frames_since_registered_;
   if (!recent_periods_s_.empty()) {
-    // Of frames that are dropped now and then most still come one after the other.
+    // The median is the frame period, since most frames follow each other even if some are dropped.
     std::vector<double> periods_s = recent_periods_s_;
     const auto usual = periods_s.begin() + static_cast<std::ptrdiff_t>((periods_s.size() - 1) / 2);
     std::ranges::nth_element(periods_s, usual);
@@ -179,20 +183,20 @@ double Odometry::periods_since_registered(double timestamp_s) const {
 
 MotionPrior Odometry::predict(double timestamp_s) const {
   MotionPrior prior;
-  // Every frame that could not be registered, or never came, adds its share of unknown motion.
+  // Every frame that could not be registered or was dropped adds uncertainty.
   const double periods = std::max(1.0, periods_since_registered(timestamp_s));
   prior.rotation_sigma_rad = periods * options_.prior_rotation_sigma_rad;
   prior.translation_sigma_m = periods * options_.prior_translation_sigma_m;
   prior.world_from_camera = last_->world_from_camera;
-  // Frames that were there and could not be registered are a sign that motion has changed. Where
-  // none came it is the best guess, for some time.
+  // Frames that came but could not be registered suggest that the motion has changed. If frames
+  // were only dropped, constant velocity remains the best prediction for some time.
   constexpr int frames_of_steady_motion = 3;
   constexpr double most_periods = 30;
   const double last_step_s = before_last_ ? last_->timestamp_s - before_last_->timestamp_s : 0;
   if (last_step_s > 0 && frames_since_registered_ <= frames_of_steady_motion) {
     const double share = (timestamp_s - last_->timestamp_s) / last_step_s;
     const Pose step = before_last_->world_from_camera.inverse() * last_->world_from_camera;
-    // A camera that turns goes on along its own axes, not along the world's.
+    // The motion is repeated along the axes of the camera, not along those of the world.
     prior.world_from_camera = last_->world_from_camera *
                               interpolate(Pose::Identity(), step, std::min(share, most_periods));
   }
@@ -213,11 +217,11 @@ std::vector<const Keyframe*> Odometry::choose_targets(
     candidates[i] = {overlap_share(cloud, expected, target_of(*around[i]), camera_, registration_),
                      around[i]};
   }
-  // The last is taken at any rate: a frame may overlap nothing else.
+  // The last keyframe always remains a candidate: the frame may overlap no other.
   std::erase_if(candidates, [&](const Candidate& candidate) {
     return candidate.overlap < options_.min_target_overlap && candidate.keyframe != around.back();
   });
-  // Stable from the last on, so that equal overlap prefers the recent.
+  // Reversed before a stable sort, so that of equal overlaps the most recent keyframe comes first.
   std::ranges::reverse(candidates);
   std::ranges::stable_sort(candidates, std::ranges::greater(), &Candidate::overlap);
   std::vector<const Keyframe*> targets;

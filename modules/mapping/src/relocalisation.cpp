@@ -9,12 +9,12 @@
 namespace tofmap {
 namespace {
 
-/// Share of the frame's points that agree with what is known of a place.
+/// Share of the cloud's points that fit the surfaces of a place.
 double support(const Relocalisation& place) {
   return place.registration.overlap * place.registration.inlier_ratio;
 }
 
-/// A place that another one has more than this share of the support of is not sure.
+/// The best place is ambiguous if another place has more than this share of its support.
 constexpr double sure_share = 0.9;
 
 bool is_same_place(const Relocalisation& one, const Relocalisation& other) {

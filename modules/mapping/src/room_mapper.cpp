@@ -13,21 +13,24 @@
 namespace tofmap {
 namespace {
 
-/// Loops are mostly found in a row: they are fitted together, once in so many keyframes.
+/// Smallest number of keyframes between two fits. Loops mostly come one after the other, and are
+/// fitted together.
 constexpr int keyframes_between_fits = 10;
 
-/// One frame that fails may be a bad one.
+/// Number of failed frames after which tracking is taken to be lost. A single one may be a bad
+/// frame.
 constexpr int frames_until_lost = 3;
 
-/// After so many frames motion does not tell any more where the camera may be.
+/// Number of failed frames after which the motion before no longer predicts the camera's pose.
 constexpr int frames_until_given_up = 15;
 
-/// Keyframes that many before the newest are of an earlier visit: fewer new ones are wanted there.
+/// A keyframe with more than this many newer ones belongs to an earlier visit. New keyframes are
+/// taken at twice the distance there.
 constexpr int recent_keyframes = 15;
 constexpr double steps_on_earlier_visits = 2;
 
-/// Keyframes within so many steps of one share its part of the map: they hardly move against each
-/// other any more.
+/// Keyframes within this many keyframe spacings of an anchor share its submap, since their relative
+/// poses hardly change any more.
 constexpr double steps_within_part = 4;
 
 }  // namespace
@@ -56,7 +59,7 @@ AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
   return added;
 }
 
-/// Finds out where a frame was taken, and whether it becomes a keyframe.
+/// Finds the pose of a frame, and decides whether it becomes a keyframe.
 TrackingResult RoomMapper::track(const NewFrame& frame) {
   const std::vector<const Keyframe*> around = keyframes_around();
   TrackingResult result = find_camera(frame.timestamp_s, *frame.cloud, around);
@@ -89,8 +92,8 @@ std::vector<const Keyframe*> RoomMapper::keyframes_around() const {
 
 TrackingResult RoomMapper::find_camera(double timestamp_s, const SurfaceCloud& cloud,
                                        std::span<const Keyframe* const> around) {
-  // A camera that has been lost for some time may be anywhere, and many places look alike from near
-  // where it was last seen: so all of them are looked at first.
+  // After some time the camera may be anywhere, and odometry may register it with a wrong place
+  // that looks similar. So all keyframes are tried first.
   if (lost_frames_ >= frames_until_lost) {
     const TrackingResult found = relocalised(timestamp_s, cloud);
     if (found.registered() || lost_frames_ >= frames_until_given_up) return found;
@@ -106,7 +109,7 @@ TrackingResult RoomMapper::relocalised(double timestamp_s, const SurfaceCloud& c
   TrackingResult result;
   const auto found = relocalise(cloud, keyframes_.all(), camera_, loop_options_, registration_);
   if (!found) return result;
-  // Many places look alike: one that is too far to have come there must look the same.
+  // Many places look alike: a place that the camera can hardly have reached must match better.
   constexpr double sure_support = 0.85;
   constexpr double sure_support_within_reach = 0.6;
   const RegistrationResult& there = found->registration;
@@ -123,7 +126,7 @@ TrackingResult RoomMapper::relocalised(double timestamp_s, const SurfaceCloud& c
   return result;
 }
 
-/// Adds the surface of the frame that was registered last to the part of its keyframe.
+/// Adds the surface of the latest registered frame to the submap of its keyframe.
 void RoomMapper::integrate(const SurfaceCloud& cloud) {
   Part& part = parts_[static_cast<std::size_t>(part_of_[static_cast<std::size_t>(current_)])];
   const Pose anchor_from_keyframe =
@@ -131,8 +134,8 @@ void RoomMapper::integrate(const SurfaceCloud& cloud) {
   part.surface.integrate(cloud, anchor_from_keyframe * frames_.back().keyframe_from_camera);
 }
 
-/// Looks for the newest keyframe's place among earlier ones, once for each keyframe, and now and
-/// then fits the poses to all edges.
+/// Searches for a loop of the newest keyframe, once per keyframe, and fits the pose graph if there
+/// are new loops and the last fit was long enough ago.
 void RoomMapper::close_loops() {
   if (!loop_options_.close || searched_ == keyframes_.size()) return;
   searched_ = keyframes_.size();
@@ -208,7 +211,8 @@ void RoomMapper::add_keyframe(const NewFrame& frame, std::span<const Keyframe* c
   part_of_.push_back(part_for(id, result.world_from_camera, around));
   keyframes_.add({id, frame.index, frame.timestamp_s, result.world_from_camera, frame.cloud, path_m,
                   PlaceDescriptor(*frame.cloud)});
-  // Targets are registered against together: each edge says its share of what all of them say.
+  // One registration with all targets gives several edges, each with an equal share of its
+  // information.
   const auto shares = static_cast<double>(result.targets.size());
   for (const int target : result.targets) {
     PoseEdge edge =
@@ -220,8 +224,8 @@ void RoomMapper::add_keyframe(const NewFrame& frame, std::span<const Keyframe* c
   current_ = id;
 }
 
-/// The part whose anchor is nearest to a new keyframe; a new part with that as its anchor if none
-/// is near.
+/// Index of the submap whose anchor is nearest to a new keyframe. If no anchor is near, a new
+/// submap with the keyframe as its anchor.
 int RoomMapper::part_for(int id, const Pose& pose, std::span<const Keyframe* const> around) {
   int nearest = -1;
   double least_steps = steps_within_part;
@@ -250,7 +254,7 @@ void RoomMapper::fit() {
     if (!edges_[i].may_be_wrong) continue;
     loop->mahalanobis_distance = fitted.edge_mahalanobis[i];
     loop->is_used = !is_outvoted(loop->mahalanobis_distance, loop_options_.kernel_width);
-    // Now both ends are where the loop says, and frames may be registered against either.
+    // The relative pose of both ends is now correct, so frames may be registered with either.
     if (loop->is_used) keyframes_.tie(edges_[i].from, edges_[i].to);
     ++loop;
   }

@@ -11,7 +11,8 @@
 namespace tofmap {
 namespace {
 
-/// Averaging cannot lower a point's error below this: nearly exact points would drown all others.
+/// Smallest standard deviation used for weights. Otherwise nearly exact points would outweigh all
+/// others.
 constexpr double min_sigma_m = 0.001;
 
 template <class Voxels>
@@ -28,20 +29,22 @@ std::vector<std::int64_t> sorted_keys(const Voxels& voxels) {
 std::vector<OptionField<SurfaceMapOptions>> SurfaceMapOptions::fields() {
   using O = SurfaceMapOptions;
   return {
-      {"voxel_m", &O::voxel_m, 0.002, 10, "m", "edge of a voxel; one map point each"},
+      {"voxel_m", &O::voxel_m, 0.002, 10, "m",
+       "edge length of a voxel; each voxel becomes at most one map point"},
       {"min_observations", &O::min_observations, 1, 100000, "",
-       "voxels with fewer points are not written"},
+       "smallest number of observations of a voxel that becomes a map point"},
       {"max_sigma_m", &O::max_sigma_m, 0.001, 100, "m",
-       "points less certain than this, along their normal, do not enter the map"},
+       "largest standard deviation, along the normal, of a point that enters the map"},
       {"drop_free_space_violations", &O::drop_free_space_violations, 0, 1, "",
-       "leave out points that keyframes see through: what moved on, flying pixels, wrong wraps"},
+       "removes points that keyframes see through: moving objects, flying pixels, wrong wrap "
+       "counts"},
   };
 }
 
 SurfaceMap::SurfaceMap(const SurfaceMapOptions& options) : options_(options) {}
 
 std::int64_t SurfaceMap::key(const Eigen::Vector3d& point_m) const {
-  // Places that no integer holds are out of the grid as well.
+  // Clamping keeps coordinates within int, but outside the grid, so that grid_key() refuses them.
   const Eigen::Array3d place = (point_m.array() / options_.voxel_m)
                                    .floor()
                                    .max(-2.0 * grid_axis_half)
@@ -68,7 +71,7 @@ void SurfaceMap::integrate(const SurfaceCloud& cloud, const Pose& world_from_cam
 }
 
 void SurfaceMap::add(const SurfaceMap& part, const Pose& world_from_part) {
-  // In the order of the grid: that of the hash depends on how the part came about.
+  // In the order of the grid, since the order of the hash table depends on the order of insertion.
   for (const std::int64_t place : sorted_keys(part.voxels_)) {
     const Voxel& voxel = part.voxels_.at(place);
     if (!(voxel.weight > 0)) continue;

@@ -11,7 +11,7 @@
 namespace tofmap {
 namespace {
 
-/// Indices of registered pairs, those of best quality first.
+/// Indices of the registered pairs, best quality first.
 std::vector<std::size_t> by_quality(const std::vector<CloudPair>& pairs) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -23,7 +23,7 @@ std::vector<std::size_t> by_quality(const std::vector<CloudPair>& pairs) {
   return order;
 }
 
-/// The clouds that registered pairs connect, as the lowest index of each part.
+/// The connected part that each cloud belongs to, named by the lowest index of its clouds.
 std::vector<int> parts_of(std::size_t clouds, const std::vector<CloudPair>& pairs) {
   std::vector<int> part(clouds);
   std::iota(part.begin(), part.end(), 0);
@@ -36,7 +36,7 @@ std::vector<int> parts_of(std::size_t clouds, const std::vector<CloudPair>& pair
   return part;
 }
 
-/// Of equally large parts the one with the earlier first cloud.
+/// The connected part with most clouds. Of equally large parts, the one with the lowest index.
 int largest_part(const std::vector<int>& part) {
   int best = 0;
   for (int i = 0; i < static_cast<int>(part.size()); ++i) {
@@ -45,7 +45,8 @@ int largest_part(const std::vector<int>& part) {
   return best;
 }
 
-/// Poses along the pairs of best quality, from `first` on; only of its part.
+/// Initial poses: relative poses chained along the pairs of best quality, starting at cloud
+/// `first`. Clouds that are not connected with it keep the identity.
 std::vector<Pose> chained_poses(std::size_t clouds, const std::vector<CloudPair>& pairs,
                                 int first) {
   std::vector<Pose> poses(clouds, Pose::Identity());
@@ -61,13 +62,13 @@ std::vector<Pose> chained_poses(std::size_t clouds, const std::vector<CloudPair>
       if (is_reached[t]) poses[s] = poses[t] * pairs[i].target_from_source;
       if (is_reached[s]) poses[t] = poses[s] * pairs[i].target_from_source.inverse();
       is_reached[s] = is_reached[t] = has_grown = true;
-      break;  // the best pair at the new border comes first
+      break;  // the next pair is again the best one between reached and unreached clouds
     }
   }
   return poses;
 }
 
-/// Fits the poses to all pairs and marks those that the others contradict.
+/// Fits the poses to all registered pairs, and gives the rejected pairs the verdict `disagrees`.
 std::vector<Pose> fitted_poses(std::vector<Pose> poses, std::vector<CloudPair>& pairs,
                                double slack_m, double kernel_width) {
   constexpr double slack_rad = 0.002;
@@ -105,7 +106,7 @@ std::vector<std::optional<Pose>> fit_graph(std::size_t clouds, std::vector<Cloud
   int first = largest_part(parts_of(clouds, pairs));
   const std::vector<Pose> poses =
       fitted_poses(chained_poses(clouds, pairs, first), pairs, slack_m, kernel_width);
-  // Without the contradicted pairs fewer may be connected.
+  // Without the rejected pairs, fewer clouds may be connected.
   const std::vector<int> part = parts_of(clouds, pairs);
   first = largest_part(part);
   if (std::ranges::count(part, first) < 2) return registered;

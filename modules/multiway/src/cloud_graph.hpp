@@ -9,10 +9,11 @@
 
 namespace tofmap {
 
-/// Poses of clouds that fit the pairs that were registered, in the frame of the first cloud of the
-/// largest connected part; nothing for clouds outside of it. Pairs that the others contradict are
-/// marked as such, and tie nothing. Poses of pairs and results are those of the clouds' centred
-/// frames. `slack_m` is what registration may be off beyond its covariance.
+/// Fits poses of clouds to all registered pairs. Poses are in the frame of the first cloud of the
+/// largest connected part; clouds outside of that part have none. Pairs that contradict others get
+/// the verdict `disagrees` and connect nothing. All poses are between centred frames
+/// (LevelledCloud::centre_m). `slack_m` is the standard deviation of errors that the covariance of
+/// a pair does not include.
 std::vector<std::optional<Pose>> fit_graph(std::size_t clouds, std::vector<CloudPair>& pairs,
                                            double slack_m, double kernel_width);
 

@@ -9,51 +9,53 @@
 namespace tofmap {
 namespace {
 
-/// Correspondences reach that far: on the coarsest level features may be off by more than a voxel.
+/// Largest correspondence distances, in voxels of the level. On the coarsest level, poses from
+/// features may be wrong by more than a voxel.
 constexpr double coarse_gap_voxels = 2.5;
 constexpr double fine_gap_voxels = 2;
 
-/// Of the source that take part: enough to tell guesses apart, and to average noise.
+/// Number of source points used: enough to compare guesses, and enough to average noise.
 constexpr std::size_t coarse_points = 1500;
 constexpr std::size_t fine_points = 15000;
 
-/// Poses that differ by less than this, at the cloud's edge, are the same.
+/// Poses are the same if points at the RMS radius of the source move by less than this.
 constexpr double same_pose_voxels = 4;
 
-/// So far in front of a surface a point is surely not on it.
+/// A point this far in front of a surface is not on it.
 constexpr double contradiction_slack_voxels = 1;
 
-/// Moving things and sensors' errors are seen through as well, but not by that much.
+/// Largest share of free-space violations. Moving objects and sensor errors cause smaller shares.
 constexpr double max_contradiction = 0.023;
 
-/// Parts of surfaces that are little fit each other more easily by chance than whole clouds do: so
-/// much larger a share of them must lie on the surface.
+/// Small overlaps fit by chance more easily than large ones: the required inlier ratio is increased
+/// by up to this as the overlap decreases.
 constexpr double more_without_overlap = 0.15;
 
-/// Above that the next best pose is nearly as good as the best.
+/// Largest quality of the second best pose relative to the best one. Above it, the pair is
+/// ambiguous.
 constexpr double max_runner_up = 0.8;
 
-/// That many matches cannot agree by chance.
+/// Smallest number of matches that do not agree by chance.
 constexpr int least_support = 15;
 
 constexpr double contradicted_quality = 0.01;
 
-/// A pose with what speaks for it.
+/// A pose with the measures of its quality.
 struct Candidate {
   CloudIcpResult icp;
   int support = 0;
   CloudFit fit;
   double free_space_violation = 0;
 
-  /// Of poses that sensors contradict only if there are no others.
+  /// Quality for ranking. A pose with too many free-space violations ranks behind all others.
   double quality() const {
     const double share = fit.overlap * fit.inlier_ratio;
     return free_space_violation > max_contradiction ? contradicted_quality * share : share;
   }
 };
 
-/// How well two clouds fit, as seen from the one more of which is covered: a small cloud within a
-/// large one fits well.
+/// The fit of whichever cloud overlaps the other more, so that a small cloud within a large one
+/// counts as a good fit.
 CloudFit mutual_fit(const OrientedCloud& source, const OrientedCloud& target, const Pose& pose) {
   const CloudFit there = measure_fit(source, target, pose);
   const CloudFit back = measure_fit(target, source, pose.inverse());
@@ -71,8 +73,8 @@ bool is_same_pose(const Pose& a, const Pose& b, double lever_m, double tolerance
          tolerance_m;
 }
 
-/// The larger share of either cloud that the other's sensor looked through; 0 if no place of a
-/// sensor is known.
+/// The larger share of free-space violations of either cloud. 0 if the viewpoint of neither sensor
+/// is known.
 double contradiction(const LevelledCloud& source, const LevelledCloud& target, const Pose& pose) {
   const double slack_m = contradiction_slack_voxels * target.levels.front().voxel_m;
   double share = 0;
@@ -86,7 +88,7 @@ double contradiction(const LevelledCloud& source, const LevelledCloud& target, c
   return share;
 }
 
-/// The guesses refined on the coarsest level, the best first, no two the same.
+/// Refines the guesses on the coarsest level. Returns distinct poses, best quality first.
 std::vector<Candidate> refine_guesses(const LevelledCloud& source_cloud,
                                       const LevelledCloud& target_cloud,
                                       const std::vector<AlignmentGuess>& guesses,
@@ -147,7 +149,7 @@ CloudPair align_pair(const LevelledCloud& source, const LevelledCloud& target,
                             {method, fine_gap_voxels * target.levels[level].voxel_m, fine_points});
   }
   pair.support = best.support;
-  // Means over large voxels have little noise, so whether surfaces coincide is judged by them.
+  // The fit is judged on the coarsest level, since means over large voxels have little noise.
   pair.fit = mutual_fit(source.levels.front(), target.levels.front(), best.icp.target_from_source);
   pair.free_space_violation = contradiction(source, target, best.icp.target_from_source);
   pair.direction_share = best.icp.direction_shares.minCoeff();

@@ -8,8 +8,9 @@
 
 namespace tofmap {
 
-/// Lays one cloud onto another without knowing where. The pose is between the frames of their
-/// levels; `source` and `target` of the result are left 0.
+/// Registers one cloud with another without an initial pose. The pose of the result is between the
+/// centred frames of both clouds (LevelledCloud::centre_m). The indices `source` and `target` of
+/// the result are 0.
 CloudPair align_pair(const LevelledCloud& source, const LevelledCloud& target,
                      const CloudRegistrationOptions& options);
 

@@ -21,21 +21,21 @@
 namespace tofmap {
 namespace {
 
-/// Voxels that are finer than those which leave some thousand points by more than this leave
-/// hundreds of times as many.
+/// How many times smaller voxels may be than those that leave about 5000 points. Smaller voxels
+/// would leave hundreds of times as many.
 constexpr double most_refinement = 20;
 
-/// What registration may be off beyond its covariance, in the finest voxels.
+/// Standard deviation of registration errors beyond the covariance, in voxels of the finest level.
 constexpr double slack_voxels = 0.5;
 
-/// A pose between centred frames as one between the clouds' own.
+/// Converts a pose between centred frames to one between the frames of the clouds.
 Pose between_own_frames(const Pose& target_from_source, const LevelledCloud& source,
                         const LevelledCloud& target) {
   return Eigen::Translation3d(target.centre_m) * target_from_source *
          Eigen::Translation3d(-source.centre_m);
 }
 
-/// Registers clouds in steps that share what the steps before found out.
+/// The steps of register_clouds(), with the state that they share.
 class Registration {
  public:
   Registration(std::span<const PointSet> clouds, std::span<const std::string> names,
@@ -125,7 +125,7 @@ class Registration {
     return pair;
   }
 
-  /// Where all pairs together say that the clouds are.
+  /// Sets the poses of the clouds to those that fit all pairs best, between centred frames.
   void place() {
     const double slack_m = slack_voxels * out_.voxel_m / 4;
     const auto poses = fit_graph(clouds_.size(), out_.pairs, slack_m, options_.kernel_width);
@@ -135,8 +135,7 @@ class Registration {
     }
   }
 
-  /// Looks whether a cloud fits a registered one, or any of the common size, if its unit is
-  /// another.
+  /// Tries whether a cloud that is not registered fits a reference cloud in another unit.
   void try_other_units(int i) {
     const double spacing = spacings_[static_cast<std::size_t>(i)];
     for (const LengthUnit& unit : likely_units(spacing, common_voxel())) {
@@ -159,7 +158,8 @@ class Registration {
     }
   }
 
-  /// Units are found out by clouds that are registered; if none is, by any of the common size.
+  /// Whether other units of a cloud are tried with cloud `i`: registered clouds, or if there are
+  /// none, all clouds of the common size.
   bool is_reference(int i) {
     return cloud(i).is_registered ||
            (out_.registered() == 0 && is_common_[static_cast<std::size_t>(i)]);
@@ -180,7 +180,8 @@ class Registration {
     }
   }
 
-  /// From centred frames to the clouds' own, and what each cloud is tied to.
+  /// Converts all poses to the frames of the clouds, and records which clouds were registered with
+  /// each other.
   void finish() {
     const auto first = std::ranges::find_if(out_.clouds, &RegisteredCloud::is_registered);
     if (first != out_.clouds.end()) {
@@ -219,8 +220,8 @@ class Registration {
   std::span<const std::string> names_;
   const CloudRegistrationOptions& options_;
   const std::function<bool(int, int)>& keep_going_;
-  std::vector<double> spacings_;  ///< voxels for features, in each cloud's own unit
-  std::vector<bool> is_common_;   ///< whether a cloud is of the size of most
+  std::vector<double> spacings_;  ///< feature_voxel() of each cloud, in its own unit
+  std::vector<bool> is_common_;   ///< of_common_size()
   std::vector<std::optional<LevelledCloud>> levels_;
   CloudRegistration out_;
 };
@@ -231,22 +232,24 @@ std::vector<OptionField<CloudRegistrationOptions>> CloudRegistrationOptions::fie
   using O = CloudRegistrationOptions;
   return {
       {"voxel_m", &O::voxel_m, 0, 1000, "m",
-       "voxels of the coarsest level, where features are compared; 0: some five thousand points "
-       "a cloud are left"},
-      {"method", &O::method, 0, 0, "", "how clouds are refined",
+       "edge length of the voxels of the coarsest level, where features are matched; 0 chooses it "
+       "so that about 5000 points per cloud remain"},
+      {"method", &O::method, 0, 0, "",
+       "how poses are refined; the methods of PCL are for comparison",
        "generalised | point_to_plane | pcl_icp | pcl_gicp"},
       {"min_overlap", &O::min_overlap, 0, 1, "",
-       "share of one of two clouds that must lie near the other"},
+       "smallest share of one of two clouds that must be near the other"},
       {"min_inlier_ratio", &O::min_inlier_ratio, 0, 1, "",
-       "share of what lies near that must lie on the surface, of clouds that overlap wholly; up to "
-       "0.15 more of those that hardly do"},
+       "smallest share of the near points that must lie on the surface of the other cloud, for "
+       "complete overlap; up to 0.15 more for smaller overlap"},
       {"min_direction_share", &O::min_direction_share, 0, 1, "",
-       "share of the surface that must hold each direction of motion"},
+       "smallest share of the observations that must constrain each direction of motion"},
       {"kernel_width", &O::kernel_width, 0.5, 100, "",
-       "width of the kernel that takes their say from pairs that others contradict, in standard "
+       "width of the kernel that down-weights pairs that contradict others, in standard "
        "deviations"},
       {"convert_units", &O::convert_units, 0, 0, "",
-       "place a cloud in another unit than the others scaled to theirs, instead of leaving it out"},
+       "scales a cloud that is in another unit than the others and registers it, instead of "
+       "leaving it out"},
   };
 }
 
@@ -281,7 +284,7 @@ CloudRegistration register_clouds(std::span<const PointSet> clouds,
                                   const CloudRegistrationOptions& options,
                                   const std::function<bool(int, int)>& keep_going) {
   if (clouds.size() < 2 || clouds.size() != names.size()) {
-    throw UsageError("registration takes two clouds at least, and a name for each");
+    throw UsageError("registration needs at least two clouds, and a name for each");
   }
   return Registration(clouds, names, options, keep_going).run();
 }

@@ -34,25 +34,25 @@ std::string why_not_registered(int cloud, const std::vector<CloudPair>& pairs,
   const int other = best->source == cloud ? best->target : best->source;
   const std::string& name = names[static_cast<std::size_t>(other)];
   if (best->verdict == PairVerdict::registered) {
-    return "fits " + name + ", but neither fits the others";
+    return "fits " + name + ", but neither of the two fits the other clouds";
   }
-  return "fits no other cloud; nearest to it came " + name + " (" + verdict_name(best->verdict) +
+  return "fits no other cloud; the best match is " + name + " (" + verdict_name(best->verdict) +
          ")";
 }
 
 std::string odd_size(double ratio) {
   return "its size differs from that of the others by a factor of " + rounded(ratio) +
-         ", and it fits none of them in any common unit; is it of the same place, in metres?";
+         ", and it fits none of them in any common unit; does it show the same place, in metres?";
 }
 
 std::string other_unit(const LengthUnit& unit, const std::string& name_of_fitting) {
-  return "its unit seems to be another, " + unit.name + ": scaled by " + rounded(unit.length) +
-         " it fits " + name_of_fitting;
+  return "seems to be in another unit (" + unit.name + "): scaled by " + rounded(unit.length) +
+         ", it fits " + name_of_fitting;
 }
 
 std::string too_fine(double voxel_m, double least_m) {
   return "register.voxel_m: " + rounded(voxel_m) +
-         " m is too fine for clouds of this extent; allowed: 0 to let it be found, or at least " +
+         " m is too small for clouds of this extent; allowed: 0 (automatic), or at least " +
          rounded(least_m) + " m";
 }
 

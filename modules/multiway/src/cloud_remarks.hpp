@@ -12,18 +12,19 @@
 
 namespace tofmap {
 
-// What is said of clouds that are odd or not registered.
+// Remarks about clouds that are unusual or not registered.
 
-/// By the pair that came nearest; empty if there is no pair.
+/// Why a cloud is not registered, from the best of its pairs. Empty if it has no pair.
 std::string why_not_registered(int cloud, const std::vector<CloudPair>& pairs,
                                std::span<const std::string> names);
 
-/// A cloud so many times as large as the others that fits none of them.
+/// Remark about a cloud that fits no other and is `ratio` times as large as the others.
 std::string odd_size(double ratio);
 
+/// Remark about a cloud that fits the cloud `name_of_fitting` if it is scaled by a unit.
 std::string other_unit(const LengthUnit& unit, const std::string& name_of_fitting);
 
-/// That the voxels wanted are too fine, and how fine they may be.
+/// Error message for voxels smaller than `least_m`.
 std::string too_fine(double voxel_m, double least_m);
 
 }  // namespace tofmap

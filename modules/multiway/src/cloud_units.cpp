@@ -9,8 +9,8 @@
 namespace tofmap {
 namespace {
 
-constexpr double max_natural_ratio = 8;       // of spacings of clouds of one scene
-constexpr double least_suspicious_ratio = 2;  // feet are a third of a metre
+constexpr double max_natural_ratio = 8;       // between spacings of clouds of one scene in one unit
+constexpr double least_suspicious_ratio = 2;  // smaller than the ratio of metres and feet
 constexpr double spacing_of_a_room = 0.1;
 
 double times_apart(double a, double b) { return std::exp(std::abs(std::log(a / b))); }

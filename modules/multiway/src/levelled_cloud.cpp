@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t feature_points = 5000;
 constexpr int level_count = 3;
 
-/// Finer voxels that hold hardly more points than the coarser ones show nothing new.
+/// A finer level is used only if it has at least this many times the points of the level before.
 constexpr double least_growth = 1.2;
 
 std::vector<Eigen::Vector3d> centred(const PointSet& cloud, double unit_m,
@@ -28,8 +28,8 @@ Eigen::Vector3d mean(const std::vector<Eigen::Vector3d>& points) {
   return sum / static_cast<double>(points.size());
 }
 
-/// Where the sensor stood: as the file says, or the origin of the cloud's frame if all could have
-/// been seen from there.
+/// The viewpoint of the sensor in the centred frame: the one in the file, or the origin of the
+/// cloud's frame if the cloud could have been seen from there.
 std::optional<Eigen::Vector3d> viewpoint(const PointSet& cloud, double unit_m,
                                          const Eigen::Vector3d& centre_m,
                                          const std::vector<Eigen::Vector3d>& points_m) {

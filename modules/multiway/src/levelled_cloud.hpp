@@ -12,20 +12,21 @@
 
 namespace tofmap {
 
-/// A cloud as alignment wants it: about its centre, in metres, from coarse to fine.
+/// A cloud prepared for registration: centred, in metres, as a pyramid from coarse to fine.
 struct LevelledCloud {
-  Eigen::Vector3d centre_m;            ///< of the levels' frame, in the cloud's
-  std::vector<OrientedCloud> levels;   ///< voxels of `voxel_m`, its half and its quarter
+  Eigen::Vector3d centre_m;            ///< mean of the points: origin of the centred frame
+  std::vector<OrientedCloud> levels;   ///< voxels of `voxel_m`, of half and of a quarter of it
   std::vector<PointFeature> features;  ///< of the coarsest level
-  std::optional<SphericalView> view;   ///< from where the sensor stood, if that is known
+  std::optional<SphericalView> view;   ///< from the viewpoint of the sensor, if that is known
 };
 
-/// The size of voxels that leaves some five thousand points of a cloud: enough for features to tell
-/// places apart, few enough to compare all with all. In the cloud's own unit.
+/// The voxel size that leaves about 5000 points of a cloud, in the unit of the cloud. That is
+/// enough for distinctive features, and few enough to compare all pairs of matches.
 double feature_voxel(const PointSet& cloud);
 
-/// `unit_m` is the length of the cloud's unit. Levels finer than the points themselves are left
-/// out; nothing if there are too few points on surfaces.
+/// Builds the levels of a cloud. `unit_m` is the unit of length of the cloud, metres; `voxel_m` the
+/// voxel size of the coarsest level. Levels finer than the spacing of the points are omitted. Empty
+/// if orient() finds too few points with normals on the coarsest level.
 std::optional<LevelledCloud> make_levels(const PointSet& cloud, double unit_m, double voxel_m);
 
 }  // namespace tofmap

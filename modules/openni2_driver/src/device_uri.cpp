@@ -14,17 +14,21 @@ std::vector<OptionField<PlayerOptions>> PlayerOptions::fields() {
   using P = PlayerOptions;
   return {
       {"layout", &P::layout, 0, 0, "",
-       "stacked: A above B in each image, and a tag; alternating: A and B in turn, without",
+       "stacked: each image holds A above B, and a tag; alternating: images of A and B alternate, "
+       "without a tag",
        "stacked | alternating"},
       {"depth", &P::depth, 0, 0, "",
-       "along each pixel's ray, or z, along the optical axis, as OpenNI2 has it", "radial | z"},
+       "what depth images hold; radial: range along each pixel's ray; z: depth along the optical "
+       "axis, OpenNI2's convention",
+       "radial | z"},
       {"speed", &P::speed, -1, 1000, "",
-       "of the recording's; 0: as fast as can be; -1: a frame whenever a client waits for one"},
-      {"repeat", &P::repeat, 0, 1000000, "", "how often the frames are played; 0: for ever"},
+       "playback speed relative to the recording; 0: as fast as possible; -1: a frame whenever a "
+       "client waits for one"},
+      {"repeat", &P::repeat, 0, 1000000, "",
+       "number of times that the frames are played; 0: for ever"},
       {"unplug_at", &P::unplug_at, 0, 1000000000, "",
-       "goes away after so many frames, as if unplugged; 0: never"},
-      {"lose_every", &P::lose_every, 0, 1000000, "",
-       "every how manieth image is lost on the way; 0: none"},
+       "number of frames after which the device disappears as if unplugged; 0: never"},
+      {"lose_every", &P::lose_every, 0, 1000000, "", "drops every n-th image; 0: drops none"},
   };
 }
 
@@ -48,7 +52,7 @@ DeviceRequest parse_device_uri(const std::string& uri) {
   for (std::string one; std::getline(assignments, one, '&');) {
     const std::size_t equals = one.find('=');
     if (equals == 0 || equals == std::string::npos) {
-      throw UsageError("'" + one + "' is no option=value");
+      throw UsageError("expected option=value, got '" + one + "'");
     }
     const std::string name = one.substr(0, equals);
     if (!names.insert(name).second) throw UsageError("option " + name + " is given twice");

@@ -10,36 +10,46 @@
 
 namespace tofmap {
 
-/// What every address of a device begins with.
+/// The beginning of every device URI.
 inline constexpr const char* uri_scheme = "tofmap://";
 
 /// How a device plays frames.
 struct PlayerOptions {
+  /// `stacked`: each image holds A above B, and a tag. `alternating`: the images of A and B
+  /// alternate, without a tag.
   std::string layout = "stacked";
+  /// What depth images hold. `radial`: range along the ray of each pixel. `z`: depth along the
+  /// optical axis, OpenNI2's convention.
   std::string depth = "radial";
+  /// Playback speed relative to that of the recording or scene, −1 … 1000. 0: as fast as possible.
+  /// Negative: one frame whenever a client waits for one.
   double speed = 1;
+  /// Number of times that the frames are played, 0 … 1e6. 0: for ever.
   int repeat = 1;
+  /// Number of frames after which the device disappears as if unplugged, 0 … 1e9. 0: never.
   int unplug_at = 0;
+  /// Drops every n-th image on the way to the client, 0 … 1e6. 0: drops none.
   int lose_every = 0;
 
   static std::vector<OptionField<PlayerOptions>> fields();
 };
 
-/// What an address asks for:
+/// The device that a URI describes:
 ///
-///     tofmap://SCENE?option=value&…             a simulated camera in a scene
-///     tofmap:///path/to/sequence?option=value…  a recorded one
+///     tofmap://SCENE?option=value&…              a simulated camera in a scene
+///     tofmap:///path/to/sequence?option=value&…  a recording
 ///
-/// Options are those of `player`, and as `simulator.NAME=VALUE` those of the simulator.
+/// The options are the fields of `player`, and the fields of `simulator` as `simulator.NAME=VALUE`.
 struct DeviceRequest {
-  std::string scene;  ///< or the folder of a recording, which begins with a slash
+  std::string scene;  ///< name of a scene, or folder of a recording, which begins with a slash
   PlayerOptions player;
   SimulatorOptions simulator;
 
   bool is_recording() const { return scene.starts_with('/'); }
 };
 
-/// Throws UsageError if the address is none of the above or an option is not allowed.
+/// Parses a device URI. Throws UsageError if the URI has neither form, or if an option is unknown,
+/// not allowed or given twice.
 DeviceRequest parse_device_uri(const std::string& uri);
 
 }  // namespace tofmap

@@ -18,7 +18,8 @@
 namespace tofmap {
 namespace {
 
-/// Addresses, with spaces between, that programs find which open any device there is.
+/// Environment variable with URIs, separated by spaces, that the driver announces to programs which
+/// list devices.
 constexpr const char* announced_variable = "TOFMAP_DEVICES";
 
 OniDeviceInfo info_of(const std::string& uri) {
@@ -32,8 +33,8 @@ OniDeviceInfo info_of(const std::string& uri) {
   return info;
 }
 
-/// Offers scenes and recordings as OpenNI2 devices. No exception leaves it: OpenNI2 is not made for
-/// any.
+/// Offers scenes and recordings as OpenNI2 devices. Its functions do not throw, because OpenNI2
+/// does not handle exceptions.
 class Driver final : public oni::driver::DriverBase {
  public:
   explicit Driver(OniDriverServices* services) : DriverBase(services) {}

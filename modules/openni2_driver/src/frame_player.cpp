@@ -12,7 +12,7 @@
 namespace tofmap {
 namespace {
 
-/// Of recordings of a single frame.
+/// Period of a recording that has a single frame.
 constexpr double default_period_s = 0.1;
 
 double median_period_s(const SequenceReader& recording) {

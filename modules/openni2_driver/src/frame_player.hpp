@@ -12,21 +12,22 @@
 
 namespace tofmap {
 
-/// The frames of a scene or recording, played as often as asked for: numbers and timestamps go on
-/// where they begin again. Damaged frames are left out.
+/// Plays the frames of a scene or recording as often as requested. Timestamps continue to increase
+/// when the frames begin again. Damaged frames are left out.
 class FramePlayer {
  public:
-  /// `keep_going` is asked while a frame is made, from several threads; once it says no, there are
-  /// no more. Throws UsageError or InputError if there is no such scene or recording.
+  /// `keep_going` is called from several threads while a frame is simulated; when it returns false,
+  /// no more frames follow. Throws UsageError or InputError if the scene or recording does not
+  /// exist.
   FramePlayer(const DeviceRequest& request, std::function<bool()> keep_going);
 
   const SensorModel& sensor() const { return source_->sensor(); }
 
-  /// Between two frames, seconds; of a recording the median.
+  /// Time between two frames; the median for a recording.
   double period_s() const { return period_s_; }
 
-  /// The next frame, timestamps from 0 on; nothing when all have been played, or it is not to keep
-  /// going.
+  /// The next frame; the timestamp of the first one is 0. Empty when all frames have been played or
+  /// `keep_going` has returned false.
   std::optional<DualFrequencyFrame> next();
 
  private:
@@ -37,7 +38,7 @@ class FramePlayer {
   std::unique_ptr<FrameSource> source_;
   double period_s_ = 0;
   int rounds_ = 0;
-  int played_ = 0;  ///< frames of this round
+  int played_ = 0;  ///< frames played in this round
   std::optional<double> first_s_;
   double round_start_s_ = 0;
   double last_s_ = 0;

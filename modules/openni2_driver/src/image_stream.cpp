@@ -44,7 +44,8 @@ void ImageStream::stop() {
     const std::scoped_lock lock(mutex_);
     is_running_ = false;
   }
-  // A delivery may wait for what OpenNI2 holds in one thread while it waits for this in another.
+  // A delivery may wait for a lock of OpenNI2 that the caller of stop() holds, so do not wait for
+  // ever.
   constexpr std::chrono::seconds longest(1);
   { const std::unique_lock last_delivery(delivery_, longest); }
   on_change_();

@@ -12,7 +12,7 @@
 
 namespace tofmap {
 
-/// What a stream answers when it is asked.
+/// The properties that a stream reports to OpenNI2.
 struct StreamDescription {
   OniSensorType type = ONI_SENSOR_DEPTH;
   std::vector<OniVideoMode> modes;
@@ -36,15 +36,16 @@ class ImageStream final : public oni::driver::StreamBase {
   bool is_running() const;
   OniVideoMode mode() const;
 
-  /// Hands an image to OpenNI2, if the stream runs. It must be of the size of the mode. When stop()
-  /// has returned, none is on its way, unless OpenNI2 itself held it up.
+  /// Passes an image to OpenNI2 if the stream is running. The image must have the size of the mode.
+  /// After stop() has returned, no delivery is in progress, unless OpenNI2 blocks it for more than
+  /// a second.
   void deliver(const ImageU16& image, std::uint64_t timestamp_us, int index);
 
  private:
   StreamDescription description_;
   std::function<void()> on_change_;
   std::timed_mutex delivery_;  ///< held while OpenNI2 takes an image
-  mutable std::mutex mutex_;   ///< of what follows
+  mutable std::mutex mutex_;   ///< guards the members below
   OniVideoMode mode_;
   bool is_running_ = false;
 };

@@ -16,6 +16,7 @@
 namespace tofmap {
 namespace {
 
+/// The angle that the sides of an image span at the optical centre.
 float field_of_view_rad(int side_px, double focal_length_px) {
   return static_cast<float>(2 * std::atan(side_px / (2 * focal_length_px)));
 }
@@ -25,7 +26,7 @@ struct DepthFormat {
   double unit_m;
 };
 
-/// The finest first.
+/// Ordered from fine to coarse.
 constexpr DepthFormat depth_formats[] = {{ONI_PIXEL_FORMAT_DEPTH_100_UM, 1e-4},
                                          {ONI_PIXEL_FORMAT_DEPTH_1_MM, 1e-3}};
 
@@ -49,7 +50,7 @@ PlayedDevice::PlayedDevice(const DeviceRequest& request, Events events)
       codecs_.emplace_back(player_.sensor(),
                            RangeScale{format.unit_m, request.player.depth == "z"});
     } catch (const UsageError&) {
-      continue;  // its 16 bits do not hold a wavelength
+      continue;  // 16 bits of this format do not hold a wavelength
     }
     mode.pixelFormat = format.format;
     depth_.modes.push_back(mode);
@@ -98,7 +99,7 @@ oni::driver::StreamBase* PlayedDevice::createStream(OniSensorType type) {
   if (type != ONI_SENSOR_DEPTH && type != ONI_SENSOR_IR) return nullptr;
   const std::scoped_lock lock(streams_mutex_);
   const StreamDescription& description = type == ONI_SENSOR_DEPTH ? depth_ : infrared_;
-  // Whether what streams held when one is started or stopped will be read is not known.
+  // When a stream starts or stops, it is unknown whether images already delivered will be read.
   const auto on_change = [this] { update([this] { unread_ = 0; }); };
   streams_.push_back(std::make_shared<ImageStream>(description, on_change));
   return streams_.back().get();
@@ -109,8 +110,9 @@ void PlayedDevice::destroyStream(oni::driver::StreamBase* stream) {
   std::erase_if(streams_, [stream](const auto& one) { return one.get() == stream; });
 }
 
-/// Those that there are now. OpenNI2 creates and destroys streams with locks of its own held, which
-/// it also takes when it is handed an image: that must not be done under streams_mutex_.
+/// A copy of the current streams, so that images are not delivered under streams_mutex_. OpenNI2
+/// holds locks while it creates and destroys streams, and takes the same locks when it receives an
+/// image.
 PlayedDevice::Streams PlayedDevice::streams() {
   const std::scoped_lock lock(streams_mutex_);
   return streams_;
@@ -197,7 +199,7 @@ bool PlayedDevice::has_running_stream() {
   return std::ranges::any_of(streams(), [](const auto& stream) { return stream->is_running(); });
 }
 
-/// False if the device is to end instead.
+/// Waits until a stream is running. False if the device is to end instead.
 bool PlayedDevice::wait_for_stream() {
   std::unique_lock lock(mutex_);
   while (!is_closing_ && !is_unplugged_) {
@@ -205,16 +207,16 @@ bool PlayedDevice::wait_for_stream() {
     const bool is_running = has_running_stream();
     lock.lock();
     if (is_running) return true;
-    beginning_.reset();                                // time stands still
-    constexpr std::chrono::milliseconds longest(100);  // a start in between was not heard
+    beginning_.reset();                                // playback time stops
+    constexpr std::chrono::milliseconds longest(100);  // a start since the check was missed
     changed_.wait_for(lock, longest);
     is_starting_ = true;
   }
   return false;
 }
 
-/// OpenNI2 takes images only once it has noted that a stream was started, and a client may start
-/// another one.
+/// Waits a moment after the first stream has started: OpenNI2 accepts images only once it has noted
+/// the start, and the client may start another stream.
 void PlayedDevice::let_start() {
   std::unique_lock lock(mutex_);
   constexpr std::chrono::milliseconds ample(50);
@@ -223,17 +225,18 @@ void PlayedDevice::let_start() {
   }
 }
 
-/// Whether a client waits for an image and has read the last one, as far as can be known: mutex_ is
-/// held. OpenNI2 asks whenever a client begins to wait, even for the other image of two that are
-/// there already, and the next image would take its place.
+/// True if a client is waiting for an image and, as far as is known, has read the last one. The
+/// caller holds mutex_. OpenNI2 triggers the device whenever a client begins to wait, even if the
+/// client has read one of two delivered images and waits for the other, which the next image would
+/// replace.
 bool PlayedDevice::is_asked_for() {
   constexpr std::chrono::milliseconds to_read(10);
-  constexpr std::chrono::seconds lost(1);  // OpenNI2 dropped it; all clients have read all they got
+  constexpr std::chrono::seconds lost(1);  // later, OpenNI2 must have dropped the image
   const Clock::duration patience = hears_of_reads_ ? Clock::duration(lost) : to_read;
   return is_triggered_ && (unread_ == 0 || Clock::now() >= delivered_ + patience);
 }
 
-/// Until an image of this timestamp is due; false if the device is to end instead.
+/// Waits until an image with this timestamp is due. False if the device is to end instead.
 bool PlayedDevice::wait_for_turn(double timestamp_s) {
   std::unique_lock lock(mutex_);
   while (!is_closing_ && !is_unplugged_) {
@@ -273,7 +276,7 @@ void PlayedDevice::deliver_images(const ImageU16& range, const ImageU16& amplitu
   ++images_;
   const int lose_every = request_.player.lose_every;
   if (lose_every > 0 && images_ % lose_every == 0) {
-    update([this] { is_triggered_ = true; });  // whoever asked for it is waiting still
+    update([this] { is_triggered_ = true; });  // the client is still waiting
     return;
   }
   for (const auto& stream : streams()) {
@@ -285,7 +288,7 @@ void PlayedDevice::deliver_image(ImageStream& stream, const ImageU16& image,
                                  std::uint64_t timestamp_us) {
   if (!stream.is_running()) return;
   update([this] {
-    ++unread_;  // before a client can say that it has read it
+    ++unread_;  // before a client can report the image as read
     delivered_ = Clock::now();
   });
   stream.deliver(image, timestamp_us, images_);
@@ -293,7 +296,8 @@ void PlayedDevice::deliver_image(ImageStream& stream, const ImageU16& image,
 
 void PlayedDevice::deliver(const DualFrequencyFrame& frame) {
   if (!wait_for_turn(frame.timestamp_s)) return;
-  // Only now: the mode of a stream, and with it the unit, may have changed meanwhile.
+  // Encodes only now, because the mode of a stream, and with it the unit, may have changed
+  // meanwhile.
   if (request_.player.layout == "stacked") {
     const StackedImages images = codec().stack(frame, static_cast<std::uint32_t>(frames_.load()));
     deliver_images(images.range, images.amplitude, frame.timestamp_s);
@@ -318,7 +322,7 @@ void PlayedDevice::play() {
       let_start();
       const int unplug_at = request_.player.unplug_at;
       if (unplug_at > 0 && frames_ >= unplug_at) {
-        // What is on the way still arrives.
+        // Gives delivered images time to arrive at the client.
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
         update([this] { is_unplugged_ = true; });
         break;

@@ -20,17 +20,17 @@
 
 namespace tofmap {
 
-/// A device that plays frames, in a thread of its own, while one of its streams runs.
+/// An OpenNI2 device that plays frames in its own thread while at least one of its streams runs.
 class PlayedDevice final : public oni::driver::DeviceBase {
  public:
-  /// What the device tells the driver.
+  /// Notifications from the device to the driver, called from the device's thread.
   struct Events {
     std::function<void()> at_end;
     std::function<void()> unplugged;
     std::function<void(const char* what)> failed;
   };
 
-  /// Throws UsageError or InputError if what is asked for cannot be played.
+  /// Throws UsageError or InputError if the requested scene or recording cannot be played.
   PlayedDevice(const DeviceRequest& request, Events events);
   ~PlayedDevice() override;
 
@@ -47,7 +47,8 @@ class PlayedDevice final : public oni::driver::DeviceBase {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// The moment of the clock at which a timestamp was due; later ones follow from it.
+  /// A timestamp and the time at which it was due. The due times of later timestamps follow from
+  /// it.
   struct Beginning {
     Clock::time_point moment;
     double timestamp_s;
@@ -80,21 +81,21 @@ class PlayedDevice final : public oni::driver::DeviceBase {
   std::mutex streams_mutex_;
   Streams streams_;
 
-  std::mutex mutex_;  ///< of all that follows down to is_closing_
+  std::mutex mutex_;  ///< guards the members down to is_closing_
   std::condition_variable changed_;
   double speed_;
-  bool is_starting_ = true;             ///< no image since the first stream was started
-  std::optional<Beginning> beginning_;  ///< none after the speed has changed
-  bool is_triggered_ = false;           ///< a client waits for an image
-  bool hears_of_reads_ = false;         ///< a client tells when it has read an image
-  int unread_ = 0;                      ///< images handed over that no client has read, as it says
-  Clock::time_point delivered_;         ///< when the last of them was
+  bool is_starting_ = true;             ///< no stream was running, so let_start() must wait
+  std::optional<Beginning> beginning_;  ///< empty after the speed has changed
+  bool is_triggered_ = false;           ///< a client is waiting for an image
+  bool hears_of_reads_ = false;         ///< a client has set the property images_read
+  int unread_ = 0;                      ///< delivered images that no client has reported as read
+  Clock::time_point delivered_;         ///< time of the last delivery
   bool is_unplugged_ = false;
   bool is_closing_ = false;
 
-  std::atomic<int> frames_ = 0;  ///< played so far
-  int images_ = 0;               ///< of one stream; the thread's alone
-  std::thread thread_;           ///< last: it uses all the others
+  std::atomic<int> frames_ = 0;  ///< frames played
+  int images_ = 0;               ///< images of one stream; used by thread_ only
+  std::thread thread_;           ///< declared last, because it uses all other members
 };
 
 }  // namespace tofmap

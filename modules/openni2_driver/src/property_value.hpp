@@ -8,7 +8,8 @@
 
 namespace tofmap {
 
-/// Copies a value to where OpenNI2 wants it, if there is room.
+/// Copies a value into OpenNI2's buffer of `*size` bytes and sets `*size`. Returns
+/// ONI_STATUS_BAD_PARAMETER if the buffer is too small.
 template <class Value>
 OniStatus answer(const Value& value, void* data, int* size) {
   if (*size < static_cast<int>(sizeof value)) return ONI_STATUS_BAD_PARAMETER;
@@ -17,7 +18,7 @@ OniStatus answer(const Value& value, void* data, int* size) {
   return ONI_STATUS_OK;
 }
 
-/// The value that OpenNI2 hands over; null if it is of another size.
+/// The value in OpenNI2's buffer. Null if the buffer has another size than the value.
 template <class Value>
 const Value* given(const void* data, int size) {
   return size == static_cast<int>(sizeof(Value)) ? static_cast<const Value*>(data) : nullptr;

@@ -10,16 +10,17 @@
 namespace tofmap {
 namespace {
 
-/// How many frames fit into memory, at most as many as are wanted.
+/// How many of the `wanted` frames fit into memory; at least one.
 std::size_t fitting_frames(const CameraModel& camera, std::size_t wanted) {
   constexpr std::size_t most_bytes = std::size_t{384} << 20;
-  constexpr std::size_t bytes_per_pixel = 52;  // of a SampledFrame
+  constexpr std::size_t bytes_per_pixel = 52;  // size of a SampledFrame over its pixels
   const auto pixels = static_cast<std::size_t>(camera.width_px * camera.height_px);
   const std::size_t fitting = most_bytes / std::max<std::size_t>(1, bytes_per_pixel * pixels);
   return std::clamp<std::size_t>(fitting, 1, std::max<std::size_t>(1, wanted));
 }
 
-/// Mean over the frames that were unwrapped. NaN for methods that estimate no phase jumps.
+/// Mean number of curl violations over the frames that were unwrapped. NaN if there are none, or if
+/// the method estimates no phase jumps.
 double curl_violations_per_frame(const RoomMap& map, UnwrapMethod method) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   if (!finds_jumps(method)) return nan;

@@ -18,7 +18,7 @@
 namespace tofmap {
 namespace {
 
-/// Up to `count` frames from the source, fewer at its end.
+/// Takes the next `count` frames from the source, or fewer at its end.
 std::vector<SourcedFrame> take(FrameSource& source, int count) {
   std::vector<SourcedFrame> frames;
   while (static_cast<int>(frames.size()) < count) {
@@ -29,8 +29,8 @@ std::vector<SourcedFrame> take(FrameSource& source, int count) {
   return frames;
 }
 
-/// Measures frames in order and prepares them in parallel. The result is empty for frames that are
-/// damaged or repeat the one before them.
+/// Measures frames in order and prepares them in parallel. Returns one entry per frame, which is
+/// empty if the frame is damaged or repeats the frame before it.
 std::vector<std::optional<PreparedFrame>> prepare_all(
     const std::vector<SourcedFrame>& frames, const std::vector<bool>& repeats,
     FrameMeasurer& measurer, ErrorTally& errors, std::vector<Unwrapper>& unwrappers,
@@ -51,7 +51,7 @@ std::vector<std::optional<PreparedFrame>> prepare_all(
       });
 }
 
-/// The first frames of a recording tell what the camera is like.
+/// Estimates the camera's errors from the first frames of a recording.
 void look_ahead(const std::vector<SourcedFrame>& first, FrameMeasurer& measurer) {
   std::vector<DualFrequencyFrame> frames;
   for (const SourcedFrame& sourced : first) {
@@ -62,7 +62,7 @@ void look_ahead(const std::vector<SourcedFrame>& first, FrameMeasurer& measurer)
   measurer.look_ahead(frames);
 }
 
-/// The record of a frame that is not prepared.
+/// The record of a frame that was not unwrapped.
 FrameRecord plain_record(const SourcedFrame& frame) {
   FrameRecord record;
   record.index = frame.index;
@@ -71,6 +71,7 @@ FrameRecord plain_record(const SourcedFrame& frame) {
   return record;
 }
 
+/// The record of a frame that was unwrapped, but not registered yet.
 FrameRecord prepared_record(const PreparedFrame& frame) {
   FrameRecord record;
   record.index = frame.index;
@@ -85,7 +86,7 @@ FrameRecord prepared_record(const PreparedFrame& frame) {
   return record;
 }
 
-/// Adds a frame to the map.
+/// Adds a frame to the map and returns its record.
 FrameRecord mapped(const PreparedFrame& frame, RoomMapper& mapper) {
   FrameRecord record = prepared_record(frame);
   AddedFrame added = mapper.add_frame(
@@ -97,7 +98,7 @@ FrameRecord mapped(const PreparedFrame& frame, RoomMapper& mapper) {
   return record;
 }
 
-/// Notes a frame that repeats the one before it.
+/// Tells the mapper about a frame that repeats the frame before it, and returns its record.
 FrameRecord repeated(const SourcedFrame& frame, RoomMapper& mapper) {
   FrameRecord record = plain_record(frame);
   record.repeats = true;
@@ -152,7 +153,8 @@ void refuse_mostly_damaged(int damaged, int total, const std::string& first_dama
   if (2 * damaged <= total) return;
   throw InputError(
       std::to_string(damaged) + " of " + std::to_string(total) +
-      " frames are damaged, more than half; nothing was written. The first: " + first_damage);
+      " frames are damaged, which is more than half; nothing was written. The first damage: " +
+      first_damage);
 }
 
 void refuse_mostly_damaged(const RoomMap& map) {
@@ -181,7 +183,8 @@ PreparedFrame prepare_ranges(TimedMeasurement measured, Unwrapper& unwrapper,
     return apply_filters(out.unwrapped.image, out.returns, sensor.modulation, rays,
                          options.filters);
   });
-  // Without unwrapping, registration must not learn from the confidence which ranges are wrapped.
+  // Method `none` is the baseline without unwrapping: its confidence must not tell registration
+  // which ranges are wrapped.
   if (options.unwrap.method == UnwrapMethod::none) out.filtered.image.confidence.setOnes();
   return out;
 }
@@ -231,7 +234,7 @@ void MapRun::advance(FrameSource& source, const MapHooks& hooks) {
   }
 }
 
-/// Which of the frames, in order, have the phases of the frame before them.
+/// For each of the frames, whether it has the same phases as the frame before it.
 std::vector<bool> MapRun::find_repeats(const std::vector<SourcedFrame>& frames) {
   std::vector<bool> repeats;
   for (const SourcedFrame& sourced : frames) {
@@ -241,7 +244,7 @@ std::vector<bool> MapRun::find_repeats(const std::vector<SourcedFrame>& frames) 
   return repeats;
 }
 
-/// The next frames, one a thread: those that were looked at ahead come first.
+/// The next frames, one per thread. Frames that were measured ahead come first.
 std::vector<SourcedFrame> MapRun::take_next(FrameSource& source) {
   const auto wanted = static_cast<std::size_t>(omp_get_max_threads());
   if (ahead_.empty()) return take(source, static_cast<int>(wanted));

@@ -1,17 +1,29 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// How a MapRun is put aside and taken up again.
+// Saving and loading the state of a MapRun.
 
 #include "tofmap/pipeline/pipeline.hpp"
 
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
+#include <boost/serialization/array_wrapper.hpp>
 #include <boost/serialization/string.hpp>
+#include <boost/serialization/vector.hpp>
 
-#include <tofmap/mapping/archive.hpp>
+#include <tofmap/core/error.hpp>
+#include <tofmap/mapping/tracking_state.hpp>
 
 namespace boost::serialization {
+
+template <class Archive>
+void serialize(Archive& archive, tofmap::ImageF& image, unsigned) {
+  Eigen::Index rows = image.rows();
+  Eigen::Index cols = image.cols();
+  archive& rows& cols;
+  if constexpr (Archive::is_loading::value) image.resize(rows, cols);
+  archive& make_array(image.data(), static_cast<std::size_t>(image.size()));
+}
 
 template <class Archive>
 void serialize(Archive& archive, tofmap::FilterCount& count, unsigned) {
@@ -28,7 +40,7 @@ template <class Archive>
 void serialize(Archive& archive, tofmap::FrameRecord& record, unsigned) {
   archive& record.index& record.timestamp_s& record.damage& record.repeats& record.iterations;
   archive& record.curl_violations& record.phase_noise_cycles& record.valid_pixels;
-  archive& record.kept_pixels& record.filters& record.tracking& record.times;
+  archive& record.kept_pixels& record.filters& record.times;  // save() stores `tracking`
 }
 
 }  // namespace boost::serialization
@@ -38,8 +50,11 @@ namespace tofmap {
 void MapRun::save(std::ostream& out) const {
   {
     boost::archive::binary_oarchive archive(out);
-    archive << frames_;
+    archive << frames_ << last_.phase_a << last_.phase_b;
   }
+  std::vector<TrackingResult> tracking;
+  for (const FrameRecord& frame : frames_) tracking.push_back(frame.tracking);
+  save_tracking(tracking, out);
   measurer_.save(out);
   mapper_.save(out);
 }
@@ -47,8 +62,11 @@ void MapRun::save(std::ostream& out) const {
 void MapRun::load(std::istream& in) {
   {
     boost::archive::binary_iarchive archive(in);
-    archive >> frames_;
+    archive >> frames_ >> last_.phase_a >> last_.phase_b;
   }
+  std::vector<TrackingResult> tracking = load_tracking(in);
+  if (tracking.size() != frames_.size()) throw InputError("map state: frames and tracking differ");
+  for (std::size_t i = 0; i < tracking.size(); ++i) frames_[i].tracking = std::move(tracking[i]);
   ahead_.clear();
   measurer_.load(in);
   mapper_.load(in);

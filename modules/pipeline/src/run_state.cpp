@@ -17,10 +17,11 @@ namespace tofmap {
 namespace {
 
 constexpr const char* file_name = "state.bin";
-// The number after the comma is raised whenever what is stored changes between releases.
-constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 6";
+// Raise the number after the comma whenever the stored data change between two releases.
+constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 7";
 
-/// What a run must have in common with the one it goes on from, a fact a line.
+/// The camera, frequencies and options of a run, one per line. A run can only resume a run with the
+/// same lines.
 std::vector<std::string> identity(const SensorModel& sensor, PipelineOptions options) {
   std::ostringstream text;
   text.precision(17);
@@ -38,18 +39,21 @@ std::vector<std::string> identity(const SensorModel& sensor, PipelineOptions opt
   return lines;
 }
 
+/// Reads the lines of identity() from a state file. Throws UsageError, which quotes the first
+/// difference, if they differ from `now`.
 void check_identity(std::istream& in, const std::vector<std::string>& now,
                     const std::filesystem::path& folder) {
   std::string there;
   for (const std::string& line : now) {
     if (std::getline(in, there) && there == line) continue;
-    throw UsageError(folder.string() + ": its run has '" + there + "', this one '" + line +
+    throw UsageError(folder.string() + ": the interrupted run has '" + there + "', this run has '" +
+                     line +
                      "'; give the same recording and options, or start anew without --resume");
   }
 }
 
-/// What tells so many frames of a recording from those of another: their times, and the phases of
-/// the first and the last.
+/// A line that identifies the first `frames` frames of a recording: their number, and a checksum of
+/// their timestamps and of A's phases in the first and the last of them.
 std::string recording_line(const SequenceReader& source, int frames) {
   boost::crc_32_type checksum;
   for (int i = 0; i < frames; ++i) {
@@ -66,6 +70,7 @@ std::string recording_line(const SequenceReader& source, int frames) {
   return "recording: " + std::to_string(frames) + " frames, " + std::to_string(checksum.checksum());
 }
 
+/// Throws InputError unless `line` is the recording_line() of the frames of `source`.
 void check_recording(const std::string& line, const SequenceReader& source,
                      const std::filesystem::path& folder) {
   int frames = -1;
@@ -73,8 +78,8 @@ void check_recording(const std::string& line, const SequenceReader& source,
   const bool has_them = frames >= 0 && frames <= *source.frame_count();
   if (has_them && line == recording_line(source, frames)) return;
   throw InputError(folder.string() +
-                   ": its run is of another recording; give that one, or start anew without "
-                   "--resume");
+                   ": the interrupted run is of another recording; give that recording, or start "
+                   "anew without --resume");
 }
 
 std::string checksum_line(std::string_view text) {
@@ -83,7 +88,8 @@ std::string checksum_line(std::string_view text) {
   return "\nchecksum: " + std::to_string(checksum.checksum());
 }
 
-/// What was written, its checksum taken off. Throws InputError if that does not fit.
+/// Reads a state file and returns its text without the checksum line. Throws InputError if the
+/// checksum is missing or wrong.
 std::string read_checked(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), {}};
@@ -120,14 +126,15 @@ void resume_run(const std::filesystem::path& folder, MapRun& run, SequenceReader
   if (!std::filesystem::exists(folder)) return;
   const std::filesystem::path file = folder / file_name;
   if (!std::filesystem::is_regular_file(file)) {
-    throw InputError(folder.string() +
-                     ": holds no interrupted run to go on with; start anew without --resume");
+    throw InputError(
+        folder.string() +
+        ": holds no interrupted run that could be resumed; start anew without --resume");
   }
   std::istringstream in(read_checked(file));
   std::string line;
   if (!std::getline(in, line) || line != first_line) {
     throw InputError(file.string() +
-                     ": was written by another version; start anew without --resume");
+                     ": was written by another version of tofmap; start anew without --resume");
   }
   check_identity(in, identity(source.sensor(), std::move(options)), folder);
   std::getline(in, line);
@@ -135,7 +142,8 @@ void resume_run(const std::filesystem::path& folder, MapRun& run, SequenceReader
   try {
     run.load(in);
   } catch (const std::exception&) {
-    throw InputError(file.string() + ": was written by another build; start anew without --resume");
+    throw InputError(file.string() +
+                     ": was written by another build of tofmap; start anew without --resume");
   }
   source.start_at(static_cast<int>(run.frames().size()));
 }

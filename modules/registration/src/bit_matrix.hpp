@@ -24,7 +24,7 @@ class BitMatrix {
     return (bits_[row * words_ + col / 64] >> (col % 64)) & 1U;
   }
 
-  /// How many columns are set in both rows; of a row with itself, how many are set.
+  /// Number of columns that are set in both rows.
   int common(std::size_t a, std::size_t b) const {
     const std::span first(&bits_[a * words_], words_);
     const std::span second(&bits_[b * words_], words_);

@@ -8,29 +8,35 @@
 
 namespace tofmap {
 
-/// A source point, the gap to the target point it is paired with, and how surely the gap should be
-/// zero in each direction; in the target's axes about a local origin.
+/// A correspondence of ICP: a source point, its difference from the paired target point, and the
+/// information about that difference, along the target's axes about a local origin.
 struct PointPair {
   Eigen::Vector3d point_m;      ///< source point, relative to the origin
-  Eigen::Vector3d gap_m;        ///< source − target
-  Eigen::Matrix3d information;  ///< inverse covariance of the gap
+  Eigen::Vector3d gap_m;        ///< source point − target point
+  Eigen::Matrix3d information;  ///< inverse covariance of `gap_m`
 
+  /// Mahalanobis distance of the pair.
   double deviation() const { return std::sqrt(gap_m.dot(information * gap_m)); }
 };
 
-/// Derivative of a gap by the twist: [−[point]ₓ  1].
+/// Derivative of `gap_m` with respect to the twist: [−[point]ₓ  1].
 Eigen::Matrix<double, 3, 6> gap_jacobian(const PointPair& pair);
 
-/// The pair's information if both points lie on planes of that normal scatter (generalised ICP):
-/// σ across the plane, `spread_m` along it. With the target's normal alone, point to plane.
+/// Information of a pair in generalised ICP: both points scatter about their place on a plane with
+/// a standard deviation of `sigma_m` along the normal and of `spread_m` along the plane.
 Eigen::Matrix3d plane_to_plane_information(const Eigen::Vector3d& source_normal,
                                            const Eigen::Vector3d& target_normal, double sigma_m,
                                            double spread_m);
+/// Information of a pair in point-to-plane ICP: along the target's normal only, where both points
+/// have a standard deviation of `sigma_m`.
 Eigen::Matrix3d point_to_plane_information(const Eigen::Vector3d& target_normal, double sigma_m);
 
-/// 1.4826 times the median deviation, and no less than `least`.
+/// Robust standard deviation of the Mahalanobis distances: 1.4826 times their median, and at least
+/// `least`.
 double robust_scale(const std::vector<PointPair>& pairs, double least);
 
+/// Gauss-Newton system of the pairs, weighted by a Geman-McClure kernel. `kernel_width` is a
+/// Mahalanobis distance.
 NormalEquations build_equations(const std::vector<PointPair>& pairs, double kernel_width);
 
 }  // namespace tofmap

@@ -21,17 +21,17 @@ constexpr int max_iterations = 40;
 constexpr int min_pairs = 30;
 constexpr double kernel_width = 3;  // in robust standard deviations
 
-/// Points of a voxel grid lie about that far off the plane through their neighbours, in voxels: the
-/// unit of deviations. What matters is its ratio to a voxel, the spread along the plane; the scale
-/// of the kernel comes from the residuals.
+/// Standard deviation of points from the plane through their neighbours in a voxel grid, in voxels.
+/// Mahalanobis distances refer to it. Only its ratio to one voxel, the spread along the plane,
+/// affects the result, since the scale of the kernel comes from the residuals.
 constexpr double sigma_per_voxel = 0.03;
-constexpr double least_scale = 0.1;  // of clouds that are the same
+constexpr double least_scale = 0.1;  // keeps the scale positive for identical clouds
 
-/// Neighbouring points share what their normals are made of, and pairs are no independent
-/// observations: so many count as one.
+/// Number of pairs that count as one independent observation: the normals of neighbouring points
+/// are estimated from the same points, so their errors are correlated.
 constexpr double correlated_observations = 12;
 
-constexpr std::size_t fit_points = 5000;  // tell shares to a percent
+constexpr std::size_t fit_points = 5000;  // enough for a share that is accurate to one percent
 
 constexpr double max_pairing_normal_cos = 0.7071;  // 45°
 constexpr double max_surface_normal_cos = 0.866;   // 30°
@@ -41,14 +41,15 @@ bool is_small(const Vector6d& twist, double voxel_m, double lever_m) {
   return lever_m * twist.head<3>().norm() + twist.tail<3>().norm() < tolerance_per_voxel * voxel_m;
 }
 
-/// A source point with the target point nearest to it.
+/// A source point and the nearest target point.
 struct Nearest {
-  Eigen::Vector3d point_m;  ///< the source's, in the target's frame
-  Eigen::Vector3d normal;   ///< likewise
-  std::optional<std::size_t> index;
+  Eigen::Vector3d point_m;           ///< source point, in the target's frame
+  Eigen::Vector3d normal;            ///< normal of the source point, in the target's frame
+  std::optional<std::size_t> index;  ///< of the target point; empty if none is near enough
 };
 
-/// For each source point, or so many of them, the nearest target point within `max_distance_m`.
+/// The nearest target point within `max_distance_m` for each of at most `max_points` source points,
+/// which are taken at even intervals.
 std::vector<Nearest> nearest_points(const OrientedCloud& source, const OrientedCloud& target,
                                     const Pose& target_from_source, double max_distance_m,
                                     std::size_t max_points) {
@@ -101,7 +102,7 @@ Eigen::Vector3d centre_of(const OrientedCloud& cloud) {
   return sum / static_cast<double>(cloud.size());
 }
 
-/// Turned about `centre_m` and shifted, both in the target's axes.
+/// The pose after a rotation about `centre_m` and a translation, both along the target's axes.
 Pose moved(const Pose& pose, const Vector6d& twist, const Eigen::Vector3d& centre_m) {
   const Pose step = pose_from_twist(twist);
   Pose out;
@@ -111,13 +112,14 @@ Pose moved(const Pose& pose, const Vector6d& twist, const Eigen::Vector3d& centr
   return out;
 }
 
+/// A Gauss-Newton increment.
 struct Step {
   Vector6d twist;
-  double lever_m = 0;  ///< typical distance from the centre
+  double lever_m = 0;  ///< RMS distance of the paired points from the centre of rotation
 };
 
-/// The Gauss-Newton step at the pose of `result`, whose covariance and shares it fills in; nothing
-/// if too few points are paired.
+/// Computes the Gauss-Newton increment at the pose of `result`, and sets the covariance and the
+/// direction shares of `result`. Empty if too few points are paired or a value is not finite.
 std::optional<Step> linearise(const OrientedCloud& source, const OrientedCloud& target,
                               const Eigen::Vector3d& source_centre_m,
                               const CloudIcpOptions& options, CloudIcpResult& result) {
@@ -130,7 +132,7 @@ std::optional<Step> linearise(const OrientedCloud& source, const OrientedCloud& 
   Step step;
   step.lever_m = root_mean_square_radius(pairs);
   result.direction_shares = observability(equations, step.lever_m).shares;
-  // What no pair constrains stays as it is.
+  // Keeps the system solvable: the pose does not move in a direction that no pair constrains.
   constexpr double nearly_nothing = 1e-9;
   equations.information.diagonal() *= 1 + nearly_nothing;
   const Eigen::LDLT<Matrix6d> solver(equations.information);

@@ -10,14 +10,15 @@
 namespace tofmap {
 namespace {
 
-/// Variance of a point along a direction, from its standard deviation along its viewing ray.
+/// Variance of a point along a direction, from the standard deviation along its viewing ray.
 double variance_along(const SurfacePoint& point, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d ray = point.getVector3fMap().cast<double>().normalized();
   const double sigma = point.sigma_m * ray.dot(direction);
   return sigma * sigma;
 }
 
-/// Where a point of the target's camera frame falls: the surface point at that pixel.
+/// The surface point at the pixel that a point projects into. Null if the point projects outside
+/// the image or the pixel has no normal. `point_m` is in the frame of the target's camera.
 const SurfacePoint* look_up(const SurfaceCloud& target, const CameraModel& camera,
                             const Eigen::Vector3d& point_m) {
   const std::optional<Eigen::Vector2d> pixel = project(camera, point_m);
@@ -32,6 +33,7 @@ const SurfacePoint* look_up(const SurfaceCloud& target, const CameraModel& camer
 
 constexpr int least_points_for_threads = 4000;
 
+/// Limits that a correspondence must keep, and the variance added to each.
 struct Gates {
   double max_distance_m;
   double min_normal_cos;
@@ -43,7 +45,8 @@ struct Gates {
         systematic_variance_m2(options.systematic_sigma_m * options.systematic_sigma_m) {}
 };
 
-/// The pair of a source point with what it falls on, in the target's frame.
+/// The correspondence of a source point with the target point that it projects onto, in the
+/// target's frame. Empty if there is none within the gates.
 std::optional<Correspondence> correspondence(const SurfacePoint& source,
                                              const Pose& target_from_source,
                                              const SurfaceCloud& target, const CameraModel& camera,
@@ -97,7 +100,7 @@ Correspondences find_correspondences(const std::vector<const SurfacePoint*>& poi
   }
   std::vector<std::optional<Correspondence>> found(points.size() * targets.size());
   const int count = static_cast<int>(found.size());
-  // Threads that wait for each other cost more than few points do.
+  // With few points, synchronising threads costs more than it saves.
 #pragma omp parallel for schedule(static) if (count > least_points_for_threads)
   for (int i = 0; i < count; ++i) {
     const std::size_t t = static_cast<std::size_t>(i) / points.size();

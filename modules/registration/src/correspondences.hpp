@@ -9,25 +9,29 @@
 
 namespace tofmap {
 
-/// A source point and the plane of a target it fell on, in world axes about a local origin.
+/// A source point and the plane of the target point that it projects onto, along the world's axes
+/// about the centre of the source's camera.
 struct Correspondence {
-  Eigen::Vector3d point_m;      ///< source point, relative to the origin
-  Eigen::Vector3d normal;       ///< of the target's plane
-  double residual_m = 0;        ///< signed, from plane to point
-  double variance_m2 = 0;       ///< predicted, of the residual
-  double confidence = 1;        ///< probability that both points are where they are measured
-  double normal_sigma_rad = 0;  ///< of the plane's tilt
+  Eigen::Vector3d point_m;      ///< source point, relative to the centre of the source's camera
+  Eigen::Vector3d normal;       ///< unit normal of the target's plane
+  double residual_m = 0;        ///< signed distance from the plane to the point
+  double variance_m2 = 0;       ///< predicted variance of the residual
+  double confidence = 1;        ///< probability that the wrap counts of both points are right
+  double normal_sigma_rad = 0;  ///< standard deviation of the tilt of the plane
 };
 
-/// The source points that take part: every stride-th pixel in both axes that has a normal.
+/// The source points used for registration: every n-th pixel in both axes, where n is `stride_px`,
+/// if it has a normal.
 std::vector<const SurfacePoint*> select_points(const SurfaceCloud& source, int stride_px);
 
-/// All pairs at one pose.
+/// All correspondences at one pose.
 struct Correspondences {
-  std::vector<Correspondence> pairs;  ///< ordered by target, then source point
-  double overlap = 0;                 ///< share of the source points that have any
+  std::vector<Correspondence> pairs;  ///< ordered by target, then by source point
+  double overlap = 0;                 ///< share of the source points in at least one pair
 };
 
+/// Projects source points into all targets. A point may have one correspondence per target. The
+/// result is the same for any number of threads.
 Correspondences find_correspondences(const std::vector<const SurfacePoint*>& points,
                                      const Pose& world_from_source,
                                      std::span<const RegistrationTarget> targets,

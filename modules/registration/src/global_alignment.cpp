@@ -15,14 +15,14 @@ namespace tofmap {
 namespace {
 
 constexpr double length_tolerance_voxels = 1.5;
-constexpr double least_length_voxels = 5;  // nearer points have the same neighbours
+constexpr double least_length_voxels = 5;  // points closer together share their neighbours
 constexpr float normal_cos_tolerance = 0.35F;
 constexpr std::size_t most_seeds = 200;
 constexpr std::size_t most_guesses = 10;
 constexpr std::size_t seed_companions = 20;
 constexpr int least_support = 5;
 
-/// A match with its points and normals at hand.
+/// A match with the points and normals of both clouds.
 struct PlacedMatch {
   Eigen::Vector3f source_m, target_m;
   Eigen::Vector3f source_normal, target_normal;
@@ -39,7 +39,8 @@ std::vector<PlacedMatch> registered(const OrientedCloud& source, const OrientedC
   return out;
 }
 
-/// Whether both can be right: lengths and angles between them are the same in both clouds.
+/// Whether two matches are compatible: the distance between their points and the angles of their
+/// normals are the same in both clouds, within tolerances.
 bool go_together(const PlacedMatch& a, const PlacedMatch& b, float voxel_m) {
   const Eigen::Vector3f in_source = b.source_m - a.source_m;
   const Eigen::Vector3f in_target = b.target_m - a.target_m;
@@ -61,7 +62,7 @@ BitMatrix compatibility(const std::vector<PlacedMatch>& matches, double voxel_m)
   const auto voxel = static_cast<float>(voxel_m);
   const int count = static_cast<int>(matches.size());
   BitMatrix together(matches.size());
-  // A row has words of its own, so rows can be filled side by side.
+  // Rows share no words, so threads can fill them in parallel.
 #pragma omp parallel for schedule(dynamic, 16)
   for (int i = 0; i < count; ++i) {
     for (int j = 0; j < count; ++j) {
@@ -71,7 +72,8 @@ BitMatrix compatibility(const std::vector<PlacedMatch>& matches, double voxel_m)
   return together;
 }
 
-/// How many matches a match shares with all that it goes with.
+/// Score of each match: the number of matches compatible with both it and another match, summed
+/// over all matches that are compatible with it.
 std::vector<double> seed_scores(const BitMatrix& together, std::size_t size) {
   std::vector<double> scores(size);
   const int count = static_cast<int>(size);
@@ -84,7 +86,7 @@ std::vector<double> seed_scores(const BitMatrix& together, std::size_t size) {
   return scores;
 }
 
-/// A match and those that share most with it.
+/// A match and the matches that have most compatible matches in common with it.
 std::vector<std::size_t> companions(const BitMatrix& together, std::size_t seed, std::size_t size) {
   struct Companion {
     int common;

@@ -34,7 +34,7 @@ double geman_mcclure_weight(double normalised_residual, double width) {
 
 namespace {
 
-/// Geman-McClure times the inverse of the predicted variance, of what is as measured.
+/// Geman-McClure weight times confidence, divided by the predicted variance.
 double weight_of(const Correspondence& pair, double kernel_width) {
   const double normalised = pair.residual_m / std::sqrt(pair.variance_m2);
   return geman_mcclure_weight(normalised, kernel_width) * pair.confidence / pair.variance_m2;
@@ -52,9 +52,10 @@ void fill_upper(Matrix6d& lower) {
       lower.transpose().triangularView<Eigen::StrictlyUpper>();
 }
 
-/// What normals that are tilted by chance, along any direction but their own, say of a twist. With
-/// A v the Jacobian of a direction v, A Aᵀ is that of all directions, of which the normal's own is
-/// taken off: so a pair costs the moments of its point, and what it costs anyway.
+/// Sums the information about a twist that is expected from random tilts of the normals alone. A
+/// tilt is perpendicular to the normal. If A v is the Jacobian of a residual along a direction v,
+/// A Aᵀ is the information of all three directions, from which the part along the normal is
+/// subtracted. Thus only the moments of the points need to be summed, besides the Jacobians.
 class TiltInformation {
  public:
   void add(const Correspondence& pair, double weight, const Vector6d& jacobian) {
@@ -80,7 +81,7 @@ class TiltInformation {
   double weight_ = 0;
   Eigen::Vector3d first_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3d second_ = Eigen::Matrix3d::Zero();
-  Matrix6d along_normals_ = Matrix6d::Zero();  ///< the lower half
+  Matrix6d along_normals_ = Matrix6d::Zero();  ///< lower triangle only
 };
 
 }  // namespace
@@ -156,7 +157,7 @@ void leave_open(NormalEquations& equations, const Observability& seen,
   for (const int i : directions) {
     kept -= seen.directions.col(i) * seen.directions.col(i).transpose();
   }
-  // Directions are orthogonal where rotations count as the motion of points.
+  // The directions are orthogonal only in scaled coordinates.
   const Matrix6d keep = seen.scale.asDiagonal() * kept * seen.scale.cwiseInverse().asDiagonal();
   equations.information = keep.transpose() * equations.information * keep;
   equations.gradient = keep.transpose() * equations.gradient;

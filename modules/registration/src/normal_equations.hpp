@@ -12,13 +12,14 @@ namespace tofmap {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// Gauss-Newton system of the weighted point-to-plane residuals in the twist (rotation about
-/// the local origin, translation): information · twist = −gradient.
+/// Gauss-Newton system of weighted residuals in the twist (rotation vector about the local origin,
+/// then translation): information · twist = −gradient.
 struct NormalEquations {
   Matrix6d information = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
   double weight_sum = 0;  ///< of confidence / variance, kernel included
-  /// What of that information is expected to come from the noise of the normals alone.
+  /// The expected part of `information` that is noise-induced: it comes from the noise of normals
+  /// alone.
   Matrix6d noise_induced = Matrix6d::Zero();
 };
 
@@ -29,41 +30,46 @@ struct ResidualStatistics {
   double rmse_m = 0;  ///< over the inliers
 };
 
-/// Derivative of a residual by the twist.
+/// Derivative of the residual of a correspondence with respect to the twist.
 Vector6d residual_jacobian(const Correspondence& pair);
 
-/// 1.4826 times the median of |residual| / sigma: robust, and never below 1, since a fit
-/// better than the predicted noise is chance.
+/// Robust standard deviation of residual / predicted sigma: 1.4826 times the median magnitude, and
+/// at least 1, since a fit that is better than the predicted noise is due to chance.
 double robust_scale(const std::vector<Correspondence>& pairs);
 
-/// Weight of a normalised residual under Geman-McClure of this width.
+/// Weight of a normalised residual under the kernel of Geman and McClure of this width:
+/// 1 / (1 + (residual / width)²)².
 double geman_mcclure_weight(double normalised_residual, double width);
 
+/// The system of all correspondences. `kernel_width` is a normalised residual.
 NormalEquations build_equations(const std::vector<Correspondence>& pairs, double kernel_width);
 
+/// An inlier is a correspondence whose kernel weight is at least one half. `kernel_scale` is copied
+/// to the result.
 ResidualStatistics residual_statistics(const std::vector<Correspondence>& pairs,
                                        double kernel_scale, double kernel_width);
 
-/// Adds a prior that holds the twist at `expected`.
+/// Adds a prior with mean `expected` and standard deviations `sigmas` for the twist.
 void add_prior(NormalEquations& equations, const Vector6d& expected, const Vector6d& sigmas);
 
-/// Which directions the observations constrain. Rotations are measured as the motion of points
-/// at `lever_m`, so that all six compare.
+/// How strongly the observations constrain each direction of motion. Rotations are scaled to the
+/// motion of points at a typical distance, so that all six directions are comparable.
 struct Observability {
-  Vector6d shares = Vector6d::Zero();          ///< ascending
-  Matrix6d directions = Matrix6d::Identity();  ///< columns: scaled twists, same order
+  Vector6d shares = Vector6d::Zero();          ///< eigenvalues / weight_sum, in ascending order
+  Matrix6d directions = Matrix6d::Identity();  ///< columns: eigenvectors, in the same order
   Vector6d scale = Vector6d::Ones();           ///< twist = scale ∘ direction
 };
 
+/// Eigen-decomposition of the information, scaled by a typical distance `lever_m` of the points.
 Observability observability(const NormalEquations& equations, double lever_m);
 
-/// The directions that are open, by their columns: the surfaces say less of them than a prior of
-/// these standard deviations. What noisy normals feign is taken off twice, since how noisy they
-/// are is known by no more than that.
+/// The degenerate directions, as columns of `seen.directions`: those about which the surfaces give
+/// less information than a prior with these standard deviations. Twice the noise-induced
+/// information is subtracted first, as a margin, since the noise of normals is known only roughly.
 std::vector<int> open_directions(const Observability& seen, const NormalEquations& equations,
                                  const Vector6d& prior_sigmas);
 
-/// Takes from the equations what they say of these directions.
+/// Removes all information about these directions from the equations.
 void leave_open(NormalEquations& equations, const Observability& seen,
                 std::span<const int> directions);
 

@@ -24,7 +24,7 @@ PclAlignment run(Icp& icp, const Cloud::Ptr& source, const Cloud::Ptr& target, c
   icp.align(aligned, initial.matrix().cast<float>());
   PclAlignment out;
   out.target_from_source.matrix() = icp.getFinalTransformation().template cast<double>();
-  // Floats leave a rotation that is none to the digits of doubles.
+  // PCL computes in floats: the matrix must be made a rotation in double precision.
   const Eigen::Matrix3d linear = out.target_from_source.linear();
   out.target_from_source.linear() = Eigen::Quaterniond(linear).normalized().toRotationMatrix();
   out.converged = icp.hasConverged();

@@ -10,12 +10,14 @@
 
 namespace tofmap {
 
+/// A pose found by PCL.
 struct PclAlignment {
   Pose target_from_source = Pose::Identity();
   bool converged = false;
 };
 
-/// PCL's ICP or generalised ICP, as it comes.
+/// Runs PCL's point-to-point ICP, or generalised ICP if `generalised` is true, with PCL's default
+/// options.
 PclAlignment align_with_pcl(const std::vector<Eigen::Vector3f>& source_m,
                             const std::vector<Eigen::Vector3f>& target_m,
                             const Pose& target_from_source, double max_distance_m, bool generalised,

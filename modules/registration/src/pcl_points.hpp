@@ -10,7 +10,7 @@
 
 namespace tofmap {
 
-/// The points as PCL takes them.
+/// Copies points into a PCL cloud.
 inline pcl::PointCloud<pcl::PointXYZ>::Ptr pcl_points(std::span<const Eigen::Vector3f> points_m) {
   auto cloud = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
   cloud->reserve(points_m.size());

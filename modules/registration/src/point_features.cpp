@@ -27,7 +27,7 @@ pcl::PointCloud<Signature>::Ptr signatures(const std::vector<PointFeature>& feat
   return cloud;
 }
 
-/// For each feature the index of the one of `others` that is most like it.
+/// For each feature, the index of the most similar one of `others`.
 std::vector<int> most_alike(const pcl::PointCloud<Signature>& features,
                             const pcl::PointCloud<Signature>::Ptr& others) {
   SignatureTree tree;
@@ -60,7 +60,7 @@ std::vector<PointFeature> point_features(const OrientedCloud& cloud) {
   std::vector<PointFeature> features(signatures.size());
   for (std::size_t i = 0; i < signatures.size(); ++i) {
     std::ranges::copy(signatures[i].histogram, features[i].begin());
-    // A point without neighbours has no histogram; an empty one is like no other.
+    // The histogram of a point without neighbours is NaN, which a search tree cannot hold.
     for (float& value : features[i]) value = std::isfinite(value) ? value : 0;
   }
   return features;

@@ -19,13 +19,13 @@ namespace {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// A pose as Ceres turns it.
+/// A pose in the parameters that Ceres optimises.
 struct Node {
   Eigen::Quaterniond rotation;
   Eigen::Vector3d translation_m;
 };
 
-/// The error of an edge in standard deviations, one number a direction.
+/// The whitened error of an edge: six residuals with unit variance.
 class EdgeError {
  public:
   explicit EdgeError(const PoseEdge& edge)
@@ -61,7 +61,8 @@ class EdgeError {
   Matrix6d whitening_;
 };
 
-/// Geman and McClure: ρ(s) = s / (1 + s / w²), from squared errors.
+/// Kernel of Geman and McClure on the squared error s: ρ(s) = s / (1 + s / w²), where w is the
+/// width.
 class GemanMcClureLoss : public ceres::LossFunction {
  public:
   explicit GemanMcClureLoss(double width) : inverse_square_(1 / (width * width)) {}
@@ -93,10 +94,10 @@ Node node_of(const Pose& pose) {
   return {Eigen::Quaterniond(pose.linear()).normalized(), pose.translation()};
 }
 
-/// One pass with a fixed kernel.
+/// One pass of optimisation with a fixed kernel. Updates `nodes`.
 ceres::Solver::Summary solve(std::span<const PoseEdge> edges, double kernel_width,
                              std::vector<Node>& nodes) {
-  // Constants shared by all blocks are not the problem's to delete.
+  // The manifold and the kernel are shared by all blocks and live on the stack.
   ceres::Problem::Options ownership;
   ownership.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -119,7 +120,7 @@ ceres::Solver::Summary solve(std::span<const PoseEdge> edges, double kernel_widt
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.num_threads = 1;  // the same bits everywhere
+  options.num_threads = 1;  // makes results reproducible to the bit
   options.max_num_iterations = 50;
   options.function_tolerance = 1e-9;
   options.logging_type = ceres::SILENT;
@@ -176,7 +177,7 @@ PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const Pos
 }
 
 bool is_outvoted(double deviations, double kernel_width) {
-  return deviations > std::sqrt(3) * kernel_width;  // Geman and McClure's weight is 1/16 there
+  return deviations > std::sqrt(3) * kernel_width;  // where the weight is 1/16
 }
 
 }  // namespace tofmap

@@ -22,7 +22,7 @@ namespace {
 constexpr double rotation_tolerance_rad = 2e-5;
 constexpr double translation_tolerance_m = 5e-5;
 
-/// Coarse steps come near; what they leave, fine ones mend.
+/// Tolerance of the coarse stage in multiples of the final one. The fine stage corrects the rest.
 constexpr double coarse_tolerance = 20;
 constexpr int coarse_stride = 2;
 
@@ -31,7 +31,8 @@ bool is_below_tolerance(const Vector6d& twist, double tolerances) {
          twist.tail<3>().norm() < tolerances * translation_tolerance_m;
 }
 
-/// Rotation about the camera's centre, then translation, both in world axes.
+/// The pose after a rotation about the camera's centre and a translation, both along the world's
+/// axes.
 Pose moved(const Pose& world_from_camera, const Vector6d& twist) {
   const Pose step = pose_from_twist(twist);
   Pose pose = world_from_camera;
@@ -40,7 +41,7 @@ Pose moved(const Pose& world_from_camera, const Vector6d& twist) {
   return pose;
 }
 
-/// The twist that moves `from` to `to`.
+/// The twist with which moved() takes `from` to `to`.
 Vector6d twist_between(const Pose& from, const Pose& to) {
   const Eigen::AngleAxisd rotation(to.linear() * from.linear().transpose());
   Vector6d twist;
@@ -55,7 +56,7 @@ double median_range_m(const std::vector<const SurfacePoint*>& points) {
   return median(ranges);
 }
 
-/// The standard deviations of a prior, as those of a twist.
+/// The standard deviations of a prior in the order of a twist.
 Vector6d prior_sigmas(const MotionPrior& prior) {
   Vector6d sigmas;
   sigmas << Eigen::Vector3d::Constant(prior.rotation_sigma_rad),
@@ -63,13 +64,13 @@ Vector6d prior_sigmas(const MotionPrior& prior) {
   return sigmas;
 }
 
-/// The system at one pose, prior included.
+/// The Gauss-Newton system at one pose, prior included.
 struct System {
   NormalEquations equations;
   ResidualStatistics statistics;
   Observability seen;
-  int open_directions = 0;                  ///< that the prior alone decides on
-  Matrix6d information = Matrix6d::Zero();  ///< of the surfaces, without the prior
+  int open_directions = 0;                  ///< number of degenerate directions
+  Matrix6d information = Matrix6d::Zero();  ///< from the surfaces, without the prior
 };
 
 System build_system(const std::vector<Correspondence>& pairs, const Pose& pose, double lever_m,
@@ -79,8 +80,8 @@ System build_system(const std::vector<Correspondence>& pairs, const Pose& pose, 
   const double kernel_width = options.kernel_width * scale;
   system.equations = build_equations(pairs, kernel_width);
   system.statistics = residual_statistics(pairs, scale, kernel_width);
-  // Points whose plane fits share pixels are no independent observations, and residuals
-  // above the predicted noise tell of less information than predicted.
+  // Points whose plane fits share pixels are not independent observations, and residuals above the
+  // predicted noise mean that there is less information than predicted.
   const double independent = 1 / (options.correlated_observations * scale * scale);
   system.equations.information *= independent;
   system.equations.gradient *= independent;
@@ -104,8 +105,8 @@ RegistrationStatus verdict(const RegistrationResult& result, bool has_converged,
   return has_converged ? RegistrationStatus::converged : RegistrationStatus::iteration_limit;
 }
 
-/// Gauss-Newton from the pose of `result`, which it keeps up to date, until a step is within so
-/// many tolerances.
+/// Gauss-Newton iterations from the pose of `result`, which is updated, until an increment is below
+/// the tolerance times `tolerances`.
 RegistrationStatus descend(const std::vector<const SurfacePoint*>& points,
                            std::span<const RegistrationTarget> targets, const CameraModel& camera,
                            const MotionPrior& prior, const RegistrationOptions& options,
@@ -138,7 +139,7 @@ RegistrationStatus descend(const std::vector<const SurfacePoint*>& points,
   return verdict(result, has_converged, options);
 }
 
-/// From coarse to fine: every fourth point brings the pose near, all of them to its place.
+/// Coarse to fine: converges roughly with a quarter of the points, then precisely with all of them.
 RegistrationStatus refine(const SurfaceCloud& source,
                           const std::vector<const SurfacePoint*>& points,
                           std::span<const RegistrationTarget> targets, const CameraModel& camera,
@@ -153,12 +154,12 @@ RegistrationStatus refine(const SurfaceCloud& source,
         descend(fewer_points, targets, camera, prior, coarse, coarse_tolerance, result);
     if (!succeeded(status)) result.world_from_camera = prior.world_from_camera;
   }
-  result.iterations = 0;  // those that count are the fine ones
+  result.iterations = 0;  // only the fine stage is counted
   constexpr double one = 1;
   return descend(points, targets, camera, prior, options, one, result);
 }
 
-/// Points in a frame that is `frame_from_camera` of the camera's.
+/// Positions of points of a camera in another frame.
 std::vector<Eigen::Vector3f> positions(const std::vector<const SurfacePoint*>& points,
                                        const Pose& frame_from_camera) {
   const Eigen::Isometry3f pose = frame_from_camera.cast<float>();
@@ -169,13 +170,14 @@ std::vector<Eigen::Vector3f> positions(const std::vector<const SurfacePoint*>& p
   return out;
 }
 
-/// Moves the pose of `result` to what PCL makes of it, then measures as `descend` does.
+/// Replaces the pose of `result` by the one that PCL finds, then measures the fit there with one
+/// iteration of `descend`, whose increment is discarded.
 RegistrationStatus refine_with_pcl(const SurfaceCloud&,
                                    const std::vector<const SurfacePoint*>& points,
                                    std::span<const RegistrationTarget> targets,
                                    const CameraModel& camera, const MotionPrior& prior,
                                    const RegistrationOptions& options, RegistrationResult& result) {
-  // About the expected camera, since PCL counts in floats.
+  // PCL computes in floats, so coordinates are relative to the predicted camera.
   const Pose& origin = prior.world_from_camera;
   std::vector<Eigen::Vector3f> surface;
   for (const RegistrationTarget& target : targets) {
@@ -204,27 +206,30 @@ RegistrationStatus refine_with_pcl(const SurfaceCloud&,
 std::vector<OptionField<RegistrationOptions>> RegistrationOptions::fields() {
   using O = RegistrationOptions;
   return {
-      {"method", &O::method, 0, 0, "", "how frames are registered; PCL's are there to compare with",
+      {"method", &O::method, 0, 0, "",
+       "how frames are registered; the methods of PCL are for comparison",
        "projective | pcl_icp | pcl_gicp"},
       {"source_stride_px", &O::source_stride_px, 1, 16, "px",
-       "every how manieth pixel of a frame, in both axes, is registered"},
-      {"max_iterations", &O::max_iterations, 1, 200, "", "Gauss-Newton steps at the most"},
+       "registers every n-th pixel of a frame in both axes"},
+      {"max_iterations", &O::max_iterations, 1, 200, "",
+       "largest number of Gauss-Newton iterations"},
       {"max_correspondence_distance_m", &O::max_correspondence_distance_m, 0.01, 5, "m",
-       "points farther apart than this are no correspondence"},
+       "largest distance between the points of a correspondence"},
       {"max_normal_angle_rad", &O::max_normal_angle_rad, 0.01, 1.57, "rad",
-       "normals that differ by more are no correspondence"},
+       "largest angle between the normals of a correspondence"},
       {"kernel_width", &O::kernel_width, 0.5, 100, "",
        "width of the Geman-McClure kernel, in robust standard deviations of the residuals"},
       {"systematic_sigma_m", &O::systematic_sigma_m, 0, 1, "m",
-       "error of a point that averaging does not lower, added to its predicted noise"},
+       "standard deviation of the error of a point that averaging does not reduce; added to its "
+       "predicted noise"},
       {"correlated_observations", &O::correlated_observations, 1, 1000, "",
-       "how many correspondences count as one independent observation"},
+       "number of correspondences that count as one independent observation"},
       {"min_correspondences", &O::min_correspondences, 6, 1000000, "",
-       "a frame with fewer is not registered"},
+       "a frame with fewer correspondences is not registered"},
       {"min_overlap", &O::min_overlap, 0, 1, "",
-       "share of a frame's points that must fall onto known surface"},
+       "smallest share of a frame's points that must have a correspondence"},
       {"min_inlier_ratio", &O::min_inlier_ratio, 0, 1, "",
-       "share of the correspondences that must agree with the pose"},
+       "smallest share of the correspondences that must fit the pose"},
   };
 }
 
@@ -260,7 +265,7 @@ RegistrationResult register_to_targets(const SurfaceCloud& source,
                                        const CameraModel& camera, const MotionPrior& prior,
                                        const RegistrationOptions& options) {
   if (!(prior.rotation_sigma_rad > 0 && prior.translation_sigma_m > 0)) {
-    throw UsageError("motion prior: the standard deviations must be positive");
+    throw UsageError("motion prior: both standard deviations must be positive");
   }
   RegistrationResult result;
   result.world_from_camera = prior.world_from_camera;

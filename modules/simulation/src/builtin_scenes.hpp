@@ -6,7 +6,7 @@
 
 namespace tofmap {
 
-// The scenes of docs/simulator.md, one function each.
+// One function for each built-in scene (docs/simulator.md).
 Scene wall_scene();
 Scene slope_scene();
 Scene beyond_scene();
@@ -18,7 +18,8 @@ Scene atrium_scene();
 Scene passage_scene();
 Scene random_scene(int seed);
 
-/// Floor, ceiling and four walls of a room with one corner at the origin.
+/// Adds floor, ceiling and four walls of a room of `size_m` whose lowest corner is at the origin.
+/// `floor`, `ceiling` and `walls` are reflectances; those of the four walls differ a little.
 void add_hull(TriangleMesh& mesh, const Eigen::Vector3d& size_m, double floor, double ceiling,
               double walls);
 

@@ -12,16 +12,18 @@
 namespace tofmap {
 namespace {
 
-/// Weights of the four control points around a place in a uniform cubic B-spline, 0 ≤ t < 1.
+/// Weights of the four control points of a segment of a uniform cubic B-spline, 0 ≤ t < 1.
 std::array<double, 4> spline_weights(double t) {
   const double s = 1 - t;
   return {s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6,
           t * t * t / 6};
 }
 
-constexpr double limit_share = 0.95;  // of what is allowed; leaves room for rounding
+/// Largest step as a fraction of the allowed one. It leaves room for rounding.
+constexpr double limit_share = 0.95;
 
-/// The effort spent from the path's start to evenly spaced values of u.
+/// The effort of motion from the start of the path to evenly spaced values of u. The effort of a
+/// step is the root of the squares of its translation and rotation, each divided by its limit.
 struct EffortTable {
   std::vector<double> u;
   std::vector<double> effort;
@@ -44,7 +46,8 @@ struct EffortTable {
 
   double total() const { return effort.back(); }
 
-  /// The place that is reached with this effort; beyond the end, the path's period counts on.
+  /// The spline parameter that is reached with this effort. Beyond the end of the path it continues
+  /// into the next period.
   double place(double spent) const {
     if (spent > total()) return u.back() + (total() > 0 ? place(spent - total()) : 0);
     const auto above = std::ranges::lower_bound(effort, spent);
@@ -73,12 +76,13 @@ Waypoint look_at(const Eigen::Vector3d& position, const Eigen::Vector3d& target)
 CameraPath::CameraPath(std::vector<Waypoint> waypoints, bool closed)
     : waypoints_(std::move(waypoints)), closed_(closed) {
   if (waypoints_.size() < (closed ? 3U : 2U)) {
-    throw UsageError("a camera path needs two way points, three if it is closed");
+    throw UsageError("a camera path needs at least two waypoints, or three if it is closed");
   }
 }
 
 double CameraPath::end() const {
-  // The ends of an open path are doubled on each side, which adds two segments.
+  // The first and the last waypoint of an open path count three times, which adds two segments to
+  // the n − 1 between them.
   return static_cast<double>(waypoints_.size()) + (closed_ ? 0 : 1);
 }
 
@@ -116,7 +120,7 @@ CameraMotion plan_motion(const CameraPath& path, const MotionLimits& limits, int
   }
   if (!path.closed() && count > 1 && b_delay_share > 0 &&
       (count - 1 + b_delay_share) * step > efforts.total()) {
-    // An open path ends at the last A; the camera goes on by as much as before.
+    // An open path ends at the last A. The pose of the last B is extrapolated from the last step.
     const std::size_t last = motion.at_a.size() - 1;
     motion.at_b[last].world_from_camera =
         interpolate(motion.at_a[last - 1].world_from_camera, motion.at_a[last].world_from_camera,
@@ -126,7 +130,7 @@ CameraMotion plan_motion(const CameraPath& path, const MotionLimits& limits, int
 }
 
 CameraMotion replay_motion(const Trajectory& poses, int frames, double b_delay_share) {
-  if (poses.empty()) throw UsageError("there is no pose to put the camera at");
+  if (poses.empty()) throw UsageError("the trajectory contains no poses to replay");
   const std::size_t count =
       frames > 0 ? std::min(poses.size(), static_cast<std::size_t>(frames)) : poses.size();
   CameraMotion motion;

@@ -16,6 +16,7 @@
 namespace tofmap {
 namespace {
 
+/// Larger meshes are hardly in metres.
 constexpr double max_extent_m = 1000;
 
 std::string ending(const std::filesystem::path& file) {
@@ -26,11 +27,11 @@ std::string ending(const std::filesystem::path& file) {
 
 void check(const TriangleMesh& mesh, const std::filesystem::path& file) {
   if (mesh.triangles.empty()) {
-    fail_to_read(file, "holds no triangle; a point cloud cannot be simulated");
+    fail_to_read(file, "contains no triangles; a point cloud cannot be simulated");
   }
   const bool finite =
       std::ranges::all_of(mesh.vertices, [](const Eigen::Vector3f& v) { return v.allFinite(); });
-  if (!finite) fail_to_read(file, "has vertices that are no numbers");
+  if (!finite) fail_to_read(file, "has vertices that are not finite numbers");
   const double extent_m = bounds(mesh).sizes().maxCoeff();
   if (extent_m > max_extent_m) {
     fail_to_read(file, "spans " + std::to_string(std::lround(extent_m)) +
@@ -39,7 +40,7 @@ void check(const TriangleMesh& mesh, const std::filesystem::path& file) {
 }
 
 void append(std::string& bytes, const void* value, std::size_t size) {
-  static_assert(std::endian::native == std::endian::little, "the header below says so");
+  static_assert(std::endian::native == std::endian::little, "the header states this byte order");
   bytes.append(static_cast<const char*>(value), size);
 }
 
@@ -54,7 +55,7 @@ std::string read_bytes(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream bytes;
   bytes << in.rdbuf();
-  if (!in) fail_to_read(file, "cannot be read, or is empty");
+  if (!in) fail_to_read(file, "cannot be read");
   return std::move(bytes).str();
 }
 
@@ -63,8 +64,8 @@ void add_polygon(TriangleMesh& mesh, std::span<const long> corners,
   const long count = static_cast<long>(mesh.vertices.size());
   for (const long corner : corners) {
     if (corner >= 0 && corner < count) continue;
-    fail_to_read(file, "a face names vertex " + std::to_string(corner) + " (counted from 0) of " +
-                           std::to_string(count));
+    fail_to_read(file, "a face refers to vertex " + std::to_string(corner) +
+                           " (counted from 0), but there are " + std::to_string(count));
   }
   const auto id = [&](std::size_t i) { return static_cast<std::uint32_t>(corners[i]); };
   for (std::size_t i = 2; i < corners.size(); ++i) {
@@ -105,7 +106,8 @@ void write_mesh_ply(const std::filesystem::path& file, const TriangleMesh& mesh)
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out.close();
   if (!out) {
-    throw InputError(file.string() + ": cannot be written; is the disk full, is it allowed?");
+    throw InputError(file.string() +
+                     ": cannot be written; is the disk full, or is permission missing?");
   }
 }
 

@@ -17,11 +17,11 @@ using Eigen::Vector2i;
 using Eigen::Vector3d;
 
 constexpr double eye_height_m = 1.4;
-constexpr double wanted_clearance_m = 0.55;   // the spline may cut corners down to half of it
-constexpr double max_written_range_m = 65.5;  // of truth images
+constexpr double wanted_clearance_m = 0.55;   // the spline cuts corners, up to half of it
+constexpr double max_written_range_m = 65.5;  // truth images hold millimetres in 16 bits
 
-/// A horizontal grid at eye height: how far each cell's middle is from the surface, 0 where the
-/// camera cannot stand.
+/// A horizontal grid at eye height. For each cell, it stores the distance from the centre of the
+/// cell to the surface, or 0 where the camera cannot stand.
 class FloorPlan {
  public:
   FloorPlan(const RayScene& rays, const Eigen::AlignedBox3d& box)
@@ -67,7 +67,8 @@ class FloorPlan {
   }
 
  private:
-  /// Inside is where most horizontal rays meet the surface: an open front is still a room.
+  /// Whether a place is inside the mesh: at least 10 of 16 horizontal rays meet the surface. A room
+  /// with an open front counts as inside.
   static bool is_inside(const RayScene& rays, const Vector3d& place, double reach_m) {
     constexpr int directions = 16;
     int hits = 0;
@@ -78,7 +79,7 @@ class FloorPlan {
     return hits >= directions * 5 / 8;
   }
 
-  /// Empties all but the largest connected part of the free cells.
+  /// Keeps only the largest connected set of free cells.
   void keep_largest_part() {
     std::vector<int> part(clearance_.size(), -1);
     std::vector<int> sizes;
@@ -125,7 +126,8 @@ Vector3d middle_of_free_space(const FloorPlan& plan) {
   return sum / count;
 }
 
-/// In each direction from the middle the free cell that lies far out and well clear.
+/// For each of 12 sectors around `middle`, the free cell with the largest product of its distance
+/// from the middle and its clearance. Sectors without free cells are left out.
 std::vector<int> stations_around(const FloorPlan& plan, const Vector3d& middle) {
   constexpr int sectors = 12;
   std::vector<int> best(sectors, -1);
@@ -144,7 +146,7 @@ std::vector<int> stations_around(const FloorPlan& plan, const Vector3d& middle) 
   return best;
 }
 
-/// The cells of the cheapest way from one cell to another, without the first (Dijkstra's
+/// The cells of the cheapest path from one cell to another, without the first cell (Dijkstra's
 /// algorithm). Cells near the surface cost more.
 std::vector<int> way_between(const FloorPlan& plan, int from, int to) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -175,8 +177,9 @@ std::vector<int> way_between(const FloorPlan& plan, int from, int to) {
   return way;
 }
 
-/// A loop through the free space, looking along the circle around its middle: the direction then
-/// never flips, however the way winds. Empty if there is no such space.
+/// A loop through the free space. The camera looks along the circle around the centre of that
+/// space, so that the viewing direction never flips, however the path winds. Empty if there is no
+/// free space, or too little of it.
 CameraPath loop_inside(const FloorPlan& plan) {
   if (!plan.has_space()) return {};
   const Vector3d middle = middle_of_free_space(plan);
@@ -191,14 +194,14 @@ CameraPath loop_inside(const FloorPlan& plan) {
   for (const int cell : cells) {
     const Vector3d away = plan.middle(cell) - middle;
     waypoints.push_back({plan.middle(cell), {-away.y(), away.x(), -0.1 * away.norm()}});
-    // In the very middle there is no direction along the circle.
+    // At the centre there is no direction along the circle.
     if (away.norm() < plan.cell_m()) waypoints.pop_back();
   }
   if (waypoints.size() < 3) return {};
   return {std::move(waypoints), true};
 }
 
-/// A circle around an object, looking at it.
+/// A circle around an object. The camera looks at the centre of the object.
 CameraPath orbit_around(const Eigen::AlignedBox3d& box) {
   constexpr int count = 24;
   const double radius_m = std::max(0.9 * box.diagonal().norm(), 0.5);

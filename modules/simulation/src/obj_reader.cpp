@@ -21,7 +21,8 @@ Eigen::Vector3f parse_vertex(std::istringstream& words) {
   return point;
 }
 
-/// Corners as 'v', 'v/t', 'v//n' or 'v/t/n': v counts from 1, or from the last vertex as −1.
+/// Vertex indices, from 0, of corners of the form 'v', 'v/t', 'v//n' or 'v/t/n'. In the file, v
+/// counts from 1, or backwards from −1, the last vertex. Empty if a corner is not a number or is 0.
 std::vector<long> parse_face(std::istringstream& words, std::size_t vertex_count) {
   std::vector<long> corners;
   for (std::string word; words >> word;) {
@@ -35,7 +36,7 @@ std::vector<long> parse_face(std::istringstream& words, std::size_t vertex_count
 
 }  // namespace
 
-/// Vertices and faces; materials, normals, lines and textures have no part in ranges.
+// Reads vertices and faces. Materials, normals, lines and textures do not affect ranges.
 TriangleMesh read_obj_mesh(const std::filesystem::path& file) {
   std::istringstream in(read_bytes(file));
   TriangleMesh mesh;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// The scenes that isolate one property each; the first two are the experiments of Droeschel, Holz
-// and Behnke (IROS 2010). λ_A is 5.17 m at 29 MHz.
+// Scenes that isolate one property each. The first two are the experiments of Droeschel, Holz and
+// Behnke (IROS 2010). λ_A is 5.17 m at 29 MHz.
 
 #include "builtin_scenes.hpp"
 
@@ -24,8 +24,8 @@ void add_hull(TriangleMesh& mesh, const Vector3d& size_m, double floor, double c
   add_quad(mesh, x, y, z, 1.05 * walls);
 }
 
-/// First experiment: walls and floor that run on without a break from below one wavelength to
-/// 8 m: neighbouring ranges alone tell the wraps.
+/// First experiment: walls and floor extend without a step from less than one wavelength to 8 m, so
+/// that differences between neighbouring pixels suffice to find the wrap counts.
 Scene wall_scene() {
   Scene scene{.name = "wall", .min_frames = 20, .max_range_m = 10.3};
   add_hull(scene.surface, {9, 5, 3}, 0.6, 0.7, 0.7);
@@ -37,22 +37,24 @@ Scene wall_scene() {
   return scene;
 }
 
-/// Second experiment: all that is far is seen through two openings in a near wall, across steps of
-/// more than λ_A / 2: a slanted wall that falls away steeply, and a level one. No surface leads
-/// there from the near side, so that phase differences alone mislead.
+/// Second experiment: all far surfaces are seen through two openings in a near wall, behind steps
+/// of more than λ_A / 2. One of them is a steeply slanted wall, the other faces the camera. No
+/// surface connects them with the near wall, so that phase differences alone give wrong wrap
+/// counts.
 Scene slope_scene() {
   Scene scene{.name = "slope", .min_frames = 20, .max_range_m = 10.3};
   constexpr double near_x = 2.6;
-  // Larger than the view from any place on the path, so that nothing is seen around it.
+  // The wall fills the view from every place on the path, so that nothing is seen beside it.
   add_wall(scene.surface, {near_x, -3, 0}, {near_x, 3, 0}, 4, 0.02,
            {{1.5, 2.75, 0.95, 2.05}, {3.3, 4.5, 0.95, 2.05}}, 0.6);
-  // Behind the right opening, in the image: from 5.4 m to 9.7 m within the opening's width; where
-  // it would leave two wavelengths behind it bends away, and a board closes the gap at its start.
+  // The slanted wall, behind the opening that is on the right in the image: its range grows from
+  // 5.4 m to 9.7 m over the width of the opening. It bends before its range exceeds two
+  // wavelengths, and a board closes the gap at its near end.
   const Vector3d bend(8.6, -4.53, -1);
   add_quad(scene.surface, {5.3, -0.8, -1}, bend - Vector3d(5.3, -0.8, -1), {0, 0, 6}, 0.8);
   add_quad(scene.surface, bend, {0, -2, 0}, {0, 0, 6}, 0.8);
   add_quad(scene.surface, {5.3, -0.8, -1}, {0.6, 0.2, 0}, {0, 0, 6}, 0.8);
-  // Behind the left one: level, at 5.9 m.
+  // The wall that faces the camera, behind the left opening, at 5.9 m.
   add_quad(scene.surface, {5.9, -0.6, -1}, {0, 6, 0}, {0, 0, 6}, 0.7);
   scene.path = CameraPath({{{-0.05, 0.0, 1.5}, {1, 0, 0}},
                            {{0.0, 0.04, 1.5}, {1, 0.01, 0}},
@@ -62,7 +64,7 @@ Scene slope_scene() {
   return scene;
 }
 
-/// A hall seen from a gallery: no surface in view is nearer than one wavelength.
+/// A hall seen from a gallery. No visible surface is nearer than one wavelength.
 Scene beyond_scene() {
   Scene scene{.name = "beyond", .min_frames = 20, .max_range_m = 15.5};
   add_hull(scene.surface, {12, 13, 9}, 0.7, 0.8, 0.8);
@@ -79,7 +81,7 @@ Scene beyond_scene() {
   return scene;
 }
 
-/// 20 m of corridor, nearly four wavelengths, with doors, niches and pillars along it.
+/// A corridor of 20 m, nearly four wavelengths, with doors in niches, pillars and boxes.
 Scene corridor_scene() {
   Scene scene{.name = "corridor", .min_frames = 150, .max_range_m = 20.4};
   TriangleMesh& mesh = scene.surface;
@@ -90,7 +92,7 @@ Scene corridor_scene() {
   add_quad(mesh, {0, -0.4, height}, {length, 0, 0}, {0, width + 0.8, 0}, 0.8);
   add_quad(mesh, {0, -0.4, 0}, {0, width + 0.8, 0}, {0, 0, height}, 0.7);
   add_quad(mesh, {length, -0.4, 0}, {0, width + 0.8, 0}, {0, 0, height}, 0.8);
-  // Door niches 0.3 m deep: openings in walls of that thickness, closed by a leaf behind.
+  // Door niches are 0.3 m deep: openings in walls of that thickness, with a door leaf behind.
   const std::vector<WallOpening> left{
       {2, 2.95, 0, 2.1}, {7, 7.95, 0, 2.1}, {12.5, 13.45, 0, 2.1}, {17, 17.95, 0, 2.1}};
   const std::vector<WallOpening> right{

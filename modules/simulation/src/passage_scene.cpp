@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Bright walls at 0.3 m before dark ones at 15 m, in the same view: amplitudes over four decades.
+// Bright walls at 0.3 m in front of dark walls at 15 m in the same view: amplitudes over four
+// decades.
 
 #include "builtin_scenes.hpp"
 
@@ -17,22 +18,24 @@ constexpr double partition_height = 2.1;
 constexpr double partition_thickness = 0.8;
 constexpr double block_width = 1;
 
-/// An opening of a partition that stands across the way. The camera goes by one jamb closely, and
+/// An opening in a partition that stands across the path. The camera passes close to one jamb and
 /// turns towards it.
 struct Opening {
-  double x;           ///< middle of the partition's thickness
-  double y;           ///< of the camera's way through
+  double x;           ///< centre of the partition along the path, metres
+  double y;           ///< of the camera in the opening, metres
   double side;        ///< of the near jamb: 1 left, −1 right
-  double far_jamb_m;  ///< how far the other one is
+  double far_jamb_m;  ///< from the camera to the other jamb, across the path
 };
 
+/// From the camera to the near jamb, across the path.
 constexpr double near_jamb_m = 0.32;
 
-/// One beside the other, so that a view past a jamb meets the hall, not the next partition.
+/// The openings are offset sideways, so that the camera sees the hall past a jamb, not the next
+/// partition.
 constexpr std::array<Opening, 3> openings{
     {{2.2, 8.0, 1, 0.75}, {4.8, 6.8, -1, 0.6}, {7.4, 8.0, 1, 0.5}}};
 
-/// A block on either side of the way.
+/// Adds a block on each side of the path.
 void add_partition(TriangleMesh& mesh, const Opening& opening, double reflectance) {
   const double left = opening.y + (opening.side > 0 ? near_jamb_m : opening.far_jamb_m);
   const double right = opening.y - (opening.side > 0 ? opening.far_jamb_m : near_jamb_m);
@@ -42,7 +45,7 @@ void add_partition(TriangleMesh& mesh, const Opening& opening, double reflectanc
   add_box(mesh, {from_x, right - block_width, 0}, {to_x, right, partition_height}, reflectance);
 }
 
-/// Dark things at all ranges between the partitions and the far wall.
+/// Adds dark objects at all ranges between the partitions and the far wall.
 void furnish_hall(TriangleMesh& mesh, double height) {
   for (const double x : {10.0, 14.0, 18.0}) {
     add_cylinder(mesh, {x, 4.2, 0}, 0.3, height, 0.12);
@@ -58,8 +61,8 @@ void furnish_hall(TriangleMesh& mesh, double height) {
   add_box(mesh, {13.0, 0, height - 0.5}, {13.4, 16, height}, 0.1);
 }
 
-/// Seven way points in line through the opening: the spline is straight between the jambs. The view
-/// turns from straight ahead towards the near jamb.
+/// Adds seven waypoints on a line through the opening, so that the spline is straight between the
+/// jambs. The viewing direction turns from straight ahead towards the near jamb and back.
 void go_through(std::vector<Waypoint>& waypoints, const Opening& opening) {
   constexpr double spacing_m = 0.3;
   constexpr double eye_m = 1.4;

@@ -10,9 +10,11 @@
 namespace tofmap {
 namespace {
 
+/// Hits that differ by less than this belong to the same surface.
 constexpr double surface_gap_m = 0.05;
 
-/// How far a ray's hit lies from the plane of another one's, along the ray.
+/// The distance, along `ray`, between its hit and the plane of the hit of the other ray, `plane`.
+/// Infinite if the ray does not meet that plane.
 double off_plane_m(const SubRay& ray, const SubRay& plane) {
   const Eigen::Vector3d& normal = plane.hit->normal;
   const double to_plane = ray.direction.dot(normal);
@@ -22,7 +24,8 @@ double off_plane_m(const SubRay& ray, const SubRay& plane) {
                      : std::numeric_limits<double>::infinity();
 }
 
-/// How much the range changes from one ray to the next on a surface that is seen at this slant.
+/// The change of range between two rays that are `spacing_rad` apart, on a surface that is slanted
+/// as the one that `ray` hits.
 double slant_m(const SubRay& ray, double spacing_rad) {
   constexpr double least_cos = 0.01;
   const double cos = std::max(ray.hit->cos_incidence, least_cos);
@@ -30,7 +33,7 @@ double slant_m(const SubRay& ray, double spacing_rad) {
 }
 
 bool see_two_surfaces(const SubRay& one, const SubRay& other) {
-  if (!one.hit || !other.hit) return false;  // what is not hit adds no signal
+  if (!one.hit || !other.hit) return false;  // a ray without a hit adds no signal
   const double spacing_rad = (one.direction - other.direction).norm();
   const double tolerated_m =
       surface_gap_m + slant_m(one, spacing_rad) + slant_m(other, spacing_rad);
@@ -48,7 +51,7 @@ bool sees_two_surfaces(std::span<const SubRay> rays) {
   return false;
 }
 
-/// How far the phase's range is from one range, modulo the wavelength.
+/// The absolute difference between the range of a phase and `range_m`, modulo the wavelength.
 double off_range_m(float phase_cycles, double range_m, double wavelength_m) {
   const double cycles = phase_cycles - range_m / wavelength_m;
   return std::abs(cycles - std::round(cycles)) * wavelength_m;
@@ -73,7 +76,7 @@ PixelLabel label_pixel(std::span<const SubRay> rays, float phase_cycles, double 
     return off_m > std::max(surface_gap_m, sigmas * sigma_m) ? PixelLabel::flying
                                                              : PixelLabel::mixed;
   }
-  // On one surface any range between those of the rays is right.
+  // On one surface, every range between the smallest and the largest of the rays is right.
   const double middle_m = (nearest_m + farthest_m) / 2;
   const double spread_m = (farthest_m - nearest_m) / 2;
   return off_range_m(phase_cycles, middle_m, wavelength_m) > noisy_range_m + spread_m

@@ -12,13 +12,14 @@
 
 namespace tofmap {
 
-/// What a pixel says of a complex signal.
+/// The phase and amplitude that a pixel measures.
 struct PhaseAndAmplitude {
-  float phase_cycles = 0;  ///< [0, 1), also after rounding
+  float phase_cycles = 0;  ///< in [0, 1), even after rounding to float
   float amplitude = 0;
 };
 
-/// Nothing where the amplitude rounds to zero.
+/// Phase and amplitude of a complex signal. Empty if the amplitude rounds to zero. Larger
+/// amplitudes than 65535 become 65535.
 inline std::optional<PhaseAndAmplitude> measure(const std::complex<double>& signal) {
   constexpr double max_amplitude = 65535;
   const double modulus = std::abs(signal);
@@ -29,8 +30,9 @@ inline std::optional<PhaseAndAmplitude> measure(const std::complex<double>& sign
                            static_cast<float>(std::min(modulus, max_amplitude))};
 }
 
-/// The noise that gives `range_noise_m` at A on a surface of reflectance 0.5 that faces the camera
-/// at 5 m: σ_φ = 2π σ_r / λ_A = σ_n / a (docs/simulator.md, equation 4).
+/// The standard deviation σ_n of the noise of each component of the signal for which the range
+/// noise of A is `range_noise_m` on a surface of reflectance 0.5 that faces the camera at 5 m:
+/// 2π σ_r / λ_A = σ_n / amplitude (docs/simulator.md, equation 4).
 inline double noise_strength(double range_noise_m, const Modulation& modulation) {
   constexpr double reference_amplitude = amplitude_unit * 0.5 / (5.0 * 5.0);
   return reference_amplitude * 2 * std::numbers::pi * range_noise_m / modulation.wavelength_a_m();

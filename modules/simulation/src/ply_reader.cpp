@@ -37,7 +37,7 @@ constexpr TypeName type_names[] = {
 struct Property {
   std::string name;
   Type type = Type::float32;
-  std::optional<Type> count_type;  ///< of a list
+  std::optional<Type> count_type;  ///< type of the length of a list; empty if it is not a list
 };
 
 struct Element {
@@ -49,21 +49,21 @@ struct Element {
 struct Header {
   Format format = Format::ascii;
   std::vector<Element> elements;
-  std::size_t size = 0;  ///< bytes up to the data
+  std::size_t size = 0;  ///< bytes before the data
 };
 
 Type parse_type(const std::string& word, const std::filesystem::path& file) {
   for (const TypeName& candidate : type_names) {
     if (word == candidate.name) return candidate.type;
   }
-  fail_to_read(file, "its header has a property of the unknown type '" + word + "'");
+  fail_to_read(file, "its header has a property of unknown type '" + word + "'");
 }
 
 Format parse_format(const std::string& word, const std::filesystem::path& file) {
   if (word == "ascii") return Format::ascii;
   if (word == "binary_little_endian") return Format::little_endian;
   if (word == "binary_big_endian") return Format::big_endian;
-  fail_to_read(file, "is of the unknown PLY format '" + word + "'");
+  fail_to_read(file, "has the unknown PLY format '" + word + "'");
 }
 
 Header read_header(const std::string& bytes, const std::filesystem::path& file) {
@@ -72,14 +72,14 @@ Header read_header(const std::string& bytes, const std::filesystem::path& file) 
   std::string line;
   bool any_format = false;
   std::getline(in, line);
-  if (!line.starts_with("ply")) fail_to_read(file, "is no PLY file");
+  if (!line.starts_with("ply")) fail_to_read(file, "is not a PLY file");
   while (std::getline(in, line)) {
     std::istringstream words(line);
     std::string key;
     std::string first;
     words >> key >> first;
     if (key == "end_header") {
-      if (!any_format) fail_to_read(file, "its header names no format");
+      if (!any_format) fail_to_read(file, "its header states no format");
       header.size = in.eof() ? bytes.size() : static_cast<std::size_t>(in.tellg());
       return header;
     }
@@ -104,10 +104,10 @@ Header read_header(const std::string& bytes, const std::filesystem::path& file) 
       header.elements.back().properties.push_back(property);
     }
   }
-  fail_to_read(file, "its header has no end; it is cut off");
+  fail_to_read(file, "is cut off: its header has no end");
 }
 
-/// The data behind the header, number by number; InputError where the file ends too early.
+/// Reads the data after the header, number by number. Throws InputError if the file ends too early.
 class Numbers {
  public:
   Numbers(const std::string& bytes, const Header& header, const std::filesystem::path& file)
@@ -121,10 +121,10 @@ class Numbers {
  private:
   double next_text() {
     while (at_ != end_ && (*at_ == ' ' || *at_ == '\n' || *at_ == '\r' || *at_ == '\t')) ++at_;
-    if (at_ == end_) fail_to_read(file_, "is cut off: its data end before its header says");
+    if (at_ == end_) fail_to_read(file_, "is cut off: it has less data than its header states");
     double number = 0;
     const auto [rest, error] = std::from_chars(at_, end_, number);
-    if (error != std::errc()) fail_to_read(file_, "holds something that is no number");
+    if (error != std::errc()) fail_to_read(file_, "contains data that is not a number");
     at_ = rest;
     return number;
   }
@@ -155,7 +155,7 @@ class Numbers {
   double take() {
     std::array<char, sizeof(T)> raw{};
     if (end_ - at_ < static_cast<std::ptrdiff_t>(sizeof(T))) {
-      fail_to_read(file_, "is cut off: its data end before its header says");
+      fail_to_read(file_, "is cut off: it has less data than its header states");
     }
     std::copy_n(at_, sizeof(T), raw.begin());
     at_ += sizeof(T);
@@ -186,7 +186,7 @@ void read_vertex(const Element& element, Numbers& numbers, TriangleMesh& mesh) {
     if (property.name == "y") point.y() = static_cast<float>(value);
     if (property.name == "z") point.z() = static_cast<float>(value);
     if (property.name == "red" || property.name == "green" || property.name == "blue") {
-      // Whole numbers count to 255, fractions to 1.
+      // Integer colours go up to 255, floating-point colours up to 1.
       const bool whole = property.type != Type::float32 && property.type != Type::float64;
       colour_sum += whole ? value / 255 : value;
       ++colours;
@@ -197,7 +197,8 @@ void read_vertex(const Element& element, Numbers& numbers, TriangleMesh& mesh) {
   mesh.reflectance.push_back(static_cast<float>(std::clamp(reflectance, 0.0, 1.0)));
 }
 
-/// The corner numbers of a face; of any other element, nothing.
+/// Reads one element that is not a vertex, and returns its property of vertex indices. Empty if it
+/// has no such property.
 std::vector<long> read_lists(const Element& element, Numbers& numbers) {
   std::vector<long> corners;
   for (const Property& property : element.properties) {
@@ -205,7 +206,7 @@ std::vector<long> read_lists(const Element& element, Numbers& numbers) {
     const double count = property.count_type ? numbers.next(*property.count_type) : 1;
     for (double i = 0; i < count; ++i) {
       const double value = numbers.next(property.type);
-      // What is no number of a vertex is named as such by add_polygon.
+      // add_polygon() reports −1 as an invalid vertex.
       if (is_corners)
         corners.push_back(value >= 0 && value < 0x1p32 ? static_cast<long>(value) : -1);
     }
@@ -221,7 +222,7 @@ TriangleMesh read_ply_mesh(const std::filesystem::path& file) {
   Numbers numbers(bytes, header, file);
   TriangleMesh mesh;
   for (const Element& element : header.elements) {
-    if (element.properties.empty()) continue;  // takes no bytes, however many there are
+    if (element.properties.empty()) continue;  // has no data, whatever its count
     for (long i = 0; i < element.count; ++i) {
       if (element.name == "vertex") {
         read_vertex(element, numbers, mesh);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Rooms drawn at random: what a method was not tuned to. The same seed gives the same room.
+// Random rooms, to which no method was tuned. The same seed gives the same room.
 
 #include "builtin_scenes.hpp"
 #include "noise.hpp"
@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Numbers drawn one after the other.
+/// A sequence of random numbers that the seed determines.
 class Draw {
  public:
   explicit Draw(int seed) : key_(mix(static_cast<std::uint64_t>(seed) + 0x726f6f6dULL)) {}
@@ -27,7 +27,7 @@ class Draw {
     return low + (high - low) * static_cast<double>(mix(key_ ^ mix(counter_++)) >> 11U) * unit;
   }
 
-  /// Small values as often as large ones of the same ratio.
+  /// A number whose logarithm is distributed uniformly.
   double log_between(double low, double high) {
     return std::exp(between(std::log(low), std::log(high)));
   }
@@ -39,14 +39,14 @@ class Draw {
   std::uint64_t counter_ = 0;
 };
 
-/// From black cloth to white paint.
+/// A random reflectance, from black cloth to white paint.
 double reflectance(Draw& draw) { return draw.log_between(0.1, 0.95); }
 
 Vector3d place_on_floor(Draw& draw, const Vector3d& room_m) {
   return {draw.between(0, room_m.x()), draw.between(0, room_m.y()), 0};
 }
 
-/// A turned box between the heights `bottom_m` and `top_m`.
+/// Adds a box with a random yaw between the heights `bottom_m` and `top_m`.
 void add_random_box(TriangleMesh& mesh, Draw& draw, const Vector3d& room_m, double bottom_m,
                     double top_m) {
   const Vector3d place = place_on_floor(draw, room_m);
@@ -56,7 +56,7 @@ void add_random_box(TriangleMesh& mesh, Draw& draw, const Vector3d& room_m, doub
                  reflectance(draw));
 }
 
-/// A leaning board.
+/// Adds a tilted board that stands on the floor.
 void add_board(TriangleMesh& mesh, Draw& draw, const Vector3d& room_m) {
   const double yaw = draw.between(0, 2 * std::numbers::pi);
   const double tilt = draw.between(0.1, 1.4);
@@ -67,7 +67,7 @@ void add_board(TriangleMesh& mesh, Draw& draw, const Vector3d& room_m) {
   add_quad(mesh, place_on_floor(draw, room_m), along, up, reflectance(draw));
 }
 
-/// A wall across part of the room, with a door or a window in it.
+/// Adds a wall across part of the room, with a door or a window.
 void add_partition(TriangleMesh& mesh, Draw& draw, const Vector3d& room_m) {
   const Vector3d from = place_on_floor(draw, room_m);
   const double length_m = draw.between(1.5, 0.6 * room_m.y());
@@ -87,10 +87,10 @@ void add_thing(TriangleMesh& mesh, Draw& draw, const Vector3d& room_m) {
       add_cylinder(mesh, place_on_floor(draw, room_m), draw.log_between(0.03, 0.4), room_m.z(),
                    reflectance(draw));
       break;
-    case 1:  // under the ceiling
+    case 1:  // hangs from the ceiling
       add_random_box(mesh, draw, room_m, draw.between(0.7, 0.97) * room_m.z(), room_m.z());
       break;
-    case 2:  // a table top, a shelf
+    case 2:  // table top or shelf
       add_random_box(mesh, draw, room_m, 0.72, 0.76);
       break;
     case 3:
@@ -104,8 +104,8 @@ void add_thing(TriangleMesh& mesh, Draw& draw, const Vector3d& room_m) {
   }
 }
 
-/// A place at about eye height with free space around it, towards a side of the room; the best of
-/// many tries.
+/// A place at about eye height for the camera: the best of 100 random places, which has free space
+/// around it and is far from the middle of the room.
 Vector3d free_place(Draw& draw, const RayScene& rays, const Vector3d& room_m) {
   constexpr double wanted_m = 0.9;
   Vector3d best = room_m / 2;
@@ -123,7 +123,7 @@ Vector3d free_place(Draw& draw, const RayScene& rays, const Vector3d& room_m) {
   return best;
 }
 
-/// Looks to and fro across the room.
+/// A closed path near `place` that looks across the room, from side to side.
 CameraPath look_across(Draw& draw, const Vector3d& place, const Vector3d& room_m) {
   const Vector3d across = room_m / 2 - place;
   const double middle = std::atan2(across.y(), across.x());

@@ -17,8 +17,8 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// The point of triangle a, b, c that is nearest to p: the foot of the perpendicular if that
-/// lies inside, else the nearest point of an edge.
+/// The point of the triangle a, b, c that is nearest to p: the foot of the perpendicular if it lies
+/// inside the triangle, otherwise the nearest point of an edge.
 Vector3f nearest_on_triangle(const Vector3f& p, const Vector3f& a, const Vector3f& b,
                              const Vector3f& c) {
   const Vector3f normal = (b - a).cross(c - a);
@@ -41,6 +41,7 @@ Vector3f nearest_on_triangle(const Vector3f& p, const Vector3f& a, const Vector3
   return best;
 }
 
+/// Callback of the point query: reduces the query radius to the distance of one triangle.
 bool shrink_to_triangle(RTCPointQueryFunctionArguments* arguments) {
   const auto& mesh = *static_cast<const TriangleMesh*>(arguments->userPtr);
   const auto& triangle = mesh.triangles[arguments->primID];
@@ -62,11 +63,11 @@ struct RayScene::Embree {
   RTCScene scene = nullptr;
 
   explicit Embree(const TriangleMesh& surface) : mesh(surface) {
-    // One build thread: the tree, and with it which of two touching triangles a ray through
-    // their common edge meets, is the same in every run.
+    // With one build thread the tree is the same in every run. The tree decides which of two
+    // touching triangles a ray through their common edge meets.
     device = rtcNewDevice("threads=1");
     scene = rtcNewScene(device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);  // no ray slips through between triangles
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);  // no ray passes between adjacent triangles
     const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -112,7 +113,7 @@ std::optional<RayHit> RayScene::cast(const Eigen::Vector3d& origin,
   ray.ray.dir_y = static_cast<float>(direction.y());
   ray.ray.dir_z = static_cast<float>(direction.z());
   ray.ray.tfar = static_cast<float>(max_range_m);
-  ray.ray.mask = ~0U;  // a build with ray masks sees nothing through a mask of 0
+  ray.ray.mask = ~0U;  // builds of Embree with ray masks find no hit if the mask is 0
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Furnished places, to be mapped.
+// Furnished places for mapping.
 
 #include "builtin_scenes.hpp"
 
@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A table top on four legs, between two opposite corners on the floor.
+/// Adds a table top on four legs. The table fills the box from `min`, on the floor, to `max`.
 void add_table(TriangleMesh& mesh, const Vector3d& min, const Vector3d& max, double reflectance) {
   constexpr double top = 0.05;
   constexpr double leg = 0.08;
@@ -36,7 +36,8 @@ void add_chair(TriangleMesh& mesh, const Vector3d& seat, double yaw_rad, double 
   add_cylinder(mesh, seat, 0.05, 0.4, reflectance);
 }
 
-/// Open shelves: a back, two sides and boards, the open side towards +y if `faces_y`, else −y.
+/// Adds open shelves: a back, two sides and boards. The open side faces +y if `faces_y`, otherwise
+/// −y.
 void add_shelf(TriangleMesh& mesh, const Vector3d& min, const Vector3d& max, bool faces_y,
                double reflectance) {
   constexpr double board = 0.03;
@@ -89,7 +90,7 @@ void furnish_room(TriangleMesh& mesh) {
   add_box(mesh, {7.8, 0, 2.7}, {8.1, 9, 3}, 0.7);
 }
 
-/// Three waypoints in line: the spline passes through the middle one, straight.
+/// Adds three waypoints on a line, so that the spline passes straight through the middle one.
 void pass_through(std::vector<Waypoint>& waypoints, const Vector3d& middle,
                   const Vector3d& direction) {
   for (const double offset : {-0.6, 0.0, 0.6}) {
@@ -100,7 +101,7 @@ void pass_through(std::vector<Waypoint>& waypoints, const Vector3d& middle,
 void add_flat_walls(TriangleMesh& mesh) {
   constexpr double height = 2.6;
   add_hull(mesh, {10, 8, height}, 0.5, 0.8, 0.75);
-  // Inner walls along x = 5 and y = 4; a door of 1.1 x 2.1 m from each room to the next.
+  // Inner walls along x = 5 and y = 4, with a door of 1.1 x 2.1 m between adjacent rooms.
   add_wall(mesh, {5, 0, 0}, {5, 4, 0}, height, 0.12, {{1.5, 2.6, 0, 2.1}}, 0.7);
   add_wall(mesh, {5, 4, 0}, {5, 8, 0}, height, 0.12, {{1.5, 2.6, 0, 2.1}}, 0.65);
   add_wall(mesh, {0, 4, 0}, {5, 4, 0}, height, 0.12, {{2.0, 3.1, 0, 2.1}}, 0.7);
@@ -141,7 +142,7 @@ Scene room_scene() {
   Scene scene{.name = "room", .min_frames = 150, .max_range_m = 15.5};
   add_hull(scene.surface, {12, 9, 3}, 0.45, 0.8, 0.7);
   furnish_room(scene.surface);
-  // A closed loop around the middle; the camera looks across it, at the far side.
+  // A closed loop around the middle of the room. The camera looks across it, at the opposite side.
   const Vector3d middle(6, 4.5, 1.4);
   std::vector<Waypoint> waypoints;
   constexpr int count = 14;
@@ -178,8 +179,8 @@ Scene flat_scene() {
   return scene;
 }
 
-/// A hall of a school: mostly within one wavelength of where the camera walks, columns, benches,
-/// and a far end.
+/// A school hall with columns and benches. Most surfaces are within one wavelength of the camera;
+/// the far end is not.
 Scene hall_scene() {
   Scene scene{.name = "hall", .min_frames = 120, .max_range_m = 10.5};
   TriangleMesh& mesh = scene.surface;
@@ -207,7 +208,7 @@ Scene hall_scene() {
   return scene;
 }
 
-/// An atrium of 30 m with galleries around it, most of it several wavelengths away.
+/// An atrium of 30 m with galleries around it. Most surfaces are several wavelengths away.
 Scene atrium_scene() {
   Scene scene{.name = "atrium", .min_frames = 120, .max_range_m = 38};
   TriangleMesh& mesh = scene.surface;

@@ -55,7 +55,7 @@ Scene make_scene(const std::string& name, int seed) {
   }
   std::string known;
   for (const std::string& other : scene_names()) known += (known.empty() ? "" : ", ") + other;
-  throw UsageError("'" + name + "' is no scene; there are: " + known +
+  throw UsageError("'" + name + "' is not a scene; allowed: " + known +
                    ", or a mesh file (.ply, .obj)");
 }
 

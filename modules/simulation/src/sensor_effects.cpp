@@ -18,18 +18,19 @@ namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
 
-/// Rays start and end this far off surfaces, so that they do not meet the ones they belong to.
+/// Distance from a surface at which rays start and end, so that they do not meet that surface.
 constexpr double off_surface_m = 1e-3;
 
-/// The i-th of n points spread evenly over the unit square (a rank-1 lattice), shifted.
+/// The i-th of n points that are spread evenly over the unit square (rank-1 lattice), shifted by
+/// `shift` with wrap-around.
 Eigen::Vector2d spread_point(int i, int n, const Eigen::Vector2d& shift) {
   const double golden = std::numbers::phi - 1;
   const Eigen::Vector2d point((i + 0.5) / n + shift.x(), i * golden + shift.y());
   return point - point.array().floor().matrix();
 }
 
-/// The direction that a point of the unit square stands for, if directions around the normal are
-/// spread by their cosine.
+/// Maps a point of the unit square to a direction in the hemisphere around the unit vector
+/// `normal`. Uniform points give a cosine-weighted distribution.
 Eigen::Vector3d around(const Eigen::Vector3d& normal, const Eigen::Vector2d& point) {
   const double sine = std::sqrt(point.x());
   const double turn = two_pi * point.y();
@@ -38,8 +39,8 @@ Eigen::Vector3d around(const Eigen::Vector3d& normal, const Eigen::Vector2d& poi
          std::sqrt(1 - point.x()) * normal;
 }
 
-/// Charge of the sample at a quarter k of the period: the correlation function with its third
-/// harmonic, which swings about the level.
+/// The charge of sample k, at k quarters of the period: dark charge, the level of the light, and
+/// the correlation function with its third harmonic (docs/simulator.md, equation 5).
 double charge(const PixelLight& light, int k, const SensorEffects& effects) {
   const double quarter = k * std::numbers::pi / 2;
   const double correlation =
@@ -72,7 +73,8 @@ std::complex<double> demodulate(const std::array<PixelLight, 4>& samples,
 }
 
 double dark_noise_sigma(const SensorEffects& effects) {
-  // Each sample has the shot noise of its dark charge, and a component is half a difference of two.
+  // The variance of the shot noise of a sample equals its dark charge. A component is half the
+  // difference of two samples.
   return std::sqrt(effects.dark_level / 2);
 }
 

@@ -17,11 +17,11 @@ namespace tofmap {
 
 struct SimulatorOptions;
 
-/// Light that reaches a pixel, as complex numbers of its strength and phase.
+/// Light that reaches a pixel. The arguments of the complex numbers are phases.
 struct PixelLight {
-  std::complex<double> first = 0;  ///< at the modulation frequency
-  std::complex<double> third = 0;  ///< at three times that, of as much strength
-  double level = 0;                ///< in all
+  std::complex<double> first = 0;  ///< signal at the modulation frequency
+  std::complex<double> third = 0;  ///< signal at three times that frequency, of the same strength
+  double level = 0;                ///< sum of the strengths, without phase
 
   PixelLight& operator+=(const PixelLight& other) {
     first += other.first;
@@ -33,42 +33,45 @@ struct PixelLight {
   PixelLight operator/(double count) const { return {first / count, third / count, level / count}; }
 };
 
-/// Light of so much strength that has come this far, there and back over two.
+/// Light of this strength (its amplitude) whose path, out and back, is twice `range_m` long.
 PixelLight light_from(double strength, double range_m, double wavelength_m);
 
-/// What a sensor makes of light (docs/simulator.md, equations 5 to 8). By default an ideal one.
+/// How a sensor converts light to charge (docs/simulator.md, equations 5 to 8). The defaults are an
+/// ideal sensor.
 struct SensorEffects {
-  double harmonic = 0;    ///< third harmonic of the correlation function, as a share of the first
+  double harmonic = 0;    ///< third harmonic of the correlation function, relative to the first
   double dark_level = 0;  ///< charge of each sample without light, in units of the amplitude
-  double full_well = 0;   ///< charge that a sample can hold; 0: any
+  double full_well = 0;   ///< largest charge of a sample, in units of the amplitude; 0: no limit
 
-  /// Whether four samples say the same as the light itself.
+  /// Whether the sensor is ideal, so that demodulate() returns PixelLight::first of four equal
+  /// samples.
   bool are_none() const { return harmonic == 0 && dark_level == 0 && full_well == 0; }
 };
 
 SensorEffects sensor_effects(const SimulatorOptions& options, const Modulation& modulation);
 
-/// The complex signal that four samples a quarter of a period apart give, each of the light of its
-/// moment.
+/// The complex signal from four samples that are a quarter of a period apart (docs/simulator.md,
+/// equation 6). `samples` is the light at each of them.
 std::complex<double> demodulate(const std::array<PixelLight, 4>& samples,
                                 const SensorEffects& effects);
 
-/// The standard deviation that dark charge adds to either component of the signal.
+/// Standard deviation of the noise that dark charge adds to each component of the signal.
 double dark_noise_sigma(const SensorEffects& effects);
 
-/// A camera that lights what it sees.
+/// The camera as a light source: it illuminates what is in its image.
 struct Lamp {
   const CameraModel& camera;
   Pose world_from_camera;
-  double max_range_m = 0;
+  double max_range_m = 0;  ///< rays end here
 
-  /// Whether its light falls that way, if nothing is in between.
+  /// Whether a point, in the world frame, is in the image of the camera. Ignores occlusion.
   bool shines_on(const Eigen::Vector3d& point_m) const;
 };
 
-/// Light that comes to a pixel by way of one other surface: the mean over `rays` directions, spread
-/// by the cosine over the hemisphere above the point that the pixel sees along `direction`, of the
-/// light that the surfaces there have of the lamp. `key` turns the directions.
+/// Multipath light: light that the lamp sends to another surface, from there to the point that the
+/// pixel sees along `direction`, and from there to the pixel. It is the mean over `rays` directions
+/// in the hemisphere over that point, with a cosine-weighted distribution (docs/simulator.md,
+/// equation 7). `hit` is the point; `key` shifts the pattern of directions.
 PixelLight indirect_light(const RayScene& scene, const Lamp& lamp, const Eigen::Vector3d& direction,
                           const RayHit& hit, int rays, std::uint64_t key, double wavelength_m);
 

@@ -37,8 +37,8 @@ void read_image(const ImageC& ideal, const SensorReadout& readout, ImageF& phase
 
 void check_size(const ImageC& signal, const CameraModel& camera) {
   if (signal.rows() == camera.height_px && signal.cols() == camera.width_px) return;
-  throw UsageError("ideal frame of " + std::to_string(signal.cols()) + " x " +
-                   std::to_string(signal.rows()) + " pixels: the camera has " +
+  throw UsageError("ideal frame has " + std::to_string(signal.cols()) + " x " +
+                   std::to_string(signal.rows()) + " pixels, but the camera has " +
                    std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px));
 }
 

@@ -26,7 +26,8 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// Checks every option as the command line would, for those who fill the struct in code.
+/// Checks every option as the command line does, since callers may fill the struct in code. Throws
+/// UsageError.
 SimulatorOptions checked(SimulatorOptions options) {
   OptionTable table;
   SimulatorOptions copy = options;
@@ -57,13 +58,13 @@ SensorModel sensor_model(const SimulatorOptions& options) {
   try {
     validate(camera);
     validate(sensor.modulation);
-  } catch (const InputError& error) {  // it comes of the options, not of a file
+  } catch (const InputError& error) {  // the values come from options, not from a file
     throw UsageError(std::string("simulator options: ") + error.what());
   }
   return sensor;
 }
 
-/// The rays of a grid of n x n points over each pixel's square.
+/// The rays through a grid of n x n points over the square of each pixel, row by row.
 std::vector<Eigen::Vector3f> subpixel_rays(const CameraModel& camera, int n) {
   std::vector<Eigen::Vector3f> rays;
   rays.reserve(static_cast<std::size_t>(camera.width_px) * camera.height_px * n * n);
@@ -84,7 +85,7 @@ std::vector<Eigen::Vector3f> subpixel_rays(const CameraModel& camera, int n) {
 CameraMotion camera_motion(const Scene& scene, const SimulatorOptions& options) {
   if (!options.trajectory_file.empty()) {
     const Trajectory poses = read_trajectory(options.trajectory_file);
-    if (poses.empty()) throw InputError(options.trajectory_file + ": holds no pose");
+    if (poses.empty()) throw InputError(options.trajectory_file + ": contains no poses");
     return replay_motion(poses, options.frames, options.b_delay_share);
   }
   const MotionLimits limits{options.max_translation_m,
@@ -110,56 +111,63 @@ std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
       {"frequency_b_hz", &S::frequency_b_hz, 1e6, 1e9, "Hz", "modulation frequency of image B"},
       {"range_noise_m", &S::range_noise_m, 0, 10, "m",
        "standard deviation of A's range at 5 m on a surface of reflectance 0.5 facing the camera"},
-      {"subpixels", &S::subpixels, 1, 16, "", "rays a pixel, along each of its sides"},
+      {"subpixels", &S::subpixels, 1, 16, "", "rays per pixel along each of its sides"},
       {"wiggle_m", &S::wiggle_m, 0, 0.2, "m",
-       "how far A's ranges swing about the true ones four times a wavelength; B's as many degrees"},
+       "amplitude of the wiggling of A's ranges, four periods per wavelength; B has the same phase "
+       "error"},
       {"multipath_rays", &S::multipath_rays, 0, 4096, "",
-       "rays a pixel for light that comes by way of one other surface; 0: there is none"},
+       "rays per pixel for light that arrives by way of one other surface; 0: no such light"},
       {"dark_level", &S::dark_level, 0, 65535, "",
-       "charge of a sample without light, in units of the amplitude; its shot noise comes on top"},
+       "charge of a sample without light, in units of the amplitude; it adds shot noise"},
       {"full_well", &S::full_well, 0, 1e6, "",
-       "charge that a sample can hold, in units of the amplitude; 0: any"},
+       "largest charge that a sample can hold, in units of the amplitude; 0: no limit"},
       {"exposure_share", &S::exposure_share, 0, 1, "",
-       "how long the four samples of an image take, as a share of a frame period"},
-      {"offset_a_m", &S::offset_a_m, -0.2, 0.2, "m", "how much too long all ranges of A are"},
-      {"offset_b_m", &S::offset_b_m, -0.2, 0.2, "m", "how much too long all ranges of B are"},
+       "duration of the four samples of an image, as a fraction of the frame period"},
+      {"offset_a_m", &S::offset_a_m, -0.2, 0.2, "m",
+       "constant error of A's ranges, measured minus true"},
+      {"offset_b_m", &S::offset_b_m, -0.2, 0.2, "m",
+       "constant error of B's ranges, measured minus true"},
       {"periodic_a_m", &S::periodic_a_m, 0, 0.2, "m",
-       "largest periodic error of A's ranges, two and four times a wavelength"},
+       "largest periodic error of A's ranges, with two and four periods per wavelength"},
       {"periodic_b_m", &S::periodic_b_m, 0, 0.2, "m",
-       "largest periodic error of B's ranges, two and four times a wavelength"},
+       "largest periodic error of B's ranges, with two and four periods per wavelength"},
       {"amplitude_error_a_m", &S::amplitude_error_a_m, -0.2, 0.2, "m",
-       "how much too long A's ranges are at an amplitude of 60, less with its logarithm to 0 at "
-       "60000"},
+       "error of A's ranges at an amplitude of 60; it falls with the logarithm of the amplitude, "
+       "to 0 at 60000"},
       {"amplitude_error_b_m", &S::amplitude_error_b_m, -0.2, 0.2, "m",
-       "how much too long B's ranges are at an amplitude of 60, less with its logarithm to 0 at "
-       "60000"},
+       "error of B's ranges at an amplitude of 60; it falls with the logarithm of the amplitude, "
+       "to 0 at 60000"},
       {"fixed_pattern_m", &S::fixed_pattern_m, 0, 0.2, "m",
-       "standard deviation of the constant errors that pixels have of their own, at A and at B"},
+       "standard deviation of the constant range errors of individual pixels, at A and at B"},
       {"errors_seed", &S::errors_seed, 0, 2147483647, "",
-       "of the camera: draws its periodic errors and its fixed pattern, apart from the noise"},
+       "seed of the periodic errors and of the fixed pattern: it stands for the camera"},
       {"ambient_noise", &S::ambient_noise, 1, 20, "",
-       "factor by which noise is larger where ambient light falls; 1: it falls nowhere"},
+       "factor by which ambient light increases the noise where it falls; 1: no ambient light"},
       {"ambient_left", &S::ambient_left, 0, 1, "",
-       "where the part of the image begins that ambient light falls on, as a share of the width"},
+       "left edge of the rectangle with ambient light, as a fraction of the image width"},
       {"ambient_top", &S::ambient_top, 0, 1, "",
-       "where that part begins, as a share of the height, from the top"},
-      {"ambient_right", &S::ambient_right, 0, 1, "", "where it ends, as a share of the width"},
-      {"ambient_bottom", &S::ambient_bottom, 0, 1, "", "where it ends, as a share of the height"},
+       "upper edge of the rectangle with ambient light, as a fraction of the image height"},
+      {"ambient_right", &S::ambient_right, 0, 1, "",
+       "right edge of the rectangle with ambient light, as a fraction of the image width"},
+      {"ambient_bottom", &S::ambient_bottom, 0, 1, "",
+       "lower edge of the rectangle with ambient light, as a fraction of the image height"},
       {"phase_bits", &S::phase_bits, 0, 16, "",
-       "phases are rounded to 2^bits steps a cycle, 4 bits or more; 0: they are not"},
-      {"b_delay_share", &S::b_delay_share, 0, 1, "", "B follows A by this share of a frame period"},
-      {"frames", &S::frames, 0, 1000000, "", "frames to record; 0: as many as the path needs"},
-      {"frame_rate_hz", &S::frame_rate_hz, 0.01, 10000, "Hz", "frames a second"},
+       "rounds phases to 2^bits steps per cycle, with 4 bits or more; 0: no rounding"},
+      {"b_delay_share", &S::b_delay_share, 0, 1, "",
+       "time from A to B, as a fraction of the frame period"},
+      {"frames", &S::frames, 0, 1000000, "",
+       "number of frames to record; 0: as many as the path needs"},
+      {"frame_rate_hz", &S::frame_rate_hz, 0.01, 10000, "Hz", "frames per second"},
       {"max_translation_m", &S::max_translation_m, 0.001, 10, "m",
-       "how far the camera moves a frame, at most"},
+       "largest translation of the camera from frame to frame"},
       {"max_rotation_deg", &S::max_rotation_deg, 0.01, 90, "deg",
-       "how far it turns a frame, at most"},
+       "largest rotation of the camera from frame to frame"},
       // Truth images hold millimetres in 16 bits.
       {"max_range_m", &S::max_range_m, 0, 65.5, "m",
-       "surfaces beyond return nothing, and the recording says so; 0: all return something"},
+       "surfaces beyond return no signal, and the recording states this limit; 0: no limit"},
       {"trajectory_file", &S::trajectory_file, 0, 0, "",
-       "camera poses in TUM form, one a frame; empty: the scene's path"},
-      {"seed", &S::seed, 0, 2147483647, "", "of the noise"},
+       "file of camera poses in TUM format, one per frame; empty: the path of the scene"},
+      {"seed", &S::seed, 0, 2147483647, "", "seed of the noise, and of the scene random"},
   };
 }
 
@@ -184,22 +192,23 @@ std::optional<SourcedFrame> Simulator::next() {
   return sourced;
 }
 
-/// Where the camera is while it takes one image.
+/// The poses of the camera while it takes one image, and what else rays depend on.
 struct Simulator::Exposure {
-  /// At each of the four samples; the same pose four times if the exposure is so short that the
-  /// camera stands still.
+  /// At each of the four samples. All are the same if the exposure takes no time.
   std::array<Pose, 4> world_from_camera;
-  bool stands_still = true;
+  bool stands_still = true;  ///< the four poses are the same
   double wavelength_m = 0;
-  std::uint64_t noise_key = 0;  ///< draws the rays of light by way of other surfaces
+  std::uint64_t noise_key = 0;  ///< seed of the directions of multipath rays
 };
 
+/// One image as the sensor measures it.
 struct Simulator::Exposed {
-  ImageF phase;
-  ImageF amplitude;
-  ImageU8 label;  ///< 0 if not wanted
+  ImageF phase;      ///< cycles; NaN without a return
+  ImageF amplitude;  ///< 0 without a return
+  ImageU8 label;     ///< PixelLabel as a number; 0 everywhere if labels are not wanted
 };
 
+/// The true geometry along the rays of the pixel centres. NaN if a ray meets no surface.
 struct Simulator::Truth {
   ImageF range_m;
   ImageF cos_incidence;
@@ -207,8 +216,8 @@ struct Simulator::Truth {
 
 void Simulator::check_index(int index) const {
   if (index >= 0 && index < *frame_count()) return;
-  throw UsageError("frame " + std::to_string(index) + " of the simulation: there are frames 0 " +
-                   "to " + std::to_string(*frame_count() - 1));
+  throw UsageError("frame " + std::to_string(index) + " of the simulation does not exist; there " +
+                   "are frames 0 to " + std::to_string(*frame_count() - 1));
 }
 
 SimulatedFrame Simulator::simulate(int index) const {
@@ -228,7 +237,7 @@ SimulatedFrame Simulator::simulate(int index) const {
   frame.amplitude_a = std::move(a.amplitude);
   frame.phase_b = std::move(b.phase);
   frame.amplitude_b = std::move(b.amplitude);
-  // Without a return at either frequency there is no range.
+  // A pixel without a return at one of the frequencies has no range.
   simulated.label =
       frame.phase_b.isNaN().select(static_cast<std::uint8_t>(PixelLabel::no_return), a.label);
   simulated.world_from_camera = at_a.world_from_camera;
@@ -259,7 +268,7 @@ Simulator::Exposure Simulator::exposure_b(int index) const {
                      noise_key(options_, index, ImageOfFrame::b));
 }
 
-/// The four samples share the exposure evenly, about the instant of the image.
+/// The exposure of one image. Its four samples are evenly spaced around the time of the image.
 Simulator::Exposure Simulator::exposure_of(const Trajectory& poses, int index, double wavelength_m,
                                            std::uint64_t key) const {
   Exposure exposure;
@@ -279,7 +288,7 @@ Simulator::Exposure Simulator::exposure_of(const Trajectory& poses, int index, d
   return exposure;
 }
 
-/// The light of one pixel from one pose; `rays` are left with what they met.
+/// The light that reaches one pixel at one pose. Sets the directions and hits of `rays`.
 PixelLight Simulator::light_of(std::size_t pixel, const Exposure& exposure,
                                const Pose& world_from_camera, std::vector<SubRay>& rays) const {
   const Eigen::Matrix3d turn = world_from_camera.linear();
@@ -306,8 +315,8 @@ PixelLight Simulator::light_of(std::size_t pixel, const Exposure& exposure,
   return light;
 }
 
-/// Without noise and errors of ranges; `rays` are left with what they met. Nothing if no ray meets
-/// a surface.
+/// The signal of one pixel without noise and range errors. Empty if no ray meets a surface. Sets
+/// the directions and hits of `rays`.
 std::optional<std::complex<double>> Simulator::ideal_signal(std::size_t pixel,
                                                             const Exposure& exposure,
                                                             const SensorEffects& effects,
@@ -325,8 +334,7 @@ std::optional<std::complex<double>> Simulator::ideal_signal(std::size_t pixel,
                                                      : demodulate(samples, effects);
 }
 
-/// Calls `visit(row, col, signal, rays)` for every pixel that meets a surface, from several
-/// threads.
+/// Calls `visit(row, col, signal, rays)` for every pixel that sees a surface, from several threads.
 template <class Visit>
 void Simulator::for_each_signal(const Exposure& exposure, const Visit& visit) const {
   const int rows = sensor_.camera.height_px;
@@ -366,7 +374,7 @@ Simulator::Exposed Simulator::expose(const Exposure& exposure, const SensorReado
     out.amplitude(v, u) = pixel->measured.amplitude;
     out.phase(v, u) = pixel->measured.phase_cycles;
     if (!with_labels) return;
-    // A label says what the pixel would have measured without errors of its range.
+    // Labels ignore the systematic errors.
     const auto without_errors = measure(pixel->signal_without_errors).value_or(pixel->measured);
     out.label(v, u) = static_cast<std::uint8_t>(label_pixel(
         rays, without_errors.phase_cycles, exposure.wavelength_m, pixel->range_sigma_m));

@@ -17,19 +17,20 @@ namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
 
-/// A white wall at 0.3 m has this amplitude, and the first error that depends on amplitude is zero.
+/// The error that depends on amplitude is zero at this amplitude (a white wall at 0.3 m), and
+/// reaches its full size this many decades below it.
 constexpr double bright_end = 60000;
 constexpr double decades = 3;
 
-/// What the options say of the image at one frequency.
+/// Sizes of the errors at one frequency, from the options.
 struct ErrorSizes {
   double offset_m = 0;
   double periodic_m = 0;
   double amplitude_error_m = 0;
 };
 
-/// Two harmonics of the phase whose sum swings by `peak_m`. The seed draws how much of either there
-/// is, 20 % at least, and their phases.
+/// Two harmonics of the phase whose sum has the peak `peak_m` (docs/simulator.md, equation 10). The
+/// key determines the share of each, at least 20 %, and their phases.
 std::vector<WiggleHarmonic> drawn_harmonics(double peak_m, std::uint64_t key) {
   if (peak_m == 0) return {};
   const double share = 0.2 + 0.6 * share_of(key);
@@ -38,7 +39,7 @@ std::vector<WiggleHarmonic> drawn_harmonics(double peak_m, std::uint64_t key) {
   PhaseError shape{
       .harmonics = {{2, share * std::sin(second), share * std::cos(second)},
                     {4, (1 - share) * std::sin(fourth), (1 - share) * std::cos(fourth)}}};
-  // The shape repeats after half a cycle; so many steps find its peak within a part in 10^5.
+  // The sum repeats after half a cycle. This number of steps finds its peak to 1 part in 10^5.
   constexpr int steps = 1024;
   double peak = 0;
   for (int i = 0; i < steps; ++i) peak = std::max(peak, std::abs(shape.at_m(0.5 * i / steps)));
@@ -59,7 +60,8 @@ RangeErrors range_errors(const SimulatorOptions& options, const ErrorSizes& size
           .pattern_key = mix(key + 1)};
 }
 
-/// No image's noise has a key like this, not even under the same seed: images count upwards.
+/// The key of the errors of one image. It differs from all keys of noise, even for the same seed:
+/// those count upwards from the mixed seed, this one downwards.
 std::uint64_t camera_key(const SimulatorOptions& options, std::uint64_t image) {
   return mix(mix(static_cast<std::uint64_t>(options.errors_seed)) - 1 - image);
 }

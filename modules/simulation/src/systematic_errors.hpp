@@ -14,45 +14,47 @@ namespace tofmap {
 
 struct SimulatorOptions;
 
-/// By how much a camera's ranges at one frequency are wrong however often they are measured
-/// (docs/simulator.md, equations 9 to 12). By default not at all.
+/// The systematic errors of the ranges of one frequency, measured minus true (docs/simulator.md,
+/// equations 9 to 12). The defaults are no errors.
 struct RangeErrors {
   double wavelength_m = 1;
-  PhaseError of_phase;            ///< offset and harmonics, of the true phase
-  double dark_end_m = 0;          ///< at the dark end of the amplitudes; at the bright end 0
-  double pattern_sigma_m = 0;     ///< of the offsets of pixels
-  std::uint64_t pattern_key = 0;  ///< draws them
+  PhaseError of_phase;            ///< offset and harmonics, as a function of the true phase
+  double dark_end_m = 0;          ///< error at the dark end of the amplitudes; 0 at the bright end
+  double pattern_sigma_m = 0;     ///< standard deviation of the offsets of individual pixels
+  std::uint64_t pattern_key = 0;  ///< seed of these offsets
 
   bool are_none() const;
 
-  /// Of a pixel that would measure this signal without errors and noise. The same signal and pixel
-  /// have the same error in every frame.
+  /// The range error of a pixel whose signal without errors and noise is `signal`. The same signal
+  /// and pixel have the same error in every frame.
   double at_m(const std::complex<double>& signal, std::size_t pixel) const;
 
-  /// Of length one: what the signal is multiplied by.
+  /// The unit complex number by which the signal must be multiplied to get this error.
   std::complex<double> rotation(const std::complex<double>& signal, std::size_t pixel) const;
 };
 
-/// Errors of image A and image B of one camera; `errors_seed` draws what the options leave open.
+/// The errors of image A of a camera. `errors_seed` determines what the options leave open.
 RangeErrors range_errors_a(const SimulatorOptions& options, const Modulation& modulation);
+/// The errors of image B of a camera. `errors_seed` determines what the options leave open.
 RangeErrors range_errors_b(const SimulatorOptions& options, const Modulation& modulation);
 
-/// The part of the image that ambient light falls on, and by what factor it raises the noise there.
+/// A rectangle of the image in which ambient light increases the noise.
 struct AmbientLight {
-  double factor = 1;
+  double factor = 1;                  ///< of the noise
   double first_col = 0, end_col = 0;  ///< pixels whose centres lie in [first, end) are lit
-  double first_row = 0, end_row = 0;
+  double first_row = 0, end_row = 0;  ///< pixels whose centres lie in [first, end) are lit
 
-  /// 1 where no ambient light falls.
+  /// The factor of the noise at a pixel: 1 outside the rectangle.
   double noise_factor(Eigen::Index row, Eigen::Index col) const;
 };
 
 AmbientLight ambient_light(const SimulatorOptions& options, const CameraModel& camera);
 
-/// The nearest of 2^bits phases, [0, 1); with 0 bits the phase itself.
+/// The phase rounded to the nearest of 2^bits levels, in [0, 1). Not rounded if `bits` is 0.
 float quantised(float phase_cycles, int bits);
 
-/// Throws UsageError that names the option if values are allowed one by one, but not together.
+/// Throws UsageError, which names the option, if the number of phase bits is not allowed, or if the
+/// rectangle of ambient light is empty.
 void check_systematic_errors(const SimulatorOptions& options);
 
 }  // namespace tofmap

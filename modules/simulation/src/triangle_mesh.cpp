@@ -19,7 +19,7 @@ std::uint32_t add_vertex(TriangleMesh& mesh, const Vector3d& point, double refle
   return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
 }
 
-/// The parallelepiped with the corner c and the edges a, b, h.
+/// Adds the parallelepiped with the corner c and the edges a, b, h.
 void add_block(TriangleMesh& mesh, const Vector3d& c, const Vector3d& a, const Vector3d& b,
                const Vector3d& h, double reflectance) {
   for (const Vector3d& offset : {Vector3d(Vector3d::Zero()), h}) {

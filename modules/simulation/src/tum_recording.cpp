@@ -27,29 +27,31 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 /// Truth images hold millimetres in 16 bits.
 constexpr float longest_range_m = 65.5F;
 
+/// A line of depth.txt.
 struct Line {
   double timestamp_s = 0;
   std::string file;
 };
 
-/// Nothing wrong with a line that comes after `last_time_s`; else what it is.
+/// Parses a line into `line`. Returns what is wrong with it, or an empty string. Lines must be
+/// later than `last_time_s`.
 std::string complaint_about(const std::string& text, double last_time_s, Line& line) {
   std::istringstream words(text);
-  if (!(words >> line.timestamp_s >> line.file)) return "'" + text + "' is no time and file";
-  // Recordings are written in microseconds; nearer times would be one instant.
+  if (!(words >> line.timestamp_s >> line.file)) return "'" + text + "' is not 'timestamp file'";
+  // Timestamps are written in microseconds: closer times would be the same instant.
   constexpr double least_step_s = 1e-6;
   if (line.timestamp_s - last_time_s < least_step_s) {
-    return "its time is not later than that of the line before";
+    return "its timestamp is not later than that of the previous line";
   }
   return "";
 }
 
 struct ImageList {
   std::vector<Line> lines;
-  std::vector<std::string> damages;  ///< of lines that cannot be used
+  std::vector<std::string> damages;  ///< what is wrong with the lines that cannot be used
 };
 
-/// Throws InputError if there is no line that can be used.
+/// Reads depth.txt. Throws InputError if it has no line that can be used.
 ImageList read_list(const std::filesystem::path& file) {
   refuse_no_file(file);
   std::ifstream in(file);
@@ -78,11 +80,12 @@ ImageList read_list(const std::filesystem::path& file) {
                                         : list.damages.front());
 }
 
-/// Every n-th pixel of an image, n - 1 of them left out on either side of it.
+/// Every n-th pixel of an image in both axes, beginning with pixel n / 2.
 ImageU16 thinned(const ImageU16& image, int n) {
   return image(Eigen::seq(n / 2, Eigen::last, n), Eigen::seq(n / 2, Eigen::last, n));
 }
 
+/// The camera of thinned images, of which `first` is one.
 CameraModel thinned_camera(const TumOptions& options, const ImageU16& first) {
   const int n = options.every_pixel;
   CameraModel camera;
@@ -120,7 +123,7 @@ constexpr std::string_view used_options[] = {"frequency_a_hz",
                                              "max_range_m",
                                              "seed"};
 
-/// An option that is set would otherwise be silently without effect.
+/// Throws UsageError if an option is set that would have no effect.
 void refuse_unused(SimulatorOptions options) {
   SimulatorOptions defaults;
   OptionTable given;
@@ -134,12 +137,13 @@ void refuse_unused(SimulatorOptions options) {
     const bool is_used = std::ranges::find(used_options, option.name) != std::end(used_options);
     if (is_used || option.value == unset_texts[i].value) continue;
     throw UsageError(option.key() +
-                     " needs a scene, and has no effect on recorded depth; leave it out");
+                     " needs a scene and has no effect on recorded depth; leave it out");
   }
 }
 
-/// The first image of the size that two images have, so that a single odd one does not stand for
-/// all; of several sizes that one image has each, the first. Throws InputError if none can be read.
+/// An image of the typical size: the first image whose size an earlier image has as well, so that a
+/// single odd image does not determine the size. If all sizes differ, it is the first image. Throws
+/// InputError if no image can be read.
 ImageU16 typical_image(const std::vector<TumRecording::DepthImage>& images) {
   std::vector<ImageU16> seen;
   std::string damage;
@@ -158,7 +162,7 @@ ImageU16 typical_image(const std::vector<TumRecording::DepthImage>& images) {
   return seen.front();
 }
 
-/// Of a surface at that range, without noise and errors of ranges.
+/// The signal of a surface at `range_m`, without noise and range errors.
 std::complex<double> ideal_signal(double strength, double range_m, double wavelength_m,
                                   const SensorEffects& effects) {
   const PixelLight light = light_from(strength, range_m, wavelength_m);
@@ -172,13 +176,14 @@ std::vector<OptionField<TumOptions>> TumOptions::fields() {
   return {
       {"fx_px", &T::fx_px, 1, 1e5, "px", "focal length of the depth images"},
       {"fy_px", &T::fy_px, 1, 1e5, "px", "focal length of the depth images"},
-      {"cx_px", &T::cx_px, -1e5, 1e5, "px", "their optical centre"},
-      {"cy_px", &T::cy_px, -1e5, 1e5, "px", "their optical centre"},
-      {"steps_per_m", &T::steps_per_m, 1, 1e6, "", "what depth images count in a metre"},
-      {"every_pixel", &T::every_pixel, 1, 16, "", "every how manieth pixel is taken, in both axes"},
-      {"reflectance", &T::reflectance, 0.01, 1, "", "of all surfaces"},
+      {"cx_px", &T::cx_px, -1e5, 1e5, "px", "principal point of the depth images"},
+      {"cy_px", &T::cy_px, -1e5, 1e5, "px", "principal point of the depth images"},
+      {"steps_per_m", &T::steps_per_m, 1, 1e6, "",
+       "value of the depth images for a depth of one metre"},
+      {"every_pixel", &T::every_pixel, 1, 16, "", "uses every n-th pixel in both axes"},
+      {"reflectance", &T::reflectance, 0.01, 1, "", "reflectance of all surfaces"},
       {"max_pose_gap_s", &T::max_pose_gap_s, 0, 10, "s",
-       "a pose farther than this from an image in time is none of it"},
+       "largest time between an image and a pose that is used for it"},
   };
 }
 
@@ -211,7 +216,7 @@ TumRecording::Frame TumRecording::read(int index) const {
   const DepthImage& image = images_.at(static_cast<std::size_t>(index));
   const ImageU16 depth = thinned(read_png_16(image.file), options_.every_pixel);
   if (!same_size(depth, rays_.z)) {
-    throw InputError(image.file.string() + ": is of another size than other images");
+    throw InputError(image.file.string() + ": differs in size from the other images");
   }
   Frame out;
   out.world_from_camera = pose_at(poses_, image.timestamp_s, options_.max_pose_gap_s);

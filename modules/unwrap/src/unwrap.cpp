@@ -11,7 +11,7 @@
 namespace tofmap {
 namespace {
 
-/// Every pixel by itself: its counts, as confident as the residual is of them.
+/// Ranges for the given wrap counts. The confidence of a pixel follows from its own residual alone.
 UnwrapResult unwrap_by_pixel(const MeasuredFrame& frame, const ImageU8& counts,
                              const UnwrapLimits& limits) {
   const ImageF confidence = ResidualCost(frame.returns, limits, frame.sigma).probability(counts);
@@ -19,7 +19,7 @@ UnwrapResult unwrap_by_pixel(const MeasuredFrame& frame, const ImageU8& counts,
                                     limits)};
 }
 
-/// Count 0 for all pixels with a return.
+/// Wrap count 0 for all valid pixels.
 ImageU8 wrapped_counts(const ImageU8& valid) {
   return (valid != 0).select(ImageU8::Zero(valid.rows(), valid.cols()), invalid_wrap_count);
 }

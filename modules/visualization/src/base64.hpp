@@ -8,10 +8,10 @@
 
 namespace tofmap {
 
-/// RFC 4648, padded, without line breaks.
+/// Base64 as in RFC 4648, with padding and without line breaks.
 std::string base64(const void* data, std::size_t size);
 
-/// Of values as they lie in memory.
+/// Base64 of the bytes of values in memory.
 template <class Value>
 std::string base64(const std::vector<Value>& values) {
   return base64(values.data(), values.size() * sizeof(Value));

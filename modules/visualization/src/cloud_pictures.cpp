@@ -17,7 +17,7 @@ constexpr int panel_height_px = 480;
 constexpr int gap_px = 16;
 constexpr Rgb untouched{60, 90, 130};
 
-/// The camera as a small pyramid with its tip where it stands.
+/// The field of view of the camera as a pyramid of depth `depth_m` with its tip at the camera.
 LineLayer camera_outline(const PixelRays& rays, float depth_m) {
   const Eigen::Index bottom = rays.z.rows() - 1;
   const Eigen::Index right = rays.z.cols() - 1;
@@ -32,7 +32,7 @@ LineLayer camera_outline(const PixelRays& rays, float depth_m) {
   return {{tip, a, b, tip, c, d, tip, a, d, c, b}, colors::black, 1.5F};
 }
 
-/// The z-depth that nearly all points stay below; 1 m if there are none.
+/// The 99th percentile of the depths, but at least 1 m.
 double reach_m(const ImageF& range_m, const PixelRays& rays) {
   constexpr double share = 0.99;
   return std::max(1.0F, finite_quantile(depth_from_range(range_m, rays), share).value_or(1));

@@ -13,7 +13,7 @@
 namespace tofmap {
 namespace {
 
-// In between colours are mixed linearly, over steps short enough for it.
+// Colours between these are interpolated linearly.
 constexpr std::array<Rgb, 9> quantity_colors{{{24, 16, 80},
                                               {30, 48, 128},
                                               {22, 82, 152},
@@ -77,7 +77,7 @@ std::vector<double> ColorScale::ticks(int count) const {
 }
 
 Rgb wrap_count_color(int count) {
-  // The palette of Okabe and Ito, made to be told apart by everyone; 0 is light.
+  // The palette of Okabe and Ito for colour-blind readers. Wrap count 0 is light.
   constexpr std::array<Rgb, 8> palette{{{240, 228, 66},
                                         {0, 114, 178},
                                         {230, 159, 0},

@@ -8,7 +8,7 @@
 
 namespace tofmap {
 
-/// Every pixel of an image by its colour, as `color(row, column)` gives it.
+/// A picture whose pixels have the colours `color(row, column)`.
 template <class Color>
 Picture pixel_picture(Eigen::Index rows, Eigen::Index cols, const Color& color) {
   Picture out(static_cast<int>(cols), static_cast<int>(rows));
@@ -18,20 +18,20 @@ Picture pixel_picture(Eigen::Index rows, Eigen::Index cols, const Color& color) 
   return out;
 }
 
-/// A round number that all but the farthest few of the ranges stay below; 1 if there are none.
+/// The 99.8th percentile of the ranges, rounded up to whole metres. 1 if there are no ranges.
 double round_limit_m(const ImageF& range_m);
 
-/// How many wraps a pixel is off, and whether it is farther or nearer than the truth.
+/// Colours of pixels whose wrap count is right, too small or too large.
 namespace wrap_errors {
 inline constexpr Rgb none{232, 232, 232};
 inline constexpr Rgb too_near{0, 90, 181};
 inline constexpr Rgb too_far{220, 120, 0};
 }  // namespace wrap_errors
 
-/// White where the range or the truth is missing.
+/// The colour of the wrap error of a pixel. White if its range or true range is NaN.
 Rgb wrap_error_color(float range_m, float truth_m, double wavelength_m);
 
-/// Colours that stand out of those of ranges.
+/// The colour of a removed pixel by reason. The colours stand out from those of ranges.
 Rgb reason_color(InvalidReason reason);
 
 }  // namespace tofmap

@@ -14,8 +14,8 @@ namespace {
 
 constexpr int gap_px = 16;
 
-/// Every pixel of an image by its colour, magnified to a picture of about the same size for all
-/// cameras.
+/// A picture whose pixels have the colours `color(row, column)`, magnified by a whole number to
+/// about `wanted_width_px`, or not at all if the image is larger.
 template <class Color>
 Picture image_picture(Eigen::Index rows, Eigen::Index cols, const Color& color,
                       Eigen::Index wanted_width_px = 530) {
@@ -102,7 +102,7 @@ Picture method_picture(const std::vector<MethodRanges>& methods, const ImageF& t
   };
   std::vector<Picture> columns;
   if (has_truth) {
-    const Picture key = color_key({{wrap_errors::none, "wrap is right"},
+    const Picture key = color_key({{wrap_errors::none, "right wrap count"},
                                    {wrap_errors::too_near, "too near, by one wrap or more"},
                                    {wrap_errors::too_far, "too far"},
                                    {colors::invalid, "above: no range"}});

@@ -21,7 +21,7 @@ namespace {
 constexpr int legend_height_px = 220;
 constexpr int gap_px = 16;
 
-/// The scales that all frames share, and what occurs in any of them.
+/// The colour scales of all frames, and the wrap counts and reasons that occur in any of them.
 struct Scales {
   ColorScale range{0, 1, "range, m"};
   ColorScale amplitude{0, 1, "amplitude"};
@@ -32,7 +32,7 @@ struct Scales {
   bool has_truth = false;
 };
 
-/// Whether filters removed a pixel that unwrapping left.
+/// Whether filters removed a pixel that was valid after unwrapping.
 bool is_removed(const StagedFrame& frame, Eigen::Index v, Eigen::Index u) {
   return frame.unwrapped.valid(v, u) && !frame.filtered.valid(v, u);
 }
@@ -59,7 +59,7 @@ Scales scales_of(const std::vector<StagedFrame>& frames) {
     }
   }
   scales.range = ColorScale(0, range_m, "range, m");
-  // Light falls off with the square of the range: the root shows far surfaces, too.
+  // Amplitude falls with the square of the range, so that its root shows far surfaces as well.
   if (amplitude > 0) scales.amplitude = ColorScale(0, std::sqrt(amplitude), "root of amplitude");
   return scales;
 }

@@ -12,14 +12,15 @@
 namespace tofmap {
 namespace {
 
-/// The mean of the cameras' upward directions; −y of the map if there is no camera.
+/// The mean upward direction of the cameras. −y of the map if the trajectory is empty or the
+/// directions cancel.
 Eigen::Vector3d upward_of_cameras(const Trajectory& trajectory) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const StampedPose& pose : trajectory) sum -= pose.world_from_camera.linear().col(1);
   return sum.norm() > 1e-3 ? sum.normalized() : Eigen::Vector3d(0, -1, 0);
 }
 
-/// Every so many normals, so that there are about `count`.
+/// About `count` normals of the map, evenly spread over its points.
 std::vector<Eigen::Vector3d> some_normals(const MapCloud& map, std::size_t count) {
   std::vector<Eigen::Vector3d> normals;
   const std::size_t step = std::max<std::size_t>(1, map.size() / count);
@@ -32,7 +33,8 @@ std::vector<Eigen::Vector3d> some_normals(const MapCloud& map, std::size_t count
 
 constexpr double same_direction_rad = 8 * std::numbers::pi / 180;
 
-/// How many normals a room with this vertical explains: those of its floors and of its walls.
+/// The number of normals that are those of floors (parallel to `up`) or walls (perpendicular to
+/// it), within 8°.
 int count_explained(const std::vector<Eigen::Vector3d>& normals, const Eigen::Vector3d& up) {
   const double floor_cosine = std::cos(same_direction_rad);
   const double wall_cosine = std::sin(same_direction_rad);
@@ -42,8 +44,8 @@ int count_explained(const std::vector<Eigen::Vector3d>& normals, const Eigen::Ve
   }));
 }
 
-/// The vertical that explains most normals, of those that a floor or table of the map has, not too
-/// far from a guess; the guess if there is none.
+/// The vertical direction of a room: of the normals within 50° of `guess`, the one that explains
+/// most normals, averaged over the normals close to it. `guess` if there are none.
 Eigen::Vector3d upward_of_room(const MapCloud& map, const Eigen::Vector3d& guess) {
   constexpr double farthest_rad = 50 * std::numbers::pi / 180;
   const std::vector<Eigen::Vector3d> normals = some_normals(map, 4000);
@@ -63,7 +65,8 @@ Eigen::Vector3d upward_of_room(const MapCloud& map, const Eigen::Vector3d& guess
   return sum.norm() > 0 ? sum.normalized() : best;
 }
 
-/// The direction of most walls, modulo a quarter turn: the phase of the mean of exp(4 i α).
+/// The angle of the walls about z, modulo 90°: a quarter of the phase of the mean of exp(4 i α),
+/// where α is the angle of the normal of a wall.
 double wall_angle_rad(const MapCloud& map, const Eigen::Matrix3d& aligned_from_map) {
   std::complex<double> sum = 0;
   for (const MapPoint& point : map) {
@@ -74,14 +77,15 @@ double wall_angle_rad(const MapCloud& map, const Eigen::Matrix3d& aligned_from_m
   return std::arg(sum) / 4;
 }
 
-/// The limits of all values but strays, one in two hundred at either end.
+/// The smallest and the largest value without outliers: 0.5 % of the values at either end. `values`
+/// must not be empty.
 std::pair<double, double> limits(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t strays = values.size() / 200;
   return {values[strays], values[values.size() - 1 - strays]};
 }
 
-/// The same frame with x where −y was and y where x was.
+/// A frame rotated by 90° about z: the new x is the old −y, and the new y is the old x.
 GravityAlignedFrame turned_by_a_quarter(const GravityAlignedFrame& frame) {
   Eigen::Matrix3d turn;
   turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;

@@ -22,8 +22,8 @@ ColorScale height_scale(const GravityAlignedFrame& frame) {
   return {0, std::max(0.1, height_m), "height, m"};
 }
 
-/// The spacing of map points: how far the nearest of a few neighbours in the file is, as points
-/// of a voxel grid are stored in its order.
+/// The spacing of the points of a map, metres: the lower quartile of the distances between
+/// successive points, which are often neighbours in the voxel grid.
 float typical_spacing_m(const MapCloud& map) {
   std::vector<float> steps;
   for (std::size_t i = 1; i < map.size(); ++i) {
@@ -35,7 +35,7 @@ float typical_spacing_m(const MapCloud& map) {
   return std::clamp(*place, 0.005F, 0.2F);
 }
 
-/// A bar of a round length below the picture, and that length.
+/// A picture with a scale bar of a round length below it.
 Picture with_scale_bar(const Picture& picture, double metres_per_px) {
   double length_m = 1;
   for (const double round : {2.0, 5.0, 10.0, 20.0}) {
@@ -60,7 +60,7 @@ LineLayer path_line(const Trajectory& trajectory, const GravityAlignedFrame& fra
   return line;
 }
 
-/// A drawing from straight above, in parallel projection, with a scale in metres.
+/// A picture of a drawing from straight above, in parallel projection, with a scale bar.
 Picture drawn_from_above(const Drawing& drawing, const Eigen::AlignedBox3d& box_m, int size_px) {
   constexpr double margin_m = 0.3;
   const Eigen::Vector3d size = box_m.sizes().array() + 2 * margin_m;
@@ -84,7 +84,8 @@ Viewpoint viewpoint_of(const Pose& aligned_from_camera, double vertical_fov_deg)
   return viewpoint;
 }
 
-/// How many points a camera there sees, as far as their normals face it; walls hide nothing.
+/// The number of points in the view of a camera whose normals face it. Points behind walls are
+/// counted as well.
 int count_seen(const PointLayer& layer, const Pose& aligned_from_camera, double tangent_x,
                double tangent_y) {
   const Eigen::Isometry3f camera_from_aligned = aligned_from_camera.inverse().cast<float>();
@@ -116,11 +117,11 @@ MapColoring color_by_height(const MapCloud& map, const GravityAlignedFrame& fram
 Drawing map_drawing(const MapCloud& map, const Trajectory& trajectory,
                     const GravityAlignedFrame& frame, const MapColoring& coloring) {
   if (coloring.values.size() != map.size()) {
-    throw UsageError("map colours: there are not as many values as points");
+    throw UsageError("map colours: the number of values differs from the number of points");
   }
   const Eigen::Matrix3f aligned_from_map = frame.aligned_from_map.cast<float>();
   PointLayer layer;
-  layer.size_m = 1.6F * typical_spacing_m(map);  // overlap a little, so that no gaps show
+  layer.size_m = 1.6F * typical_spacing_m(map);  // squares overlap, so that there are no gaps
   const bool has_normals =
       std::ranges::all_of(map, [](const MapPoint& point) { return std::isfinite(point.normal_z); });
   for (std::size_t i = 0; i < map.size(); ++i) {
@@ -145,7 +146,7 @@ LineLayer camera_outline(const Pose& aligned_from_camera) {
     outline.points_m.push_back(
         (aligned_from_camera * Eigen::Vector3d(x_m, y_m, z_m)).cast<float>());
   };
-  // One line: each side of the base, then in to the eye and out again.
+  // One line: after each side of the base, it goes to the tip and back.
   for (const auto& [x_m, y_m] :
        {std::pair(-0.25, -0.2), std::pair(0.25, -0.2), std::pair(0.25, 0.2), std::pair(-0.25, 0.2),
         std::pair(-0.25, -0.2)}) {
@@ -164,7 +165,7 @@ Viewpoint viewpoint_outside(const Eigen::AlignedBox3d& box_m) {
   const Eigen::Vector3d backward = Eigen::Vector3d(-0.45, -0.62, 0.64).normalized();
   const Eigen::Vector3d right = viewpoint.up.cross(backward).normalized();
   const Eigen::Vector3d upward = backward.cross(right);
-  // The distance from which the farthest corner is still within the picture, and a little more.
+  // The distance from which all corners are inside the picture, with a margin of 5 %.
   constexpr double narrowest_aspect = 1.2;
   const double tangent = std::tan(viewpoint.vertical_fov_deg / 2 * std::numbers::pi / 180);
   double distance_m = 0.1;
@@ -206,7 +207,7 @@ Picture paths_from_above(const MapCloud& map, const std::vector<NamedPath>& path
   for (const NamedPath& path : paths) {
     drawing.lines.push_back(path_line(path.trajectory, frame, path.color, path.width_px));
     for (Eigen::Vector3f& point : drawing.lines.back().points_m) {
-      // Above all of the map, and above the paths before it.
+      // Raises the path above the map and the paths before it.
       point.z() = static_cast<float>(frame.box_m.isEmpty() ? 0 : frame.box_m.max().z()) +
                   0.02F * static_cast<float>(drawing.lines.size());
       box_m.extend(point.cast<double>());

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Debian's VTK opens windows through X alone. Drawing without a display goes through a window of
-// VTK's that leaves the OpenGL context to its user: here one of EGL, without any surface.
+// Debian's VTK can open windows only through X. To draw without a display, this file uses a VTK
+// window class that works in an OpenGL context of the caller: here one of EGL, without a surface.
 
 #include "offscreen.hpp"
 
@@ -25,7 +25,7 @@ namespace {
                      "; install the packages libegl1 and libgl1-mesa-dri");
 }
 
-/// An OpenGL context without window or surface, current while it lives.
+/// An OpenGL context without a window or surface, which is current during the lifetime of this.
 class SurfacelessContext {
  public:
   SurfacelessContext() : display_(open_display()) {
@@ -53,11 +53,11 @@ class SurfacelessContext {
   }
 
  private:
-  /// Opened once and kept: EGL gives the same display every time.
+  /// The display is never closed, since EGL returns the same one every time.
   static EGLDisplay open_display() {
     const auto get_platform_display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
         eglGetProcAddress("eglGetPlatformDisplayEXT"));
-    if (!get_platform_display) fail("EGL knows no platforms");
+    if (!get_platform_display) fail("EGL does not support platforms");
     EGLDisplay display =
         get_platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) {
@@ -70,19 +70,19 @@ class SurfacelessContext {
   EGLContext context_ = EGL_NO_CONTEXT;
 };
 
-/// VTK's window for contexts of others.
+/// A VTK window that draws in the current OpenGL context.
 class OffscreenWindow : public vtkGenericOpenGLRenderWindow {
  public:
   static OffscreenWindow* New();
   vtkTypeMacro(OffscreenWindow, vtkGenericOpenGLRenderWindow);
 
-  /// GLEW as Debian builds it reports an error when no X display is open, after it has found all
-  /// functions of OpenGL; VTK would stop there.
+  /// Ignores the error that Debian's GLEW reports if there is no X display, at which VTK would
+  /// stop. GLEW has found all functions of OpenGL before that.
   void OpenGLInitContext() override {
     ContextCreationTime.Modified();
     if (Initialized) return;
     glewInit();
-    GlewInitValid = true;  // the context was asked for OpenGL 3.2
+    GlewInitValid = true;  // the context was created for OpenGL 3.2
     Initialized = true;
   }
 

@@ -8,7 +8,8 @@ class vtkRenderer;
 
 namespace tofmap {
 
-/// What a renderer draws, without a window. Throws DrawingError if there is no way to draw.
+/// A picture of the contents of a renderer, drawn without a display. Throws DrawingError if this
+/// machine cannot draw.
 Picture picture_of(vtkRenderer& renderer, int width_px, int height_px);
 
 }  // namespace tofmap

@@ -33,7 +33,7 @@ Box box_of(const PageScene& scene) {
   return box;
 }
 
-/// Places as shares of the box, in 65535 steps.
+/// Coordinates as fractions of the box, in 65535 steps.
 std::string packed_places(const std::vector<Eigen::Vector3f>& points_m, const Box& box) {
   const Eigen::Array3f steps = 65535 / box.sizes().array().max(1e-6F);
   std::vector<std::uint16_t> packed;
@@ -79,12 +79,14 @@ void check(const PageScene& scene) {
     const auto is_finite = [](const Eigen::Vector3f& v) { return v.allFinite(); };
     if (!std::ranges::all_of(cloud.points_m, is_finite) ||
         !std::ranges::all_of(cloud.normals, is_finite)) {
-      throw UsageError("page: cloud '" + cloud.name + "' has points that are nowhere");
+      throw UsageError("page: cloud '" + cloud.name +
+                       "' has points or normals that are not finite");
     }
     if (cloud.normals.size() != cloud.points_m.size() ||
         cloud.colorings.size() != scene.colorings.size() ||
         !std::ranges::all_of(cloud.colorings, as_many)) {
-      throw UsageError("page: cloud '" + cloud.name + "' lacks normals or colours");
+      throw UsageError("page: cloud '" + cloud.name +
+                       "' has the wrong number of normals, colours or colourings");
     }
   }
 }

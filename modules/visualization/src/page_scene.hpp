@@ -8,8 +8,9 @@
 
 namespace tofmap {
 
-/// A scene as page/scene.js reads it: places as 16-bit shares of the box around all, in base64.
-/// Throws UsageError if clouds lack normals or colours, or have points that are nowhere.
+/// A scene as JSON for page/scene.js. Coordinates are 16-bit fractions of the bounding box of the
+/// scene, in base64. Throws UsageError if the normals, colours or colourings of a cloud have the
+/// wrong number, or its points or normals are not finite.
 std::string scene_json(const PageScene& scene);
 
 }  // namespace tofmap

@@ -4,7 +4,8 @@
 
 #include <string_view>
 
-/// What is the same in every page, from src/page; three.js and its OrbitControls from Debian.
+/// The fixed parts of every page: files of src/page, and three.js with its OrbitControls from
+/// Debian.
 namespace tofmap::page_texts {
 
 extern const std::string_view style;

@@ -161,7 +161,8 @@ void write_picture(const std::filesystem::path& file, const Picture& picture) {
   if (!out) {
     std::error_code ignored;
     std::filesystem::remove(file, ignored);
-    throw InputError(file.string() + ": cannot be written; is the disk full, the folder writable?");
+    throw InputError(file.string() +
+                     ": cannot be written; is the disk full, or the folder read-only?");
   }
 }
 

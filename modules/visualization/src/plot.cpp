@@ -28,7 +28,7 @@
 namespace tofmap {
 namespace {
 
-/// Colours that all kinds of eyes tell apart (Okabe and Ito, Color universal design, 2008).
+/// Colours that colour-blind readers can tell apart (Okabe and Ito, Color universal design, 2008).
 constexpr std::array<Rgb, 7> line_colors{{{0, 114, 178},
                                           {213, 94, 0},
                                           {0, 158, 115},
@@ -47,7 +47,7 @@ vtkSmartPointer<vtkDoubleArray> column(const std::string& name, const std::vecto
   return array;
 }
 
-/// Points that have no neighbour, twice: VTK draws no line of one point.
+/// Doubles points without a neighbour, since VTK does not draw a line of one point.
 PlotLine with_single_points_doubled(const PlotLine& line) {
   const auto is_there = [&](std::size_t i) {
     return i < line.y.size() && std::isfinite(line.x[i]) && std::isfinite(line.y[i]);
@@ -78,6 +78,15 @@ void add_line(const PlotLine& line, std::size_t number, vtkChartXY& chart) {
   drawn->SetMarkerSize(7);
 }
 
+/// Adds a line that is not drawn: VTK leaves out the axes of a chart without lines.
+void add_nothing(vtkChartXY& chart) {
+  add_line({"", {0, 1}, {0, 1}}, 0, chart);
+  auto* unseen = vtkPlotPoints::SafeDownCast(chart.GetPlot(0));
+  unseen->SetMarkerStyle(vtkPlotPoints::NONE);
+  unseen->GetPen()->SetLineType(vtkPen::NO_PEN);
+  chart.SetShowLegend(false);
+}
+
 void set_axis(vtkAxis& axis, const std::string& label, double limit) {
   axis.SetTitle(label);
   axis.GetTitleProperties()->SetFontSize(15);
@@ -88,7 +97,7 @@ void set_axis(vtkAxis& axis, const std::string& label, double limit) {
   axis.SetBehavior(vtkAxis::FIXED);
 }
 
-/// Of all values that are finite; 0 if none is positive.
+/// The largest finite value of all lines, but at least 0.
 double greatest_of(const Plot& plot, std::vector<double> PlotLine::*values) {
   double greatest = 0;
   for (const PlotLine& line : plot.lines) {
@@ -99,14 +108,14 @@ double greatest_of(const Plot& plot, std::vector<double> PlotLine::*values) {
   return greatest;
 }
 
-/// The limit, or a tenth beyond the greatest value.
+/// `limit` if it is above 0, else a tenth beyond the largest value.
 double limit_or(double limit, const Plot& plot, std::vector<double> PlotLine::*values) {
   if (limit > 0) return limit;
   const double greatest = greatest_of(plot, values);
   return greatest > 0 ? 1.1 * greatest : 1;
 }
 
-/// A logarithmic axis over whole decades.
+/// Makes the y axis logarithmic, over whole decades.
 void set_log_axis(vtkAxis& axis, const Plot& plot) {
   double least = std::numeric_limits<double>::infinity();
   for (const PlotLine& line : plot.lines) {
@@ -122,7 +131,7 @@ void set_log_axis(vtkAxis& axis, const Plot& plot) {
   axis.LogScaleOn();
 }
 
-/// The line as a logarithmic axis can show it.
+/// A line with NaN where y is not positive.
 PlotLine positive(PlotLine line) {
   for (double& value : line.y) {
     if (!(value > 0)) value = std::numeric_limits<double>::quiet_NaN();
@@ -140,13 +149,14 @@ Picture plot_picture(const Plot& plot, int width_px, int height_px) {
   for (std::size_t i = 0; i < plot.lines.size(); ++i) {
     const PlotLine& line = plot.lines[i];
     if (line.x.size() != line.y.size()) {
-      throw UsageError("plot: line '" + line.name + "' has not as many x as y");
+      throw UsageError("plot: line '" + line.name + "' has different numbers of x and y");
     }
     const PlotLine shown = plot.has_log_y ? positive(line) : line;
     const auto is_there = [](double y) { return std::isfinite(y); };
     if (std::ranges::none_of(shown.y, is_there)) continue;
     add_line(with_single_points_doubled(shown), i, *chart);
   }
+  if (chart->GetNumberOfPlots() == 0) add_nothing(*chart);
   set_axis(*chart->GetAxis(vtkAxis::BOTTOM), plot.x_label,
            limit_or(plot.x_limit, plot, &PlotLine::x));
   vtkAxis& left = *chart->GetAxis(vtkAxis::LEFT);

@@ -11,7 +11,7 @@
 
 namespace tofmap {
 
-/// The value that a share in [0, 1] of the finite pixels stay at or below; none if no pixel is
+/// The quantile of the finite pixels of an image for `share` in [0, 1]. Empty if no pixel is
 /// finite.
 inline std::optional<float> finite_quantile(const ImageF& image, double share) {
   std::vector<float> values;

@@ -22,7 +22,7 @@
 namespace tofmap {
 namespace {
 
-/// Vertices with a colour each, as VTK wants them.
+/// Vertices and their colours as VTK arrays.
 struct Vertices {
   vtkNew<vtkPoints> points;
   vtkNew<vtkUnsignedCharArray> colors;
@@ -43,7 +43,7 @@ vtkSmartPointer<vtkActor> make_actor(vtkPolyData* data) {
   return actor;
 }
 
-/// As bright in the shade as is needed to tell its colour.
+/// Uses much ambient light, so that colours can be recognised in the shade.
 void light_softly(vtkActor& actor) {
   actor.GetProperty()->SetAmbient(0.6);
   actor.GetProperty()->SetDiffuse(0.45);
@@ -76,7 +76,8 @@ vtkSmartPointer<vtkActor> squares_actor(const PointLayer& layer) {
     const Eigen::Vector3f& normal = layer.normals[i];
     const Eigen::Vector3f a = normal.unitOrthogonal() * (layer.size_m / 2);
     const Eigen::Vector3f b = normal.cross(a);
-    // Counter-clockwise as seen from where the normal points to: that is the front.
+    // The front of a face is where its corners are counter-clockwise, so these are, seen from the
+    // normal.
     vtkIdType corners[4];
     int corner = 0;
     for (const Eigen::Vector3f& offset : {Eigen::Vector3f(-a - b), Eigen::Vector3f(a - b),

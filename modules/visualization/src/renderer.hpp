@@ -9,12 +9,14 @@
 
 namespace tofmap {
 
-/// All layers as actors, the camera at the viewpoint; not in a window yet.
+/// A renderer with an actor for each layer of the drawing, seen from the viewpoint. It does not
+/// belong to a window yet.
 vtkSmartPointer<vtkRenderer> make_renderer(const Drawing& drawing, const Viewpoint& viewpoint);
 
-/// Other actors in place of all that a renderer has.
+/// Replaces all actors of a renderer by those of a drawing.
 void replace_drawing(vtkRenderer& renderer, const Drawing& drawing);
 
+/// Moves the camera of a renderer to a viewpoint.
 void look_from(vtkRenderer& renderer, const Viewpoint& viewpoint);
 
 }  // namespace tofmap

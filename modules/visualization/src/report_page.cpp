@@ -37,7 +37,7 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-/// An element with a text in it; `start` is its name with its attributes.
+/// An HTML element that contains `text`. `start` is its name with its attributes.
 std::string element(std::string_view start, std::string_view text) {
   const std::string name(start.substr(0, start.find(' ')));
   return "<" + std::string(start) + ">" + escaped(text) + "</" + name + ">\n";
@@ -67,7 +67,7 @@ std::string table_row(const std::vector<std::string>& cells, std::string_view na
   return out + "</tr>\n";
 }
 
-/// How a verdict is called: by the style sheet, and on the page.
+/// A verdict as a class of the style sheet and as words on the page.
 struct VerdictWords {
   std::string_view css_class;
   std::string_view text;
@@ -78,14 +78,14 @@ VerdictWords words_of(Verdict verdict) {
     case Verdict::good:
       return {"good", "Looks right."};
     case Verdict::doubtful:
-      return {"doubtful", "To be looked at with care."};
+      return {"doubtful", "Check this result."};
     case Verdict::bad:
       break;
   }
-  return {"bad", "Not to be trusted."};
+  return {"bad", "Do not trust this result."};
 }
 
-/// A choice of one of several names; the first is chosen.
+/// Radio buttons to choose one of several names. The first is selected.
 template <class Named>
 std::string choice(const std::string& group, const std::string& label,
                    const std::vector<Named>& all) {
@@ -161,15 +161,16 @@ void ReportPage::add_strip(const std::vector<StripFrame>& frames,
 
 void ReportPage::add_scene(const PageScene& scene) {
   const std::string json = scene_json(scene);
-  const std::string number = std::to_string(scenes_++);  // tells the groups of scenes apart
-  body_ += "<div class=\"scene\">\n<div class=\"controls\" hidden>\n" +
-           choice("cloud" + number, "Map:", scene.clouds) + "</div>\n" +
-           "<div class=\"controls\" hidden>\n" +
-           choice("coloring" + number, "Colour:", scene.colorings) +
-           "<button type=\"button\" data-view=\"corner\">From a corner</button>\n"
-           "<button type=\"button\" data-view=\"above\">From above</button>\n"
-           "<button type=\"button\" data-view=\"side\">From the side</button>\n</div>\n"
-           "<div class=\"canvas\">This needs scripts and WebGL.</div>\n<div class=\"figures\">";
+  const std::string number = std::to_string(scenes_++);  // makes group names unique
+  body_ +=
+      "<div class=\"scene\">\n<div class=\"controls\" hidden>\n" +
+      choice("cloud" + number, "Map:", scene.clouds) + "</div>\n" +
+      "<div class=\"controls\" hidden>\n" +
+      choice("coloring" + number, "Colour:", scene.colorings) +
+      "<button type=\"button\" data-view=\"corner\">From a corner</button>\n"
+      "<button type=\"button\" data-view=\"above\">From above</button>\n"
+      "<button type=\"button\" data-view=\"side\">From the side</button>\n</div>\n"
+      "<div class=\"canvas\">The 3D view needs scripts and WebGL.</div>\n<div class=\"figures\">";
   for (const SceneColoring& coloring : scene.colorings) {
     body_ += "<figure class=\"legend\">" + image(coloring.legend, "colours of " + coloring.name) +
              "</figure>\n";

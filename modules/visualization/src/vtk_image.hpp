@@ -10,7 +10,7 @@ class vtkImageData;
 
 namespace tofmap {
 
-/// A picture as VTK has them, with its rows from the bottom.
+/// A picture as a VTK image, whose rows begin at the bottom.
 vtkSmartPointer<vtkImageData> vtk_image(const Picture& picture);
 
 }  // namespace tofmap

@@ -31,14 +31,15 @@ struct CloseDisplay {
 };
 using OpenDisplay = std::unique_ptr<Display, CloseDisplay>;
 
-/// VTK, which would open one itself, ends the program where X cannot be reached.
+/// Opens the display here, since VTK ends the program if it cannot connect to X. Throws
+/// DrawingError.
 OpenDisplay open_display() {
   OpenDisplay display(XOpenDisplay(nullptr));
   if (!display) throw DrawingError("there is no display to open a window on");
   return display;
 }
 
-/// The mouse moves the camera; keys are the window's, not VTK's.
+/// Moves the camera by the mouse as VTK does, but passes keys to `on_key`.
 class WindowStyle : public vtkInteractorStyleTrackballCamera {
  public:
   static WindowStyle* New();
@@ -67,7 +68,7 @@ class WindowStyle : public vtkInteractorStyleTrackballCamera {
 
 vtkStandardNewMacro(WindowStyle);
 
-/// Text that hangs in a corner of the window; `y` 1 is above, 0 below.
+/// Places a text in the upper (`y` = 1) or lower (`y` = 0) left corner of the window.
 void hang(vtkTextActor& text, double y) {
   constexpr double margin = 0.01;
   text.GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
@@ -143,12 +144,12 @@ class Window::Impl {
       window_->Render();
     }
     interactor_->ProcessEvents();
-    window_->ReleaseCurrent();  // who draws off screen meanwhile has another OpenGL context
+    window_->ReleaseCurrent();  // draw() uses another OpenGL context in between
     return !interactor_->GetDone();
   }
 
  private:
-  /// In the corner of the window as large as it is now.
+  /// Moves the legend to the upper right corner of the window at its current size.
   void place_legend() {
     constexpr int margin_px = 10;
     const int* size_px = window_->GetSize();
@@ -175,7 +176,7 @@ class Window::Impl {
   vtkNew<vtkActor2D> legend_;
   Eigen::Vector2i legend_size_px_ = Eigen::Vector2i::Zero();
   std::function<void(const std::string&)> handler_;
-  bool is_drawn_ = false;  ///< whether all that was set is on the screen
+  bool is_drawn_ = false;  ///< whether all changes have been drawn
 };
 
 Window::Window(const std::string& title, int width_px, int height_px)

@@ -10,7 +10,7 @@
 namespace tofmap {
 namespace {
 
-/// The planes that a count decides about.
+/// The planes of a range image that depend on the wrap count.
 struct Planes {
   float* range_m;
   float* sigma_m;
@@ -18,7 +18,8 @@ struct Planes {
   std::uint8_t* reason;
 };
 
-/// Ranges and their noise are (value + n · per_count) · scale.
+/// Fills the planes: the range is (range + n · per_count) · scale, its standard deviation is
+/// sigma · scale.
 TOFMAP_VECTOR_CLONES void fill_counted(int pixels, const float* range, const float* sigma,
                                        const std::uint8_t* counts, const float* confidence,
                                        float per_count, float scale, const Planes& out_) {

@@ -8,11 +8,13 @@
 
 namespace tofmap {
 
-/// The image of counts that are known, with ranges, their standard deviations, and confidences.
+/// The range image of known ranges, their standard deviations, wrap counts and confidences, all of
+/// the same size. Pixels with invalid_wrap_count become invalid, for no return.
 RangeImage make_range_image(const ImageF& range_m, const ImageF& sigma_m, const ImageU8& counts,
                             const ImageF& confidence);
 
-/// The same with A's ranges: (phase_a + n) λ_A.
+/// The range image of known wrap counts of A, with the ranges (phase_a + n) λ_A. Pixels with
+/// invalid_wrap_count become invalid, for no return.
 RangeImage make_range_image(const ImageF& phase_a, const ImageF& sigma_a_cycles,
                             const ImageU8& counts, const ImageF& confidence,
                             const UnwrapLimits& limits);

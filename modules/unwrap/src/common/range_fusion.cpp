@@ -16,12 +16,12 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// Pixels of both frequencies.
+/// The measurements of successive pixels and their wrap counts.
 struct Pixels {
   const float* phase_a;
   const float* phase_b;
   const std::uint8_t* count;
-  const float* sigma_a;  ///< of the phase, cycles
+  const float* sigma_a;  ///< noise of phase_a, cycles
   const float* sigma_b;
 };
 
@@ -54,7 +54,7 @@ TOFMAP_VECTOR_CLONES void fill_fused(int count, const Pixels& pixels_, float wav
     const float fused_variance_m2 = variance_a_m2 * variance_b_m2 / variance_m2;
     const float agrees = residual_m * residual_m <= tolerated_m2 ? 1.0F : 0.0F;
     const float agrees_surely = variance_m2 <= largest_m * largest_m ? agrees : 0.0F;
-    // Noise just before the camera may make a range negative.
+    // Noise can make the range of a very near surface negative.
     const float fuses = fused_m > 0 ? agrees_surely : 0.0F;
     const bool is_fused = (is_present ? fuses : 0.0F) > 0;
     range_m[i] = (is_fused ? fused_m : range_a_m) + uncounted;

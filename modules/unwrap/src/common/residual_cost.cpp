@@ -23,10 +23,10 @@ namespace {
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr double noise_tolerance_cycles = 0.05;
 
-/// What a count adds to the residual.
+/// How a wrap count changes the residual, and where it is within the limits.
 struct CountStep {
-  float shift;     ///< cycles of B in so many wavelengths of A, without the whole ones
-  float farthest;  ///< phase up to which the range is within the limits
+  float shift;     ///< change of the residual, cycles of B, −1/2 … 1/2
+  float farthest;  ///< farthest_phase_cycles()
 };
 
 CountStep count_step(const UnwrapLimits& limits, int n) {
@@ -34,14 +34,17 @@ CountStep count_step(const UnwrapLimits& limits, int n) {
   return {static_cast<float>(residual_shift_cycles(ratio, n)), farthest_phase_cycles(limits, n)};
 }
 
-/// Pixels treated at a time: what is known of them so far stays in the first-level cache.
+/// Pixels processed at a time: few enough for their intermediate results to stay in the first-level
+/// cache.
 constexpr int block_pixels = 1024;
 
-/// The least residuals, in cycles of B, and whose they are.
+/// The smallest absolute residual of each pixel so far, in cycles of B, and its wrap count.
 struct Nearest {
   std::array<float, block_pixels> cycles;
   std::array<float, block_pixels> count;
 };
+
+/// Updates `nearest` with the residuals for one wrap count.
 
 TOFMAP_VECTOR_CLONES void take_nearer(int pixels, const float* phase_a, const float* phase_b,
                                       float wavelength_ratio, const CountStep& step, float count,
@@ -61,7 +64,7 @@ TOFMAP_VECTOR_CLONES void take_nearer(int pixels, const float* phase_a, const fl
   }
 }
 
-/// Half the squared residual over its variance, bounded.
+/// Half the squared residual over its variance, bounded. `precision` is 1 / 2σ².
 [[gnu::always_inline]] inline float cost_of(float residual_cycles, float precision,
                                             bool is_within) {
   const float residual = to_half_cycle(residual_cycles);
@@ -69,16 +72,16 @@ TOFMAP_VECTOR_CLONES void take_nearer(int pixels, const float* phase_a, const fl
   return is_within && cost < ResidualCost::bound ? cost : ResidualCost::bound;
 }
 
-/// Pixels of both frequencies.
+/// The measurements of successive pixels.
 struct Pixels {
   const float* phase_a;
   const float* phase_b;
-  const float* sigma_a;  ///< of the phase, cycles
+  const float* sigma_a;  ///< noise of phase_a, cycles
   const float* sigma_b;
 };
 
-/// The residual of count 0, and half its inverse variance, both in cycles of B. Without a return
-/// the phase is beyond any limit.
+/// Computes the residual for wrap count 0 and its precision 1 / 2σ², in cycles of B. Pixels without
+/// a return get a phase beyond all limits, so that every wrap count has the largest cost.
 TOFMAP_VECTOR_CLONES void fill_residual(int pixels, const Pixels& from_, float wavelength_ratio,
                                         float residual_variance, float* phase_a,
                                         float* residual_cycles, float* precision) {
@@ -97,19 +100,20 @@ TOFMAP_VECTOR_CLONES void fill_residual(int pixels, const Pixels& from_, float w
   }
 }
 
-/// Counts in a row, one in each lane.
+/// Successive wrap counts, one in each SIMD lane.
 constexpr int count_lanes = DiagonalLayout::lanes;
 
-/// What a ResidualCost knows of pixels and of counts.
+/// The tables of a ResidualCost over pixels and over wrap counts.
 struct CostTables {
   const float* phase_a;
   const float* residual_cycles;
   const float* precision;
-  const float* shift;  ///< of count −1, with room before and after
+  const float* shift;  ///< begins at wrap count −1; the table extends to both sides
   const float* farthest;
 };
 
-/// Adds the costs of `size` counts of pixels to `sums`. Offsets lie within the tables.
+/// Adds the costs of `size` wrap counts of some pixels to `sums`. Offsets must lie within the
+/// tables.
 TOFMAP_VECTOR_CLONES void add_costs(const CostTables& tables_, const CountedPixel* pixels,
                                     int pixel_count, int size, float* sums) {
   const CostTables tables = tables_;
@@ -135,7 +139,8 @@ TOFMAP_VECTOR_CLONES void add_costs(const CostTables& tables_, const CountedPixe
   }
 }
 
-/// Adds the likelihoods of one count, and keeps those of the counts that are asked for.
+/// Adds the likelihood of one wrap count of each pixel to `sums`. Where it is the wrap count that
+/// is asked for, stores the likelihood in `own`.
 TOFMAP_VECTOR_CLONES void add_likelihoods(int pixels, const float* phase_a,
                                           const float* residual_cycles, const float* precision,
                                           const CountStep& step, float count,
@@ -157,7 +162,7 @@ UnwrapLimits unwrap_limits(const SensorModel& sensor, double max_range_m) {
   UnwrapLimits limits;
   limits.wavelength_a_m = sensor.modulation.wavelength_a_m();
   limits.wavelength_b_m = sensor.modulation.wavelength_b_m();
-  const double most_m = invalid_wrap_count * limits.wavelength_a_m;  // as many counts fit 8 bits
+  const double most_m = invalid_wrap_count * limits.wavelength_a_m;  // 255 wrap counts fit 8 bits
   limits.max_range_m =
       max_range_m > 0 ? max_range_m
       : sensor.max_range_m > 0
@@ -165,9 +170,10 @@ UnwrapLimits unwrap_limits(const SensorModel& sensor, double max_range_m) {
           : std::min(most_m, combined_range_m(sensor.modulation, noise_tolerance_cycles));
   limits.count_a = wrap_limits(sensor.modulation, limits.max_range_m).count_a;
   if (limits.count_a > invalid_wrap_count) {
-    throw UsageError("max_range_m: " + std::to_string(limits.max_range_m) + " m takes " +
-                     std::to_string(limits.count_a) + " wrap counts; allowed: at most 255, i.e. " +
-                     std::to_string(most_m) + " m");
+    throw UsageError("max_range_m: " + std::to_string(limits.max_range_m) + " m needs " +
+                     std::to_string(limits.count_a) +
+                     " wrap counts; allowed: at most 255, that is " + std::to_string(most_m) +
+                     " m");
   }
   return limits;
 }

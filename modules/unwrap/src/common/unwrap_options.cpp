@@ -19,46 +19,49 @@ constexpr std::array methods{
 std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
   using O = UnwrapOptions;
   return {
-      {"method", &O::method, 0, 0, "", "how wraps are found"},
+      {"method", &O::method, 0, 0, "", "method that finds the wrap counts"},
       {"max_range_m", &O::max_range_m, 0, 100000, "m",
-       "farthest range that the scene can hold; 0: the recording's, else what the pair can tell "
-       "apart; paper has two counts, whatever it is"},
+       "longest range in the scene, which limits the wrap counts; 0: the limit that the recording "
+       "states, or else the range up to which the pair of frequencies is unambiguous; paper always "
+       "uses two wrap counts"},
       {"count_iterations", &O::count_iterations, 1, 1000, "",
-       "joint: iterations of belief propagation over counts"},
+       "joint: iterations of belief propagation over wrap counts"},
       {"scales", &O::scales, 1, 6, "",
-       "joint: pixels, blocks of 2 x 2, of 4 x 4 ... where noise asks for it; 1: pixels alone"},
+       "joint: largest number of pyramid levels: pixels, blocks of 2 x 2, of 4 x 4 and so on; "
+       "coarser levels are used only in noisy frames; 1: only pixels"},
       {"outlier_share", &O::outlier_share, 1e-6, 0.99, "",
-       "joint: share of a pixel's evidence that may come from no surface at all"},
+       "joint: probability that a pixel's residual comes from no surface"},
       {"slope_m", &O::slope_m, 0.001, 10, "m",
-       "joint: typical difference of true ranges between neighbours on a surface"},
+       "joint: typical difference between the true ranges of neighbouring pixels on one surface"},
       {"amplitude_edges", &O::amplitude_edges, 0, 1, "",
-       "joint: a change of amplitude makes an edge likelier"},
+       "joint: an edge between surfaces is more probable where the amplitude changes"},
       {"mixed_pixels", &O::mixed_pixels, 0, 1, "",
-       "joint: a pixel with an amplitude between those of opposite neighbours has two surfaces, "
-       "and "
-       "is left to them"},
+       "joint: ignore the residual of mixed pixels, those whose amplitude lies between the "
+       "amplitudes of two opposite neighbours"},
       {"fuse_frequencies", &O::fuse_frequencies, 0, 1, "",
-       "joint: ranges from both frequencies, weighted by their noise, not from A alone"},
+       "joint: the range is the mean of both frequencies, weighted by inverse variances; false: "
+       "the range of A"},
       {"correct_exposure", &O::correct_exposure, 0, 1, "",
-       "joint, jump: allow for the camera's motion from A's exposure to B's"},
+       "joint, jump: estimate the camera's motion between the exposures of A and B and correct "
+       "for it; no effect without systematic_errors"},
       {"systematic_errors", &O::systematic_errors, 0, 1, "",
-       "joint, jump: estimate what the frequencies disagree by, over the frames so far; 0: noise "
-       "alone explains it"},
+       "joint, jump: estimate the systematic errors in which the frequencies differ, from all "
+       "frames so far; false: residuals are attributed to noise alone"},
       {"iterations", &O::iterations, 1, 1000, "",
-       "jump, paper, single: most iterations of belief propagation"},
+       "jump, paper, single: largest number of iterations of belief propagation"},
       {"trust_discontinuity", &O::trust_discontinuity, 0, 1, "",
-       "jump, paper, single: c_d, trust in phases of neighbours being close"},
+       "jump, paper, single: c_d, trust in the term that compares the phases of neighbouring "
+       "pixels"},
       {"trust_frequency", &O::trust_frequency, 0, 1, "",
-       "jump, paper: c_f, trust in the difference of the two frequencies"},
+       "jump, paper: c_f, trust in the term that compares the two frequencies"},
       {"window_px", &O::window_px, 1, 99, "px",
-       "jump, paper: k, pixels on each side of a jump in the medians"},
+       "jump, paper: k, pixels on each side of a phase jump over which medians are taken"},
       {"sigma_cycles", &O::sigma_cycles, 0.001, 10, "cycles",
-       "jump, single: sigma of f_d and f_f: of true differences between neighbours; noise comes on "
-       "top"},
+       "jump, single: sigma, standard deviation of the true phase differences between "
+       "neighbouring pixels, without noise"},
       {"objection_share", &O::objection_share, 0, 1e6, "",
-       "jump: regions stay apart where the residual objects by more than this share of a jump's "
-       "log "
-       "odds"},
+       "jump: two regions stay separate if joining them raises the cost of their residuals by more "
+       "than this factor times the log odds of the phase jump between them"},
   };
 }
 

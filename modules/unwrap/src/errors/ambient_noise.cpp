@@ -17,20 +17,23 @@
 namespace tofmap {
 namespace {
 
+/// Edge length of a block.
 constexpr int block_px = 16;
 
-/// Standard deviations below which half of all normal numbers lie, and nearly all.
+/// The absolute value of a normal variable lies below 0.67 standard deviations with probability
+/// 1/2, and below 2.5 nearly always.
 constexpr float half_sigmas = 0.6745F;
 constexpr float most_sigmas = 2.5F;
 
-/// Differences of one block: how many there are, and how many are small.
+/// Number of differences in one block, and how many of them are below each limit.
 struct Shares {
   int all = 0;
   int below_half = 0;
   int below_most = 0;
 };
 
-/// Rows of 1 and 0: is there a difference, and is it below each limit.
+/// Fills flags (1 or 0) for each difference of a row: whether it exists, and whether it is below
+/// each limit.
 TOFMAP_VECTOR_CLONES void compare(int count, const float* cycles, const float* relative_sigma,
                                   float scale, int* present, int* below_half, int* below_most) {
 #pragma GCC ivdep
@@ -44,7 +47,7 @@ TOFMAP_VECTOR_CLONES void compare(int count, const float* cycles, const float* r
   }
 }
 
-/// One share for each block, row by row.
+/// The Shares of all blocks of an image.
 class BlockShares {
  public:
   BlockShares(Eigen::Index rows, Eigen::Index cols)
@@ -58,7 +61,8 @@ class BlockShares {
     return shares_[static_cast<std::size_t>(row * cols_ + col)];
   }
 
-  /// Counts the second differences of one frequency in one direction.
+  /// Counts the second differences of one frequency in one direction: along rows if `step_col` is
+  /// 1, along columns if `step_row` is 1. `scale` is the noise scale c of that frequency.
   void add(const ImageF& phase, const ImageF& amplitude, double scale, Eigen::Index step_row,
            Eigen::Index step_col) {
     const auto width = static_cast<std::size_t>(phase.cols());
@@ -67,7 +71,7 @@ class BlockShares {
     std::vector<int> present(width);
     std::vector<int> below_half(width);
     std::vector<int> below_most(width);
-    // Of 8000 differences in a direction some 300 are in a block, which tell its noise to a tenth.
+    // With 8000 differences per direction, a block has about 300, and its noise is known to 10 %.
     constexpr Eigen::Index enough = 8000;
     const Eigen::Index step = std::max<Eigen::Index>(1, phase.size() / enough);
     for (Eigen::Index v = 0; v < phase.rows(); v += step) {
@@ -94,12 +98,13 @@ class BlockShares {
   std::vector<Shares> shares_;
 };
 
-/// The share of numbers below a limit that are normal with the standard deviation `sigma`.
+/// Probability that a normal variable with standard deviation `sigma` is below `limit` in absolute
+/// value.
 double share_below(double limit, double sigma) {
   return std::erf(limit / (sigma * std::numbers::sqrt2));
 }
 
-/// The sigma at which a falling function of it takes a value, 0.1 … 10.
+/// Finds the sigma in 0.1 … 10 at which a decreasing function of sigma takes a value, by bisection.
 template <class Function>
 double solve(const Function& function, double value) {
   double low = 0.1;
@@ -112,11 +117,11 @@ double solve(const Function& function, double value) {
   return std::sqrt(low * high);
 }
 
-/// The factor of a block's noise; 1 where nothing else is certain.
+/// Estimates m of one block; 1 unless another value is certain.
 double factor_of(const Shares& shares) {
   constexpr int enough = 60;
-  constexpr double certain = 1.4;     // more than chance and curved surfaces make of it
-  constexpr double flat_ratio = 0.3;  // from here on the ratio does not tell edges apart
+  constexpr double certain = 1.4;     // chance and curved surfaces cause smaller factors
+  constexpr double flat_ratio = 0.3;  // below this, the ratio hardly depends on m any more
   if (shares.all < enough) return 1;
   const double below_half = static_cast<double>(shares.below_half) / shares.all;
   static const double if_quieter = share_below(half_sigmas, 1 / certain);
@@ -125,7 +130,7 @@ double factor_of(const Shares& shares) {
   const double by_half =
       solve([](double sigma) { return share_below(half_sigmas, sigma); }, below_half);
   if (by_half < 1) return by_half;
-  // Differences across edges lie above both limits, and leave the ratio of the shares as it is.
+  // Differences across edges lie above both limits, so they do not change the ratio of the shares.
   const double ratio = static_cast<double>(shares.below_half) / std::max(shares.below_most, 1);
   const double by_ratio = ratio < flat_ratio ? by_half
                                              : solve(
@@ -138,11 +143,11 @@ double factor_of(const Shares& shares) {
   return factor > certain ? factor : 1;
 }
 
-/// Between which blocks' centres a pixel of a row or column lies, and how near to the later one.
+/// Interpolation between block centres for one pixel of a row or column.
 struct Between {
-  Eigen::Index before;
-  Eigen::Index after;
-  float share;
+  Eigen::Index before;  ///< block whose centre lies before the pixel
+  Eigen::Index after;   ///< block whose centre lies after the pixel
+  float share;          ///< weight of the block `after`, 0 … 1
 
   Between(Eigen::Index pixel, Eigen::Index blocks) {
     const Eigen::Index shifted = pixel + block_px / 2;
@@ -152,7 +157,7 @@ struct Between {
   }
 };
 
-/// exp of numbers between the centres of the blocks of one row.
+/// Interpolates logarithms linearly along a row of pixels and takes their exponential.
 TOFMAP_VECTOR_CLONES void fill_factors(int cols, const float* before, const float* after,
                                        const float* share, float* factors) {
 #pragma GCC ivdep
@@ -163,7 +168,8 @@ TOFMAP_VECTOR_CLONES void fill_factors(int cols, const float* before, const floa
   }
 }
 
-/// exp of an image, bilinear between the centres of blocks.
+/// Interpolates the blocks' logarithms bilinearly between block centres and takes their
+/// exponential.
 ImageF exp_between(const ImageF& blocks, Eigen::Index rows, Eigen::Index cols) {
   ImageF out(rows, cols);
   std::vector<Between> across;

@@ -8,14 +8,15 @@
 
 namespace tofmap {
 
-/// m of the error model (tofmap/core/range_error.hpp): by which factor the noise of each pixel
-/// differs from what `noise` and its amplitude say, as ambient light makes it; both frequencies
-/// have the same. Empty if no part of the image differs by more than edges and chance explain.
+/// Estimates m of the error model (tofmap/core/range_error.hpp): the factor by which the noise of
+/// each pixel differs from what `noise` and the pixel's amplitude predict. Ambient light causes
+/// such differences; m is the same at both frequencies. Returns an image of the frame's size, or an
+/// empty image if m is 1 everywhere, up to what edges and chance explain.
 ///
-/// Found in blocks of 16 x 16 pixels: of their second differences, normalised by the noise
-/// expected, the shares below 0.67 and below 2.5 tell the factor apart from a share of differences
-/// across edges, which are large for another reason. Between the centres of blocks its logarithm is
-/// interpolated.
+/// m is estimated in blocks of 16 x 16 pixels, from second differences of the phases divided by
+/// their predicted noise. The shares of differences below 0.67 and below 2.5 separate the factor
+/// from differences across edges, which are large for another reason. Between the centres of
+/// blocks, the logarithm of m is interpolated.
 ImageF find_ambient_noise(const DualFrequencyFrame& frame, const PhaseNoise& noise);
 
 }  // namespace tofmap

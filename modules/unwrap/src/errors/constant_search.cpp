@@ -16,8 +16,8 @@
 namespace tofmap {
 namespace {
 
-/// Tells constants by how well they explain samples: each gives every sample its best wrap count,
-/// and with it a residual error and a range.
+/// Scores constants by how well they explain the samples. For each constant, every sample takes its
+/// best wrap count, and thereby gets a residual error and a range.
 class ConstantScore {
  public:
   ConstantScore(const UnwrapLimits& limits, const ConstantPrior& prior,
@@ -30,7 +30,7 @@ class ConstantScore {
         range_m_(shifted_m_.size()),
         albedo_(samples.amplitude_a.size()) {}
 
-  /// Equation 24, nats.
+  /// The cost of a constant by equation 24 of docs/unwrapping.md, in nats.
   double cost(double constant_m) {
     for (std::size_t i = 0; i < shifted_m_.size(); ++i) {
       shifted_m_[i] = samples_.predicted_m[i] + static_cast<float>(constant_m);
@@ -43,15 +43,15 @@ class ConstantScore {
   }
 
  private:
-  /// Surfaces of a room reflect alike to a factor of e or so: what is left of the amplitude once
-  /// the loss by the square of the range is made up for varies the less, the more wrap counts are
-  /// right.
+  /// The cost of the samples' reflectances, in nats. The reflectances of the surfaces in a room
+  /// vary by about a factor of e. The estimate amplitude times range squared therefore varies less,
+  /// the more wrap counts are right.
   double cost_of_light() {
     if (albedo_.empty()) return 0;
-    // Samples of one material reflect alike, besides those of one surface that err alike.
+    // Samples of one material have the same reflectance, so that two count as one.
     constexpr double samples_of_material = 2;
-    constexpr float most = 6;      // a sample that fits nothing
-    constexpr double least = 0.2;  // no room reflects more evenly
+    constexpr float most = 6;      // limits the influence of outliers
+    constexpr double least = 0.2;  // rooms with a more even reflectance do not exist
     for (std::size_t i = 0; i < albedo_.size(); ++i) {
       albedo_[i] = std::log(samples_.amplitude_a[i] * range_m_[i] * range_m_[i]);
     }
@@ -69,7 +69,7 @@ class ConstantScore {
   std::vector<float> shifted_m_;
   std::vector<float> error_m_;
   std::vector<float> range_m_;
-  std::vector<float> albedo_;  ///< logarithm, up to a constant
+  std::vector<float> albedo_;  ///< logarithm of the reflectance, up to a constant
 };
 
 }  // namespace

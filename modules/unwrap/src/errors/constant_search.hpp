@@ -8,30 +8,30 @@
 
 namespace tofmap {
 
-/// Samples, and what is predicted of their residuals but for the constant; one number of each kind
-/// a sample.
+/// Samples and their predicted residuals, without the constant that is searched for. All vectors
+/// have one element per sample.
 struct PredictedSamples {
-  std::vector<float> phase_a;
-  std::vector<float> phase_b;
-  std::vector<float> amplitude_a;  ///< empty if there is none
-  std::vector<float> predicted_m;
-  std::vector<float> variance_m2;  ///< noise of the residual
+  std::vector<float> phase_a;      ///< cycles
+  std::vector<float> phase_b;      ///< cycles; not NaN
+  std::vector<float> amplitude_a;  ///< empty if the frame has no amplitudes
+  std::vector<float> predicted_m;  ///< predicted residual
+  std::vector<float> variance_m2;  ///< variance of the residual's noise
 };
 
-/// What is expected before the samples are looked at.
+/// Prior knowledge about the constant and the residuals.
 struct ConstantPrior {
   double constant_m;          ///< standard deviation of the constant
   double systematic_m;        ///< standard deviation of the residuals besides noise
-  double correlated_samples;  ///< so many samples count as one that is independent
+  double correlated_samples;  ///< number of samples that count as one independent sample
 };
 
-/// Constants up to this, either way, are thought possible, metres: half of the residual step, and
-/// 12 cm at least.
+/// The largest absolute value of a constant that is searched, metres: half of the residual step,
+/// and at least 12 cm.
 double largest_constant_m(const UnwrapLimits& limits);
 
-/// The most likely constant by which the residuals of all samples are off alike, metres: the least
-/// of docs/unwrapping.md, equation 24, among constants a centimetre apart, up to the largest. 0 if
-/// there are no samples.
+/// The most likely constant that is added to the residuals of all samples, metres. It minimises
+/// equation 24 of docs/unwrapping.md over constants a centimetre apart, up to largest_constant_m()
+/// in both directions. 0 if there are no samples.
 double likeliest_constant_m(const UnwrapLimits& limits, const ConstantPrior& prior,
                             const PredictedSamples& samples);
 

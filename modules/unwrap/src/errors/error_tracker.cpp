@@ -26,33 +26,38 @@ namespace {
 using Terms = ErrorTracker::Terms;
 using TermsMatrix = ErrorTracker::TermsMatrix;
 
-/// What cameras are like before one has been seen: standard deviations of the coefficients.
+/// Prior standard deviations of the coefficients of CameraErrors.
 constexpr double prior_offset_m = 0.06;
 constexpr double prior_harmonic_m = 0.012;
 constexpr double prior_per_decade_m = 0.01;
 
-/// Samples of one frame err alike: of so many one is independent. To predict the frame itself, its
-/// own samples count more than to predict others.
+/// The samples of a frame have correlated errors: this many count as one independent sample when
+/// later frames are predicted.
 constexpr double correlated_samples = 30;
+
+/// The same number when the frame itself is predicted, to which its own samples fit better.
 constexpr double correlated_samples_of_own = 6;
 
-/// What is kept of the past from frame to frame: a memory of some fifty frames.
+/// Factor by which the information of earlier frames decays per frame: a memory of about 50 frames.
 constexpr double memory = 0.98;
 
-/// A frame with fewer samples says too little.
+/// Frames with fewer samples are not fitted.
 constexpr std::size_t least_samples = 100;
 
-/// Motion up to this is small: B sees in every pixel what A sees there.
+/// If the image moves by at most this much, B sees the same surface as A in every pixel.
 constexpr double still_px = 0.7;
 
-/// B fits A if as many samples are as predicted.
+/// Share of the samples that are as predicted (ResidualFit::support) above which a fit is good.
 constexpr double good_support = 0.8;
+
+/// With a smaller share, a fit is not used to learn or to match.
 constexpr double least_support = 0.5;
 
-/// What of systematic errors is not known of a camera of which no frame was good enough.
+/// Standard deviation of the systematic errors of a camera before a frame was good enough to learn
+/// from.
 constexpr double unknown_systematic_m = 0.03;
 
-/// Frames until which the camera is hardly known, and each is fitted several times.
+/// Until this many frames are known, each frame is fitted several times.
 constexpr int first_frames = 5;
 
 Terms prior_precision() {
@@ -68,15 +73,15 @@ std::optional<ApparentRotation> apparent_rotation(const ExposurePair& pair,
   return align_exposures(pair.amplitude_a, pair.amplitude_b, camera);
 }
 
-/// Where to look for the motion first.
+/// The motion to start a search from: the apparent rotation, if there is one, without translation.
 ExposureMotion turned(const std::optional<ApparentRotation>& apparent) {
   ExposureMotion start;
   if (apparent) start.rotation_rad = apparent->rotation_rad;
   return start;
 }
 
-/// True if a fit without much motion may miss some: residuals fit badly, or all are off alike, or
-/// the motion is more than expected.
+/// Whether a fit with the prior of prompt exposures may have missed a larger motion: residuals fit
+/// badly, all are off by a constant, or the motion is larger than its prior expects.
 bool may_have_moved(const ResidualFit& fit) {
   constexpr double much_systematic_m = 0.012;
   constexpr double much_constant_m = 0.02;
@@ -85,29 +90,29 @@ bool may_have_moved(const ResidualFit& fit) {
          std::abs(fit.constant_m()) > much_constant_m || fit.motion_cost() > much_nats;
 }
 
-/// One explanation is better than another if it costs so much less.
+/// A fit is better than another if its cost is lower by this much.
 constexpr double clearly_nats = 2;
 
-/// What residuals have besides noise, where two explanations are compared.
+/// The standard deviation of residuals besides noise with which two fits are compared.
 double compared_systematic_m(const ResidualFit& one, const ResidualFit& other) {
   constexpr double least_systematic_m = 0.01;
   return std::max(least_systematic_m, std::min(one.systematic_m(), other.systematic_m()));
 }
 
-/// True if the first fit explains the residuals clearly better than the second.
+/// Whether the first fit explains the residuals clearly better than the second.
 bool explains_better(const ResidualFit& one, const ResidualFit& other) {
   const double systematic_m = compared_systematic_m(one, other);
   return one.cost(systematic_m) + clearly_nats < other.cost(systematic_m);
 }
 
-/// The same, if the apparent rotation may be wrong.
+/// The same comparison without the apparent rotation, which may be wrong.
 bool explains_better_without_apparent(const ResidualFit& one, const ResidualFit& other) {
   const double systematic_m = compared_systematic_m(one, other);
   return one.cost_without_apparent(systematic_m) + clearly_nats <
          other.cost_without_apparent(systematic_m);
 }
 
-/// The most likely coefficients, given what frames say of them.
+/// The most likely coefficients, given their prior and the normal equations of the frames.
 Terms solve(TermsMatrix information, const Terms& gradient) {
   information.diagonal() += prior_precision();
   return information.ldlt().solve(gradient);
@@ -117,6 +122,7 @@ void set_coefficients(const Terms& terms, CameraErrors& errors) {
   std::copy_n(terms.data(), ErrorTracker::terms, errors.coefficient_m.begin());
 }
 
+/// Median of the positive amplitudes; 1 if there are none.
 double median_amplitude(const ImageF& amplitude) {
   std::vector<float> lit;
   for (const float a : amplitude.reshaped()) {
@@ -193,11 +199,11 @@ ErrorTracker::Tracked ErrorTracker::track(const DualFrequencyFrame& frame,
   return tracked;
 }
 
-/// Finds motion and errors of a frame, and learns from it what the camera is like.
+/// Estimates the motion and the errors of a frame, and updates the camera's errors with them.
 FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposurePair& pair,
                                   const PairGeometry& geometry) {
   const bool is_first = camera_errors_.frames == 0;
-  bool is_late = camera_errors_.late_frames > 0;  // then this frame may well be, too
+  bool is_late = camera_errors_.late_frames > 0;  // cameras tend to stay late
   ResidualFit fit(samples, pair, geometry, camera_errors_, prompt_exposures);
   fit.find_motion({}, is_first);
   if (geometry.knows_camera() && (is_late || may_have_moved(fit))) {
@@ -210,8 +216,8 @@ FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposureP
     }
     moved.find_motion(turned(apparent), true);
     if (is_late) {
-      // Cameras go on as they went. Where they turn towards what they pass, amplitudes show nothing
-      // of it, and alignment may take one texture for another.
+      // Cameras tend to continue their motion. If a camera turns towards what it passes, the image
+      // hardly moves and alignment sees no motion; alignment may also confuse similar textures.
       going_on.find_motion(last_.motion, true);
       if (explains_better_without_apparent(going_on, moved)) moved = going_on;
     }
@@ -219,8 +225,8 @@ FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposureP
     if (is_late) fit = moved;
   }
 
-  // The frame's own samples, on top of what was known; where little was, more than once, as better
-  // known errors let more samples find their counts.
+  // Errors for this frame: its own samples in addition to the earlier frames. While few frames are
+  // known, this is repeated, since better errors let more samples find their right wrap counts.
   CameraErrors own = camera_errors_;
   TermsMatrix information;
   Terms gradient;
@@ -253,7 +259,7 @@ FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposureP
   return errors;
 }
 
-/// Adds what a frame says to what was known of the camera.
+/// Updates the camera's errors with the normal equations and the fit of a frame.
 void ErrorTracker::learn(const TermsMatrix& information, const Terms& gradient,
                          const ResidualFit& fit) {
   information_ = memory * information_ + information;
@@ -273,9 +279,11 @@ void ErrorTracker::learn(const TermsMatrix& information, const Terms& gradient,
   ++camera_errors_.frames;
 }
 
-/// Offsets a residual step apart explain residuals alike, with other counts in all pixels, unless a
-/// surface is so near that it has no count less. The smaller offset is likelier: the first frame
-/// may have taken the other while its motion was not known well.
+/// Replaces an offset beyond the searched interval by the one that is a residual step nearer to
+/// zero, unless the fit is clearly worse with it. Both offsets explain residuals equally well, with
+/// other wrap counts in all pixels, unless surfaces are so near that their wrap counts cannot be
+/// reduced. The smaller offset is more likely: the first frame may have taken the larger one while
+/// its motion was poorly known.
 void ErrorTracker::take_smaller_offset(const ResidualFit& fit) {
   const double offset_m = camera_errors_.offset_m();
   if (std::abs(offset_m) <= largest_constant_m(limits_)) return;
@@ -290,8 +298,9 @@ void ErrorTracker::take_smaller_offset(const ResidualFit& fit) {
   camera_errors_ = smaller;
 }
 
-/// Where the image has moved by pixels from A to B, and B comes late, the last frame's B may have
-/// been taken from a place that is nearer, and shows what this frame's does not.
+/// Matches B to A if the image has moved by pixels between them. If B is exposed late, the previous
+/// frame's B may have been taken from a nearer position, and show surfaces that this frame's B does
+/// not see. Then both are used, first the one with the larger support.
 void ErrorTracker::match_moved(const SurfaceSamples& samples, const ExposurePair& pair,
                                const PairGeometry& geometry, Tracked& tracked) {
   const CameraErrors& camera = tracked.errors.camera;

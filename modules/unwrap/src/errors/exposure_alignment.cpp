@@ -20,7 +20,8 @@
 namespace tofmap {
 namespace {
 
-/// Logarithms of both amplitudes, averaged over square blocks; NaN where nothing is lit.
+/// One pyramid level of both amplitude images: logarithms of the means over square blocks; NaN
+/// where a block is dark.
 struct Level {
   Level(const ImageF& amplitude_a, const ImageF& amplitude_b, Eigen::Index size_px)
       : block_px(size_px), a(blocks(amplitude_a)), b(blocks(amplitude_b)) {}
@@ -42,33 +43,35 @@ struct Level {
   }
 };
 
-/// A rotation, and by how much B's logarithms are larger than A's.
+/// The unknowns of the alignment.
 struct Alignment {
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  double gain = 0;
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< a_from_b
+  double gain = 0;                                         ///< B's logarithms minus A's
 };
 
-/// The least-squares problem of one step, and how badly the images agree before it, 0 … 1.
+/// The normal equations of one Gauss-Newton step, for rotation and gain.
 struct Problem {
-  /// Of the logarithm that errors are weighed by.
+  /// Width of the robust kernel, in units of the natural logarithm of an amplitude.
   static constexpr double tolerated = 0.2;
 
   Eigen::Matrix4d information = Eigen::Matrix4d::Identity();
   Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
-  /// What noise of unit variance between neighbours would add to the information.
+  /// The information about the rotation that image gradients of pure noise, with unit variance,
+  /// would contribute.
   Eigen::Matrix3d of_noise = Eigen::Matrix3d::Zero();
-  double weighted_squares = 0;
-  double weights = 0;
-  double disagreement = 1;
+  double weighted_squares = 0;  ///< weighted sum of squared errors
+  double weights = 0;           ///< sum of the weights
+  double disagreement = 1;      ///< mean robust cost before the step, 0 … 1
 };
 
-/// An image between its pixels, and its derivatives.
+/// An image and its derivatives along columns and rows at one position, interpolated bilinearly.
 struct Sampled {
   double value;
   double across;
   double along;
 };
 
+/// Empty outside the image and beside dark blocks.
 std::optional<Sampled> sample(const ImageF& image, double col, double row) {
   const auto c = static_cast<Eigen::Index>(std::floor(col));
   const auto r = static_cast<Eigen::Index>(std::floor(row));
@@ -84,6 +87,7 @@ std::optional<Sampled> sample(const ImageF& image, double col, double row) {
   return std::isnan(sampled.value) ? std::nullopt : std::optional(sampled);
 }
 
+/// Compares both images at an alignment. Lens distortion is ignored.
 Problem compare(const Level& level, const CameraModel& camera, const Alignment& alignment) {
   constexpr double tolerated = Problem::tolerated;
   const auto block = static_cast<double>(level.block_px);
@@ -108,7 +112,7 @@ Problem compare(const Level& level, const CameraModel& camera, const Alignment& 
       const double share = 1 / (1 + error * error / (tolerated * tolerated));
       sum += 1 - share;
       ++blocks;
-      // Turning by ω moves a ray p to p − ω × p.
+      // If the camera rotates by ω, a ray p moves to p − ω × p.
       const Eigen::Vector3d by_col = camera.fx_px / block * Eigen::Vector3d(x * y, -(1 + x * x), y);
       const Eigen::Vector3d by_row = camera.fy_px / block * Eigen::Vector3d(1 + y * y, -x * y, -x);
       Eigen::Vector4d row;
@@ -125,6 +129,7 @@ Problem compare(const Level& level, const CameraModel& camera, const Alignment& 
   return problem;
 }
 
+/// Median of B's logarithms minus A's; NaN if all blocks are dark.
 double median_gain(const Level& level) {
   std::vector<float> gains;
   for (Eigen::Index i = 0; i < level.a.size(); ++i) {
@@ -134,7 +139,8 @@ double median_gain(const Level& level) {
   return gains.empty() ? std::numeric_limits<double>::quiet_NaN() : double{median(gains)};
 }
 
-/// The best of some rotations about the axes of rows and columns.
+/// Tries rotations about the x and y axes that shift the image by up to two blocks, and keeps the
+/// best one.
 void search(const Level& level, const CameraModel& camera, Alignment& alignment) {
   constexpr int reach = 2;  // blocks
   constexpr double clearly_better = 0.97;
@@ -152,6 +158,7 @@ void search(const Level& level, const CameraModel& camera, Alignment& alignment)
   }
 }
 
+/// Refines rotation and gain by robust least squares.
 void descend(const Level& level, const CameraModel& camera, Alignment& alignment) {
   constexpr int rounds = 4;
   for (int round = 0; round < rounds; ++round) {
@@ -162,10 +169,10 @@ void descend(const Level& level, const CameraModel& camera, Alignment& alignment
   }
 }
 
-/// How well the rotation is known, gain apart. Differences of neighbours that are no more than
-/// noise tell nothing.
+/// Covariance of the rotation, with the gain marginalised out. Information that image gradients of
+/// pure noise would contribute is subtracted.
 Eigen::Matrix3d covariance_of(const Problem& problem) {
-  // Neighbouring blocks show the same texture, and the parallax of one surface.
+  // The errors of neighbouring blocks are correlated by their texture and by parallax.
   constexpr double correlated_blocks = 10;
   constexpr double least_sigma_rad = 0.003;
   constexpr double most_sigma_rad = 1;
@@ -188,7 +195,8 @@ Eigen::Matrix3d covariance_of(const Problem& problem) {
 std::optional<ApparentRotation> align_exposures(const ImageF& amplitude_a,
                                                 const ImageF& amplitude_b,
                                                 const CameraModel& camera) {
-  // Blocks that make an image of about 22 x 18, and of twice that.
+  // The coarse level has about 22 x 18 blocks, the fine level about twice as many in each
+  // direction.
   constexpr Eigen::Index coarse_cols = 22;
   const Eigen::Index coarse_px = std::max<Eigen::Index>(2, amplitude_a.cols() / coarse_cols);
   if (amplitude_a.rows() < 4 * coarse_px || amplitude_a.cols() < 4 * coarse_px) {

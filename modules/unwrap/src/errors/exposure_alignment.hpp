@@ -11,17 +11,17 @@
 
 namespace tofmap {
 
-/// The rotation that shifts the image from one exposure to another as the camera's motion does.
-/// Parallax takes part in it: over surfaces around the range r, a translation t looks like the
-/// rotation (−t_y / r, t_x / r, 0) (docs/unwrapping.md, equation 25).
+/// The rotation that shifts the image between two exposures as the camera's motion did. It includes
+/// parallax: for surfaces at the range r, a translation t looks like the rotation
+/// (−t_y / r, t_x / r, 0) (docs/unwrapping.md, equation 25).
 struct ApparentRotation {
-  Eigen::Vector3d rotation_rad;  ///< rotation vector in the frame of the first exposure
-  Eigen::Matrix3d covariance_rad2;
+  Eigen::Vector3d rotation_rad;     ///< rotation vector in the frame of the first exposure
+  Eigen::Matrix3d covariance_rad2;  ///< covariance of `rotation_rad`
 };
 
-/// The apparent rotation at which the amplitudes of both exposures agree best. Needs no range.
-/// Searches up to a tenth of the image's width, by blocks of pixels, coarse to fine. Nothing where
-/// images are too small, or amplitudes are missing or dark.
+/// Finds the apparent rotation for which the amplitudes of both exposures agree best. Needs no
+/// ranges. Searches shifts of up to about a tenth of the image's width, coarse to fine, on averages
+/// over blocks of pixels. Empty if the images are too small, or if amplitudes are missing or dark.
 std::optional<ApparentRotation> align_exposures(const ImageF& amplitude_a,
                                                 const ImageF& amplitude_b,
                                                 const CameraModel& camera);

@@ -22,11 +22,11 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 /// One number for each pixel of a row.
 using Row = std::vector<float>;
 
-/// Motion up to this leaves in B's pixels what it has left in A's, at the edges of surfaces, too.
+/// If the image moves by less than this, A and B see the same surface in a pixel, even at edges.
 constexpr double unmoved_px = 0.15;
 
-/// B's phase, and none beside the ends of B's surfaces, where a pixel less or more makes it another
-/// surface.
+/// B's phases, with NaN beside the edges of surfaces, where an error of one pixel may lead to
+/// another surface.
 ImageF phase_within_surfaces(const ExposurePair& pair, double wavelength_b_m) {
   constexpr double least_bend_m = 0.08;
   const auto least_cycles = static_cast<float>(least_bend_m / wavelength_b_m);
@@ -46,7 +46,7 @@ ImageF phase_within_surfaces(const ExposurePair& pair, double wavelength_b_m) {
   return kept;
 }
 
-/// One row of both exposures.
+/// Pointers to the same row of all images of both exposures.
 struct RowPair {
   RowPair(const ExposurePair& pair, Eigen::Index row)
       : cols(static_cast<int>(pair.phase_a.cols())),
@@ -70,7 +70,7 @@ struct RowPair {
   const float* sigma_b;
 };
 
-/// Numbers of a row of B; amplitudes stay 1 without amplitudes.
+/// Buffers for a row of B. If there are no amplitudes, they stay 1.
 struct RowOfB {
   explicit RowOfB(std::size_t cols) : phase(cols, nan), amplitude(cols, 1.0F), sigma(cols) {}
 
@@ -80,7 +80,7 @@ struct RowOfB {
   Row phase, amplitude, sigma;
 };
 
-/// What both ways to match rows share.
+/// Base of the two classes that match images row by row.
 class Matching {
  public:
   Matching(const ExposurePair& pair, const PairGeometry& geometry, const CameraErrors& camera,
@@ -105,7 +105,7 @@ class Matching {
     return {slopes_.across_m.data(), slopes_.along_m.data(), slopes_.rough_m.data()};
   }
 
-  /// Flags the pixels in which both exposures see the same light.
+  /// Flags the pixels in which the amplitudes of both exposures agree.
   void compare_light(const RowPair& pair, const BPixels& b) {
     if (!pair_.has_amplitude()) return;
     matching::compare_light(pair.cols,
@@ -113,6 +113,7 @@ class Matching {
                             nearness_.data(), gain_, same_.data());
   }
 
+  /// Adds the uncertainty of positions in B to the noise of B's phases.
   void add_place_noise(float* sigma_cycles) const {
     const auto per_m = [&](double sigma_px) {
       return static_cast<float>(sigma_px) * per_wavelength_;
@@ -135,16 +136,16 @@ class Matching {
   float gain_;
   float per_wavelength_;
   SurfaceSlopes slopes_;
-  Row same_;         ///< flags
-  Row nearness_;     ///< the range from A's place over that from B's
-  Row predicted_m_;  ///< of the residual
+  Row same_;         ///< flags of pixels whose amplitudes agree
+  Row nearness_;     ///< range from A divided by range from B
+  Row predicted_m_;  ///< predicted residual
   Row range_m_;
 
  private:
-  Row no_amplitude_;  ///< room to write in
+  Row no_amplitude_;  ///< receives amplitudes if the pair has none
 };
 
-/// Matches an image row by row where the motion leaves every surface in its pixel.
+/// Matches an image row by row if the motion leaves every surface in its pixel.
 class StillMatching : Matching {
  public:
   StillMatching(const ExposurePair& pair, const PairGeometry& geometry, const CameraErrors& camera,
@@ -154,7 +155,7 @@ class StillMatching : Matching {
         lateral_m2_(cols()),
         unused_(cols()),
         corrected_(cols()) {
-    // How far away a surface is matters little beyond the fourth wavelength.
+    // Beyond the fourth wavelength, the range has little influence on the predicted residual.
     near_limits_.count_a = std::min(near_limits_.count_a, 4);
     const bool may_miss = geometry.knows_camera() && step.flow_px > unmoved_px;
     if (may_miss) kept_phase_b_ = phase_within_surfaces(pair, geometry.limits.wavelength_b_m);
@@ -183,7 +184,7 @@ class StillMatching : Matching {
   }
 
  private:
-  /// Adds what the motion makes of the residual.
+  /// Adds the effect of the motion to the predicted residual.
   void add_motion(Eigen::Index row) {
     const RowPair in(pair_, row);
     slopes_.find_gradients(row);
@@ -200,13 +201,13 @@ class StillMatching : Matching {
   }
 
   UnwrapLimits near_limits_;
-  ImageF kept_phase_b_;  ///< empty: all of it
+  ImageF kept_phase_b_;  ///< B's phases without those beside edges; empty if all are kept
   Row lateral_m2_;
   Row unused_;
   RowOfB corrected_;
 };
 
-/// Matches an image row by row where the motion moves it by pixels.
+/// Matches an image row by row if the motion shifts it by pixels.
 class WarpedMatching : Matching {
  public:
   WarpedMatching(const ExposurePair& pair, const PairGeometry& geometry, const CameraErrors& camera,
@@ -239,8 +240,8 @@ class WarpedMatching : Matching {
     const int groups = std::min(geometry_.limits.count_a, counts_apart_ + 1);
     for (int group = 0; group < groups; ++group) {
       look_up(row, group);
-      // If the nearest surface has left the image, what B shows of farther ones is no evidence
-      // against it.
+      // If the surface at wrap count 0 has left B's image, farther surfaces that B does see are no
+      // evidence against it, so the pixel stays unseen.
       if (group == 0) stays_ = inside_;
       take_better(row, group, group + 1 == groups ? geometry_.limits.count_a : group + 1);
     }
@@ -248,9 +249,10 @@ class WarpedMatching : Matching {
   }
 
  private:
-  /// The nearest counts are looked up where each of them puts the surface in B; all farther ones
-  /// where the first of them does, as parallax is small there: less than a third of a pixel, or
-  /// three counts farther.
+  /// Number of wrap counts that are looked up at separate positions in B. All larger wrap counts
+  /// are looked up together, at the position of the smallest of them, since parallax is small
+  /// there: at most a third of a pixel, unless the camera has moved so far that the limit of 3
+  /// applies.
   static int counts_apart(const PairGeometry& geometry, const ExposureMotion& motion) {
     constexpr double small_px = 1.0 / 3;
     constexpr double most = 3;
@@ -264,7 +266,7 @@ class WarpedMatching : Matching {
     return {index_.data(), off_across_px_.data(), off_along_px_.data(), inside_.data()};
   }
 
-  /// B's pixels where these counts put the surfaces of a row.
+  /// Reads B's pixels at the positions at which wrap count `group` puts the surfaces of a row.
   void look_up(Eigen::Index row, int group) {
     const RowPair in(pair_, row);
     matching::fill_ranges(in.cols, in.phase_a, static_cast<float>(group),
@@ -283,7 +285,8 @@ class WarpedMatching : Matching {
     matching::drop_outside(in.cols, inside_.data(), seen_.phase.data());
   }
 
-  /// Keeps what fits better at one of the counts `first` … `end` − 1 than all before.
+  /// Keeps the pixels that fit better at one of the wrap counts `first` … `end` − 1 than at all
+  /// smaller ones.
   void take_better(Eigen::Index row, int first, int end) {
     const RowPair in(pair_, row);
     predicted_m_ = of_a_m_;
@@ -308,7 +311,7 @@ class WarpedMatching : Matching {
                           best_cycles_.data(), found_.write());
   }
 
-  /// Fills in the pixels that were found, and not seen before.
+  /// Writes the pixels that were found now and were unseen before.
   void write_down(Eigen::Index row, MatchedExposure& out) {
     add_place_noise(found_.sigma.data());
     const MutableBPixels to = row_of(out, row);
@@ -320,14 +323,14 @@ class WarpedMatching : Matching {
   ExposureWarp warp_;
   int counts_apart_;
   ImageF kept_phase_b_;
-  Row of_a_m_;  ///< what is predicted of the residual without B
+  Row of_a_m_;  ///< terms of the predicted residual that do not depend on B's phase
   Row col_px_, row_px_, shrinkage_m_;
   std::vector<std::int32_t> index_;
   Row off_across_px_, off_along_px_, inside_;
-  Row stays_;  ///< flags of pixels whose nearest surface is inside B's image
+  Row stays_;  ///< flags of pixels whose surface at wrap count 0 lies inside B's image
   Row residual_cycles_, limited_phase_, least_cycles_, best_cycles_;
-  RowOfB seen_;   ///< by the counts that are looked up
-  RowOfB found_;  ///< by the best of them
+  RowOfB seen_;   ///< pixels at the positions of the current wrap counts
+  RowOfB found_;  ///< pixels at the positions of the best wrap counts so far
 };
 
 template <class RowMatching>
@@ -338,12 +341,12 @@ void match_rows(RowMatching matching, Eigen::Index rows, MatchedExposure& out) {
 }  // namespace
 
 double ExposureStep::rough_sigma_px() const {
-  // Half a pixel at most, all of it alike.
+  // Rounding to whole pixels is a uniform error of up to half a pixel: its sigma is 0.3 pixels.
   return std::min(0.3, flow_px);
 }
 
 double ExposureStep::place_sigma_px() const {
-  // Motion is known to a tenth; surfaces are straight to a tenth of a pixel.
+  // The motion is known to 10 %, and surfaces are straight to a tenth of a pixel.
   constexpr double share = 0.1;
   return share * std::min(1.0, flow_px);
 }

@@ -8,28 +8,33 @@
 
 namespace tofmap {
 
-/// Nothing seen yet: every pixel of A's size unseen, B's phase that of the same pixel.
+/// A MatchedExposure of A's size to start from: all pixels are unseen, B's phases are those of the
+/// same pixels, and amplitudes, if the pair has any, are next to nothing.
 MatchedExposure unmatched(const ExposurePair& pair);
 
-/// How B was exposed after A.
+/// The step from the exposure of A to that of B.
 struct ExposureStep {
   ExposureMotion motion;
-  double flow_px = 0;  ///< by how far it shifts the image: most of it by less
+  double flow_px = 0;  ///< the motion shifts nine tenths of the image by less than this
 
-  /// Standard deviations of the place in B that a pixel of A is looked up in, pixels: where slopes
-  /// make up for a part of a pixel, and where there is no slope to do so.
+  /// Standard deviation, in pixels, of the position in B at which a pixel of A is looked up, on
+  /// surfaces whose slope is known, so that the fraction of a pixel is corrected for.
   double place_sigma_px() const;
+
+  /// The same standard deviation where the surface bends or ends, so that the slope is unknown.
   double rough_sigma_px() const;
 };
 
-/// Fills in the pixels that `out` has not seen, from B's exposure after `step`. For every count
-/// the surface lies elsewhere, and B may see it in another pixel; of those that B did see, the
-/// count whose residual fits what is predicted of it best decides.
+/// Fills in those pixels of `out` that are still unseen, from the exposure of B after `step`. Each
+/// wrap count puts the surface at another range, and thus perhaps into another pixel of B. Among
+/// the wrap counts whose surface B did see, the one whose residual is nearest to the prediction
+/// decides.
 void match_exposure(const ExposurePair& pair, const PairGeometry& geometry,
                     const CameraErrors& camera, const ExposureStep& step, MatchedExposure& out);
 
-/// The same for a motion of about a pixel or less, after which B sees every surface in the pixel of
-/// A: slopes make up for the rest.
+/// Fills in `out` as match_exposure() does, but for motions that shift the image by less than about
+/// a pixel: then B sees every surface in the same pixel as A, and the slope of the surface corrects
+/// for the fraction of a pixel.
 void match_still_exposure(const ExposurePair& pair, const PairGeometry& geometry,
                           const CameraErrors& camera, const ExposureStep& step,
                           MatchedExposure& out);

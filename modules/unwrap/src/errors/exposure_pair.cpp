@@ -20,7 +20,7 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// Pixels treated at a time.
+/// Number of pixels that find_nearest() processes at a time.
 constexpr int block = 256;
 
 TOFMAP_VECTOR_CLONES void warp_all(const ExposureWarp& warp_, int count, const float* ray_x,
@@ -51,7 +51,7 @@ TOFMAP_VECTOR_CLONES void warp_all(const ExposureWarp& warp_, int count, const f
   }
 }
 
-/// log10, to 2e-3: a cubic in the mantissa.
+/// log10 with an error of at most 2e-3: a cubic polynomial in the mantissa.
 [[gnu::always_inline]] inline float quick_log10(float x) {
   const auto bits = std::bit_cast<std::int32_t>(x);
   const auto exponent = static_cast<float>((bits >> 23) - 127);
@@ -60,12 +60,12 @@ TOFMAP_VECTOR_CLONES void warp_all(const ExposureWarp& warp_, int count, const f
   return 0.30103F * log2;
 }
 
-/// The coefficients of one phase's harmonics, metres.
+/// The coefficients of the harmonics of one frequency, metres.
 struct Harmonics {
   std::array<float, CameraErrors::harmonics> cosine_m;
   std::array<float, CameraErrors::harmonics> sine_m;
 
-  /// `first` is 1 for A and 3 for B.
+  /// `first` is the index of the first coefficient in CameraErrors: 1 for A and 3 for B.
   Harmonics(const CameraErrors& errors, std::size_t first) {
     for (std::size_t k = 0; k < cosine_m.size(); ++k) {
       cosine_m[k] = static_cast<float>(errors.coefficient_m[4 * k + first]);
@@ -79,14 +79,16 @@ TOFMAP_VECTOR_CLONES void add_harmonics(int count, const Harmonics& harmonics_, 
   const Harmonics harmonics = harmonics_;
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
-    // Half the angle, 0 … π, from its middle: Taylor series of sine and cosine, to 4e-6 and 3e-5.
+    // x is half the phase angle, 0 … π, minus π/2. Its sine and cosine by Taylor series have errors
+    // of at most 4e-6 and 3e-5.
     const float positive = phase[i] >= 0 ? phase[i] : 0.0F;
     const float x = std::numbers::pi_v<float> * ((positive < 1 ? positive : 0.0F) - 0.5F);
     const float q = x * x;
     const float sine =
         x * (1 + q * (-1 / 6.0F + q * (1 / 120.0F + q * (-1 / 5040.0F + q / 362880))));
     const float cosine = 1 + q * (-0.5F + q * (1 / 24.0F + q * (-1 / 720.0F + q / 40320)));
-    // From its middle the whole angle has turned by π.
+    // The whole angle is 2x + π, so both its cosine and its sine are those of 2x with opposite
+    // sign.
     const float c1 = 2 * sine * sine - 1;
     const float s1 = -2 * sine * cosine;
     float c_before = 1;
@@ -118,10 +120,10 @@ TOFMAP_VECTOR_CLONES void add_by_amplitude(int count, float per_decade_m, float 
   }
 }
 
-/// What one count adds to the residual.
+/// One wrap count.
 struct Step {
-  float shift_cycles;
-  float farthest_cycles;  ///< phase up to which the count is within the limits
+  float shift_cycles;     ///< change of the residual compared to wrap count 0
+  float farthest_cycles;  ///< largest phase at which this wrap count is within the limits
   float count;
 };
 

@@ -23,7 +23,7 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 TOFMAP_VECTOR_CLONES void compare_light(int count, const Light& light_, const float* nearness,
                                         float gain, float* same) {
-  // Besides same_light_ratio, this many standard deviations of the ratio.
+  // Noise of this many standard deviations is tolerated in addition to same_light_ratio.
   constexpr float ratio_sigmas = 4;
   constexpr float turn = 2 * std::numbers::pi_v<float>;
   const Light light = light_;
@@ -36,7 +36,7 @@ TOFMAP_VECTOR_CLONES void compare_light(int count, const Light& light_, const fl
     const float sigma_a = light.sigma_a_cycles[i];
     const float sigma_b = light.sigma_b_cycles[i];
     const float noise = turn * std::sqrt(sigma_a * sigma_a + sigma_b * sigma_b);
-    // Of a logarithm, to first order.
+    // `noise` is that of the logarithm of the ratio; exp is replaced by its first-order expansion.
     const float tolerated = same_light_ratio * (1 + ratio_sigmas * noise);
     same[i] = greater <= tolerated * lesser ? 1.0F : 0.0F;
   }
@@ -45,7 +45,7 @@ TOFMAP_VECTOR_CLONES void compare_light(int count, const Light& light_, const fl
 TOFMAP_VECTOR_CLONES void drop_at_ends(int count, const float* phase, const float* sigma_cycles,
                                        const float* before, const float* after, float least_cycles,
                                        float* kept) {
-  constexpr float sigmas = 4 * 2.45F;  // √6: the noise of a second difference
+  constexpr float sigmas = 4 * 2.45F;  // second differences have √6 times the noise of a phase
   constexpr float share_of_rise = 0.5F;
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {

@@ -21,19 +21,20 @@
 namespace tofmap {
 namespace {
 
+/// Throws UsageError unless all images of the frame have the same size.
 void check(const DualFrequencyFrame& frame) {
   const bool agree = same_size(frame.phase_a, frame.phase_b) &&
                      (!frame.has_amplitude() || (same_size(frame.phase_a, frame.amplitude_a) &&
                                                  same_size(frame.phase_a, frame.amplitude_b)));
   if (!agree) {
     throw UsageError("unwrap: frame " + std::to_string(frame.index) +
-                     ": images differ in size; phases and amplitudes must have one size, or "
-                     "amplitudes be empty");
+                     ": images differ in size; phases and amplitudes must have the same size, or "
+                     "amplitudes must be empty");
   }
 }
 
-/// Pixels with amplitudes: those with a finite phase and some light at both frequencies are valid,
-/// unless one of them is saturated.
+/// Flags valid and saturated pixels, and sets the phases of all invalid pixels to NaN. A pixel is
+/// valid if it has a finite phase and some light at both frequencies, and neither is saturated.
 TOFMAP_VECTOR_CLONES void keep_lit(int pixels, const float* amplitude_a, const float* amplitude_b,
                                    float saturation, float* phase_a, float* phase_b,
                                    std::uint8_t* valid, std::uint8_t* saturated) {
@@ -42,7 +43,7 @@ TOFMAP_VECTOR_CLONES void keep_lit(int pixels, const float* amplitude_a, const f
   for (int i = 0; i < pixels; ++i) {
     const float a = amplitude_a[i];
     const float b = amplitude_b[i];
-    // No number is left of an infinite phase, nor of a missing one.
+    // NaN if a phase is infinite or missing.
     const float present = 0 * phase_a[i] + 0 * phase_b[i];
     const bool is_lit = present == 0 && a > 0 && b > 0;
     const bool is_saturated = is_lit && (a >= saturation || b >= saturation);
@@ -54,7 +55,7 @@ TOFMAP_VECTOR_CLONES void keep_lit(int pixels, const float* amplitude_a, const f
   }
 }
 
-/// Returns, noise, and where it differs; of systematic errors nothing.
+/// Measures valid pixels and noise of a frame, but no systematic errors.
 MeasuredFrame measured_alone(const DualFrequencyFrame& frame, double saturation_amplitude) {
   check(frame);
   const Eigen::Index rows = frame.phase_a.rows();
@@ -78,10 +79,10 @@ MeasuredFrame measured_alone(const DualFrequencyFrame& frame, double saturation_
   return out;
 }
 
-/// Replaces B by what the tracker makes of it, and adds what is known of the errors.
+/// Replaces B by B matched to A, and fills in the estimated errors of camera and frame.
 void match_exposures(ErrorTracker& tracker, const UnwrapLimits& limits, MeasuredFrame& frame) {
-  // The tracker does not see errors that vary within the image, as of light that came by other
-  // ways; this much of a step is no evidence against any count.
+  // The tracker does not see errors that vary within the image, such as multipath. Residuals
+  // smaller than this share of the residual step must not count as evidence against a wrap count.
   constexpr double least_share_of_step = 1.0 / 30;
   ErrorTracker::Tracked tracked = tracker.track(frame.returns, frame.sigma);
   frame.returns.phase_b = std::move(tracked.b.phase_b);

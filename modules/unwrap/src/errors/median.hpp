@@ -11,12 +11,12 @@
 
 namespace tofmap {
 
-/// The median of numbers that are not negative, of an even number the upper of the two middle ones.
-/// There must be one at least. Linear in time, without branches that depend on the numbers: they
-/// are counted by their leading bits, which are ordered as they are, and only those that share
-/// them with the median are sorted.
+/// The median of non-negative numbers; for an even count, the upper of the two middle values.
+/// `values` must not be empty. Takes linear time, with few branches that depend on the values: a
+/// histogram over the leading bits, whose order is that of the numbers, finds the bin of the
+/// median, and only the values of that bin are partially sorted.
 inline float median_of_positive(std::span<const float> values) {
-  constexpr unsigned dropped_bits = 19;  // leaves the exponent and four digits
+  constexpr unsigned dropped_bits = 19;  // keeps the exponent and four bits of the mantissa
   constexpr std::size_t bins = 1U << (31U - dropped_bits);
   const auto bin_of = [](float value) {
     return std::bit_cast<std::uint32_t>(value) >> dropped_bits;

@@ -14,10 +14,10 @@
 namespace tofmap {
 namespace {
 
-/// Numbers of a row of pixels, and of rows that are combined with it.
+/// Consecutive pixels of one image row.
 using Row = const float*;
 
-/// The variance of the phase up to the scale, from an amplitude; infinite without light.
+/// The variance of a phase for a noise scale of 1: 1 / amplitude². Infinite without light.
 [[gnu::always_inline]] inline float relative_variance(float amplitude) {
   const float light = amplitude > 0 ? amplitude : 0.0F;
   return 1 / (light * light);
@@ -38,7 +38,7 @@ TOFMAP_VECTOR_CLONES void fill_differences(int count, const std::array<Row, 3>& 
                            weight_2 * weight_2 * relative_variance(amplitude_2[i]);
     const bool is_present = difference == difference;
     cycles[i] = to_half_cycle(is_present ? difference : 0.0F);
-    // A sum, unlike a choice, leaves the compiler no branch.
+    // Adding 0 * difference passes a NaN on without a branch.
     relative_sigma[i] = std::sqrt(variance) + 0 * difference;
   }
 }
@@ -55,7 +55,7 @@ int find_differences(const ImageF& phase, const ImageF& amplitude, const Stencil
   std::array<Row, 3> phases{};
   std::array<Row, 3> amplitudes{};
   for (Eigen::Index i = 0; i < 3; ++i) {
-    // What a short stencil lacks has the weight 0.
+    // The third weight of a stencil of two pixels is 0, so its pixel does not matter.
     const Eigen::Index k = std::min(i, reach);
     const Eigen::Index place = (row + k * step_row) * phase.cols() + k * step_col;
     phases[static_cast<std::size_t>(i)] = phase.data() + place;

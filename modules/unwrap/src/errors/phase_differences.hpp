@@ -10,7 +10,8 @@
 
 namespace tofmap {
 
-/// Pixels in a row or column whose phases are combined with these weights.
+/// A difference of phases: `size` neighbouring pixels of a row or column are combined with these
+/// weights.
 struct Stencil {
   int size;
   std::array<float, 3> weights;
@@ -18,10 +19,11 @@ struct Stencil {
 inline constexpr Stencil first_difference{2, {-1, 1, 0}};
 inline constexpr Stencil second_difference{3, {1, -2, 1}};
 
-/// The differences of one row of pixels with those `step_row`, `step_col` and twice as far away:
-/// `cycles` in −1/2 … 1/2, and `relative_sigma`, their standard deviations for σ_phase = 1 /
-/// amplitude; not finite where a phase or an amplitude is missing. `amplitude` may be empty, then
-/// all are 1. Returns how many: as many as fit into the row.
+/// Applies a stencil to the pixels of `row` and their neighbours in steps of `step_row` and
+/// `step_col`. Writes the differences, wrapped to −1/2 … 1/2, to `cycles`, and their standard
+/// deviations for σ_phase = 1 / amplitude to `relative_sigma`, which is not finite where a phase or
+/// an amplitude is missing. If `amplitude` is empty, all amplitudes are 1. Returns the number of
+/// differences: as many as fit into the row, 0 if the stencil leaves the image.
 int find_differences(const ImageF& phase, const ImageF& amplitude, const Stencil& stencil,
                      Eigen::Index row, Eigen::Index step_row, Eigen::Index step_col, float* cycles,
                      float* relative_sigma);

@@ -18,7 +18,8 @@
 namespace tofmap {
 namespace {
 
-/// Differences of phases, in half a cycle around 0, and their standard deviations up to the scale.
+/// Phase differences, wrapped to −1/2 … 1/2 cycles, and their standard deviations for a noise scale
+/// of 1.
 struct Differences {
   std::vector<float> cycles;
   std::vector<float> relative_sigma;
@@ -26,12 +27,14 @@ struct Differences {
   std::size_t size() const { return cycles.size(); }
 };
 
-/// Rows from one sampled one to the next: about 16000 differences tell the noise to 1 %.
+/// Every n-th row is sampled; returns n. About 16 000 differences in both directions determine the
+/// noise to 1 %.
 Eigen::Index sampling_step(const ImageF& phase) {
   constexpr Eigen::Index enough = 8000;
   return std::max<Eigen::Index>(1, phase.size() / enough);
 }
 
+/// Appends the finite differences of the sampled rows in one direction.
 void append_differences(const ImageF& phase, const ImageF& amplitude, const Stencil& stencil,
                         Eigen::Index step_row, Eigen::Index step_col, Differences& differences) {
   const Eigen::Index step = sampling_step(phase);
@@ -48,6 +51,7 @@ void append_differences(const ImageF& phase, const ImageF& amplitude, const Sten
   }
 }
 
+/// Differences along the rows and columns of an image.
 Differences sample_differences(const ImageF& phase, const ImageF& amplitude,
                                const Stencil& stencil) {
   Differences differences;
@@ -59,7 +63,7 @@ Differences sample_differences(const ImageF& phase, const ImageF& amplitude,
   return differences;
 }
 
-/// The scale at which half of the differences lie within their median deviation.
+/// The noise scale from the median of the absolute normalised differences.
 double scale_by_median(const Differences& differences) {
   std::vector<float> normalised(differences.size());
   for (std::size_t i = 0; i < normalised.size(); ++i) {
@@ -68,7 +72,8 @@ double scale_by_median(const Differences& differences) {
   return sigma_of_median_deviation * median_of_positive(normalised);
 }
 
-/// The scale that explains the mean cosine: E cos 2πd = exp(−2π²σ²) for a normal d, wrapped or not.
+/// The noise scale that explains the mean cosine of the differences: E cos 2πd = exp(−2π²σ²) if d
+/// is normal, whether it is wrapped or not.
 double scale_by_cosine(const Differences& differences) {
   constexpr double two_pi = 2 * std::numbers::pi;
   double cosines = 0;
@@ -92,7 +97,7 @@ double scale_by_cosine(const Differences& differences) {
   return (low + high) / 2;
 }
 
-/// The quieter half of the differences.
+/// The differences whose predicted noise is below the median; all differences if too few are.
 Differences quieter_half(const Differences& differences) {
   const float median = median_of_positive(differences.relative_sigma);
   Differences quieter;
@@ -101,10 +106,11 @@ Differences quieter_half(const Differences& differences) {
     quieter.cycles.push_back(differences.cycles[i]);
     quieter.relative_sigma.push_back(differences.relative_sigma[i]);
   }
-  // Where half of them are as quiet as any, they all are.
+  // If many differences share the lowest noise, all of them are about equally quiet.
   return quieter.size() < differences.size() / 4 ? differences : quieter;
 }
 
+/// Median of the positive amplitudes; 1 if there are none.
 double median_amplitude(const ImageF& amplitude) {
   std::vector<float> positive;
   for (const float a : amplitude.reshaped()) {
@@ -113,8 +119,8 @@ double median_amplitude(const ImageF& amplitude) {
   return positive.empty() ? 1 : median_of_positive(positive);
 }
 
-/// The step from one phase to the next larger one that the camera can give: the least difference
-/// between phases of a sample. No less than that of 16 bits.
+/// The quantisation step of the phases, in cycles: the smallest difference between phases of a
+/// sample of pixels, and at least one step of 16 bits.
 double quantisation_step_cycles(const ImageF& phase) {
   constexpr double least_cycles = 1 / 65535.0;
   constexpr double coarsest_cycles = 1 / 16.0;
@@ -132,11 +138,12 @@ double quantisation_step_cycles(const ImageF& phase) {
   return std::max(step, least_cycles);
 }
 
-/// c of one frequency; `quantisation_cycles` is the step of its phases.
+/// The noise scale c of one frequency (tofmap/core/range_error.hpp). `quantisation_cycles` is the
+/// quantisation step of its phases.
 double noise_scale(const ImageF& phase, const ImageF& amplitude, double quantisation_cycles) {
   constexpr std::size_t enough = 16;
   constexpr double fallback_cycles = 0.01;
-  // From here on a normal difference passes half a cycle too often for its median.
+  // Above this noise, differences wrap so often that their median is biased.
   constexpr double wrapping_cycles = 0.2;
   Differences differences = sample_differences(phase, amplitude, second_difference);
   if (differences.size() < enough) return fallback_cycles * median_amplitude(amplitude);

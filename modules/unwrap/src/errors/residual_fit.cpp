@@ -23,15 +23,16 @@
 namespace tofmap {
 namespace {
 
-/// How far the residuals of one frame may lie off what all frames together say; and those of the
-/// first frame off zero.
+/// Standard deviation of the constant of a frame once the camera's errors are known.
 constexpr double prior_constant_m = 0.03;
+
+/// Standard deviation of the constant of the first frame, which contains the camera's offset.
 constexpr double prior_offset_m = 0.06;
 
-/// Samples of one surface err alike: so many count as one that is independent.
+/// Samples of one surface have correlated errors: this many count as one independent sample.
 constexpr double correlated_samples = 30;
 
-/// What is left of systematic errors before any is known.
+/// Standard deviation of the systematic errors of an unknown camera.
 constexpr double unknown_systematic_m = 0.04;
 
 }  // namespace
@@ -95,12 +96,13 @@ void ResidualFit::refine(const CameraErrors& camera) {
   weigh(systematic_m_);
 }
 
-/// Phases B where the motion puts the samples.
+/// Reads B at the positions to which the motion moves the samples, and updates the predictions.
 void ResidualFit::look_up() {
   look_up_samples(*samples_, range_m_, *pair_, *geometry_, motion_, seen_);
   predict();
 }
 
+/// Predicts the residuals from the camera's errors, the motion and the constant.
 void ResidualFit::predict() {
   const auto size = static_cast<int>(samples_->size());
   const float* amplitude = samples_->amplitude_a.empty() ? nullptr : samples_->amplitude_a.data();
@@ -112,12 +114,13 @@ void ResidualFit::predict() {
   }
 }
 
+/// Gives each sample the wrap count that fits its prediction best.
 void ResidualFit::associate() {
   find_nearest(geometry_->limits, static_cast<int>(samples_->size()), samples_->phase_a.data(),
                seen_.phase_b.data(), predicted_m_.data(), error_m_.data(), range_m_.data());
 }
 
-/// The constant that is likeliest by some of the samples.
+/// Finds the most likely constant from about 300 of the samples.
 void ResidualFit::find_constant() {
   constexpr std::size_t enough = 300;
   const std::size_t stride = 1 + samples_->size() / enough;
@@ -130,7 +133,7 @@ void ResidualFit::find_constant() {
     some.variance_m2.push_back(seen_.variance_m2[i]);
     if (!samples_->amplitude_a.empty()) some.amplitude_a.push_back(samples_->amplitude_a[i]);
   }
-  // All that was predicted had the constant so far, which is 0.
+  // The predictions above do not contain the constant: it was 0 so far.
   constant_m_ =
       likeliest_constant_m(geometry_->limits,
                            {constant_sigma_m(), unknown_systematic_m,
@@ -139,14 +142,15 @@ void ResidualFit::find_constant() {
   predict();
 }
 
+/// Computes the weights of the samples for a standard deviation of the residuals besides noise.
 void ResidualFit::weigh(double systematic_m) {
-  // However well residuals agree: no pixel is worth a thousand others.
+  // A lower limit, so that no pixel gets a thousand times the weight of another.
   constexpr double least_m = 0.005;
   systematic_m = std::max(systematic_m, least_m);
   fill_robust_weights(error_m_, seen_.variance_m2, systematic_m, weight_);
 }
 
-/// Equation 17: how the residual changes with the motion.
+/// Fills in the derivatives of the residuals by the motion (docs/unwrapping.md, equation 17).
 void ResidualFit::fill_jacobian() {
   if (!geometry_->knows_camera()) return;
   for (std::size_t i = 0; i < samples_->size(); ++i) {
@@ -181,7 +185,8 @@ ResidualFit::MotionVector ResidualFit::motion_so_far() const {
   return so_far;
 }
 
-/// What the apparent rotation says of the motion, by parallax at the mean of 1 / range.
+/// Linearises the apparent rotation (docs/unwrapping.md, equation 25). Parallax is that of the mean
+/// of 1 / range over the samples.
 ResidualFit::ApparentEquations ResidualFit::apparent_equations() const {
   constexpr float nearest_m = 0.3F;
   constexpr double least_translation_m = 0.02;
@@ -201,7 +206,7 @@ ResidualFit::ApparentEquations ResidualFit::apparent_equations() const {
   out.by_motion(0, 1) = -mean;
   out.by_motion(1, 0) = mean;
   out.off_rad = apparent_->rotation_rad - out.by_motion * motion_so_far();
-  // Surfaces at other ranges shift otherwise, and any of them may have decided.
+  // Surfaces at other ranges have another parallax, and any of them may dominate the alignment.
   const double translation_m =
       std::max(motion_.translation_m.head<2>().norm(), least_translation_m);
   const Eigen::Matrix3d covariance = apparent_->covariance_rad2 + Eigen::Matrix3d::Identity() *
@@ -211,7 +216,7 @@ ResidualFit::ApparentEquations ResidualFit::apparent_equations() const {
   return out;
 }
 
-/// One step of Gauss and Newton for the motion and, if wanted, the constant.
+/// One Gauss-Newton step for the motion and, with `with_constant`, for the constant.
 void ResidualFit::step(bool with_constant) {
   constexpr int unknowns = motion_terms + 1;
   fill_jacobian();
@@ -255,6 +260,7 @@ void ResidualFit::step(bool with_constant) {
   constant_m_ += change[motion_terms];
 }
 
+/// Robust standard deviation of the residual errors with the noise subtracted.
 double ResidualFit::spread() const {
   constexpr std::size_t enough = 50;
   std::vector<float> sizes;
@@ -278,7 +284,7 @@ void ResidualFit::add_camera_equations(ErrorTracker::TermsMatrix& information,
   std::array<const float*, all> columns{};
   for (std::size_t k = 0; k < of_camera; ++k) columns[k] = terms[k].data();
   for (std::size_t k = 0; k < motion_terms; ++k) columns[of_camera + k] = jacobian_[k].data();
-  // The residual without motion: what is left of it, and what is predicted of it besides.
+  // The residuals minus the effect of the motion.
   std::vector<float> right(samples_->size());
   for (std::size_t i = 0; i < right.size(); ++i) {
     right[i] = std::isnan(error_m_[i]) ? 0.0F : error_m_[i] + predicted_m_[i] - seen_.shift_m[i];
@@ -318,11 +324,12 @@ double ResidualFit::cost_without_apparent(double systematic_m) const {
          prior_cost();
 }
 
-/// How badly B's amplitudes fit A's: both see the same surface only if the motion is right.
+/// The cost of the differences between A's and B's amplitudes, in nats, as if all samples were
+/// independent. A and B see the same surfaces only if the motion is right.
 double ResidualFit::light_cost() const {
   if (seen_.amplitude_ratio.empty()) return 0;
-  constexpr double light_sigma = 0.15;  // of the logarithm, by textures
-  // The noise of a logarithm of an amplitude is that of its phase in radians.
+  constexpr double light_sigma = 0.15;  // texture varies the logarithm of the ratio by this much
+  // The logarithm of an amplitude has the same noise as its phase in radians.
   const double rad_per_m = 2 * std::numbers::pi / geometry_->limits.wavelength_a_m;
   std::vector<float> off(seen_.amplitude_ratio.size());
   std::vector<float> variance(off.size());

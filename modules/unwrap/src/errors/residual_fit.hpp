@@ -15,61 +15,65 @@
 
 namespace tofmap {
 
-/// How far a camera is thought to move between two exposures: standard deviations.
+/// Standard deviations of the camera's motion between two exposures.
 struct MotionPrior {
   double translation_m;
   double rotation_rad;
 };
 
-/// Exposures that follow each other at once, and exposures a frame apart, both held by hand.
+/// For a hand-held camera whose exposures follow each other immediately.
 inline constexpr MotionPrior prompt_exposures{0.01, 0.006};
+
+/// For a hand-held camera whose exposures are up to a frame period apart.
 inline constexpr MotionPrior late_exposures{0.06, 0.06};
 
-/// Explains the residuals of samples by motion, by what is known of the camera, and by a constant
-/// of this frame: robust, iterated least squares, in which each sample takes the count that fits
-/// what is predicted of it best (docs/unwrapping.md, equations 17 to 20).
+/// Explains the inter-frequency residuals of samples by the motion between the exposures, by the
+/// known errors of the camera, and by a constant of this frame. The fit is iteratively reweighted
+/// least squares, in which each sample takes the wrap count that fits its prediction best
+/// (docs/unwrapping.md, equations 17 to 20).
 class ResidualFit {
  public:
-  /// Keeps references to all arguments but `camera`.
+  /// Keeps references to `samples`, `pair` and `geometry`.
   ResidualFit(const SurfaceSamples& samples, const ExposurePair& pair, const PairGeometry& geometry,
               const CameraErrors& camera, const MotionPrior& prior);
 
-  /// Also fits the apparent rotation between the exposures, from now on.
+  /// From now on, uses the apparent rotation between the exposures as one more measurement.
   void expect(const ApparentRotation& apparent) { apparent_ = apparent; }
 
-  /// Finds the motion, from `start` on. With `any_constant` the camera's offset is in warning,
-  /// too, as on a first frame: the likeliest constant is looked for.
+  /// Finds the motion, starting from `start`. With `any_constant`, the constant is searched for,
+  /// too, and fitted together with the motion: for frames on which the camera's offset is
+  /// uncertain, such as the first one.
   void find_motion(const ExposureMotion& start, bool any_constant);
 
-  /// The same from the motion found so far on, with other knowledge of the camera.
+  /// Continues the fit from the motion found so far, with other errors of the camera.
   void refine(const CameraErrors& camera);
 
-  /// What the samples say of the camera's coefficients, whatever the motion was: the information
-  /// that they give, and its product with the coefficients. Samples count as if all were
-  /// independent.
+  /// Adds the normal equations for the coefficients of CameraErrors, with the motion marginalised
+  /// out: the information matrix and its product with the coefficients. Samples count as if all
+  /// were independent.
   void add_camera_equations(ErrorTracker::TermsMatrix& information,
                             ErrorTracker::Terms& gradient) const;
 
   const ExposureMotion& motion() const { return motion_; }
-  /// What this frame's residuals are larger than predicted, all alike.
+  /// The constant by which all residuals of this frame are larger than predicted.
   double constant_m() const { return constant_m_; }
-  /// Standard deviation of the residuals, noise apart; robust.
+  /// Robust standard deviation of the residual errors, with the noise subtracted.
   double systematic_m() const { return systematic_m_; }
-  /// How badly the motion fits its prior and the apparent rotation, nats.
+  /// Cost of the motion by its prior and the apparent rotation, nats.
   double motion_cost() const { return prior_cost() + apparent_cost(); }
-  /// How badly residuals, amplitudes and motion fit, nats: what tells one explanation from another.
-  /// Infinite if B saw none of the samples.
-  /// `systematic_m` is what residuals have besides noise, the same for all that are compared.
+  /// Cost of residuals, amplitudes and motion, nats. Fits of one frame can be compared by their
+  /// cost if `systematic_m`, the standard deviation of the residuals besides noise, is the same for
+  /// all. Infinite if B saw none of the samples.
   double cost(double systematic_m) const {
     return cost_without_apparent(systematic_m) + apparent_cost();
   }
-  /// The same, whatever the apparent rotation is.
+  /// The same cost without that of the apparent rotation.
   double cost_without_apparent(double systematic_m) const;
-  /// Standard deviation over the samples of what is predicted of them as periodic.
+  /// Standard deviation over the samples of the periodic error predicted for them.
   double periodic_rms_m() const;
-  /// The share of the samples that B saw as predicted.
+  /// Share of the samples whose residual and amplitude at B are as predicted, 0 … 1.
   double support() const;
-  /// By how far the motion shifts the image, pixels: nine of ten samples by less.
+  /// 90th percentile, over the samples, of the image shift that the motion causes, pixels.
   double flow_px() const;
   /// Median of B's amplitude over A's; 1 without amplitudes.
   double amplitude_gain() const { return amplitude_gain_; }
@@ -79,12 +83,11 @@ class ResidualFit {
   using MotionVector = Eigen::Matrix<double, motion_terms, 1>;
   using MotionMatrix = Eigen::Matrix<double, motion_terms, motion_terms>;
 
-  /// Of the apparent rotation: how it changes with the motion, what the motion leaves of it, and
-  /// the inverse of its covariance.
+  /// The apparent rotation as a linear measurement of the motion.
   struct ApparentEquations {
-    Eigen::Matrix<double, 3, motion_terms> by_motion;
-    Eigen::Vector3d off_rad;
-    Eigen::Matrix3d information;
+    Eigen::Matrix<double, 3, motion_terms> by_motion;  ///< its derivative by the motion
+    Eigen::Vector3d off_rad;      ///< measured minus predicted apparent rotation
+    Eigen::Matrix3d information;  ///< inverse of its covariance
   };
 
   void look_up();
@@ -115,11 +118,12 @@ class ResidualFit {
   double systematic_m_;
   double amplitude_gain_ = 1;
   SeenSamples seen_;
-  std::vector<float> range_m_;      ///< by the count that fits best; 0 before any was found
-  std::vector<float> predicted_m_;  ///< of the residual, by all that is known
+  std::vector<float> range_m_;      ///< A's range at the wrap count that fits best
+  std::vector<float> predicted_m_;  ///< predicted residual
   std::vector<float> error_m_;      ///< residual minus prediction; NaN where B saw nothing
   std::vector<float> weight_;
-  std::vector<std::vector<float>> jacobian_;  ///< of the residual by the motion, number by number
+  /// Derivatives of the residuals by the motion: one vector over the samples per motion parameter.
+  std::vector<std::vector<float>> jacobian_;
 };
 
 }  // namespace tofmap

@@ -18,19 +18,22 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// Neighbours this far away tell whether a surface bends; slopes reach as far at least.
+/// Distance of the neighbours that show whether a surface bends. Slopes are fitted to at least this
+/// neighbourhood.
 constexpr Eigen::Index bend_reach_px = 2;
 constexpr int widest_reach_px = 3;
 
-/// Phases noisier than this wrap too often to be averaged by their differences.
+/// Differences of noisier phases wrap too often for their mean to be right.
 constexpr float loudest_cycles = 0.15F;
 
-/// A sample's noise, as a share of the residual step: enough to be sure of the count; and what a
-/// larger window is taken for, since more certain samples tell more.
+/// Largest noise of a sample, as a share of the residual step, at which its wrap count is certain.
 constexpr float largest_share = 0.2F;
+
+/// Windows grow until the noise is below this share of the residual step, since samples with less
+/// noise are more informative.
 constexpr float wanted_share = 0.07F;
 
-/// The mean phase of the pixels with a return in a window.
+/// The mean phase of the pixels with a return in a window, cycles, and the number of these pixels.
 struct WindowMean {
   float phase;
   float pixels;
@@ -55,7 +58,7 @@ WindowMean window_mean(const ImageF& phase, Eigen::Index row, Eigen::Index col,
   return {mean - std::floor(mean), pixels};
 }
 
-/// True if A's surface neither bends nor ends at a pixel.
+/// Whether A's surface neither bends nor ends at a pixel.
 bool is_smooth(const ExposurePair& pair, Eigen::Index v, Eigen::Index u, float wavelength_m) {
   const ImageF& phase = pair.phase_a;
   const float here = phase(v, u);
@@ -70,9 +73,10 @@ bool is_smooth(const ExposurePair& pair, Eigen::Index v, Eigen::Index u, float w
          is_straight(to_half_cycle(here - over), to_half_cycle(under - here), tolerated);
 }
 
-/// The slope of A's range, metres a pixel: that of the plane through the pairs of pixels on
-/// opposite sides of a pixel, which reach as far as `reach` and lie on one line with it. A slope
-/// that is mostly noise would make motion look smaller than it is: then there is none.
+/// The slope of A's range per column and per row, metres per pixel. It is fitted to pairs of pixels
+/// on opposite sides of the pixel, up to `reach` away, whose phases lie on one line with the
+/// pixel's. Returns zero if noise dominates the slope: a noisy slope would make motion look smaller
+/// than it is.
 Eigen::Vector2f slope_m(const ExposurePair& pair, Eigen::Index v, Eigen::Index u,
                         Eigen::Index reach, float wavelength_m) {
   constexpr float loud_m = 0.035F;
@@ -96,7 +100,8 @@ Eigen::Vector2f slope_m(const ExposurePair& pair, Eigen::Index v, Eigen::Index u
   return wavelength_m * moment.cwiseQuotient(square);
 }
 
-/// How large a window the noise asks for; nothing if none is enough.
+/// The reach of the window that noise of this standard deviation needs, in pixels. Empty if even
+/// the largest window leaves too much noise.
 std::optional<int> window_reach(float sigma_m, double residual_step_m) {
   const auto step_m = static_cast<float>(residual_step_m);
   int reach = 0;
@@ -106,6 +111,7 @@ std::optional<int> window_reach(float sigma_m, double residual_step_m) {
   return reach;
 }
 
+/// Appends ray, slope and gradient of a sample.
 void append_ray(const PixelRays& rays, Eigen::Index v, Eigen::Index u, const Eigen::Vector2f& slope,
                 SurfaceSamples& samples) {
   const auto ray = [&](Eigen::Index row, Eigen::Index col) {
@@ -129,7 +135,7 @@ void append_ray(const PixelRays& rays, Eigen::Index v, Eigen::Index u, const Eig
   samples.gradient_z.push_back(gradient.z());
 }
 
-/// Adds the sample at a pixel, if it is one.
+/// Appends the sample at a pixel, unless the pixel is too noisy or its surface is not smooth.
 void append_sample(const ExposurePair& pair, const PairGeometry& geometry, double residual_step_m,
                    Eigen::Index v, Eigen::Index u, SurfaceSamples& samples) {
   const auto wavelength_a_m = static_cast<float>(geometry.limits.wavelength_a_m);
@@ -157,7 +163,7 @@ void append_sample(const ExposurePair& pair, const PairGeometry& geometry, doubl
 
 constexpr Eigen::Index nowhere = -1;
 
-/// What B measured in and around one pixel, for sample i.
+/// Fills in what B measured of sample i in the window around pixel (v, u), whose index is `place`.
 void see(const SurfaceSamples& samples, std::size_t i, Eigen::Index v, Eigen::Index u,
          Eigen::Index place, const ExposurePair& pair, const PairGeometry& geometry,
          SeenSamples& seen) {

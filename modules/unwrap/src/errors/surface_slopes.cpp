@@ -14,12 +14,13 @@
 namespace tofmap {
 namespace {
 
+/// Distance of the neighbours that determine a slope.
 constexpr Eigen::Index reach_px = 2;
 
-/// From this noise on a slope is more noise than slope.
+/// With more noise than this, noise dominates a slope.
 constexpr float loud_m = 0.1F;
 
-/// Phases around the pixels of a row.
+/// The phases of a row's pixels and of their neighbours, cycles, and their noise.
 struct Around {
   const float* here;
   const float* left;
@@ -56,7 +57,7 @@ TOFMAP_VECTOR_CLONES void fill_slopes(int cols, const Around& around_, float wav
   }
 }
 
-/// Rays of a row, and how they change from pixel to pixel.
+/// x, y and z of the rays of a row's pixels and of their neighbours.
 struct RowOfRays {
   const float* here[3];
   const float* left[3];
@@ -83,7 +84,7 @@ TOFMAP_VECTOR_CLONES void fill_gradients(int cols, const RowOfRays& rays_, const
     const float bz = (rays.below[2][i] - rays.above[2][i]) / pixels;
     const float volume =
         (ay * bz - az * by) * ux + (az * bx - ax * bz) * uy + (ax * by - ay * bx) * uz;
-    // An image of one row or column has no slope along the other.
+    // In an image of a single row or column, rays do not change in the other direction.
     const float per_volume = volume > 0 ? 1 / volume : 0.0F;
     const float across = across_m[i] * per_volume;
     const float along = along_m[i] * per_volume;
@@ -93,7 +94,7 @@ TOFMAP_VECTOR_CLONES void fill_gradients(int cols, const RowOfRays& rays_, const
   }
 }
 
-/// A row of an image with two repeated pixels on both sides.
+/// Copies a row of an image and repeats the border pixel twice on both sides.
 void copy_padded(const ImageF& image, Eigen::Index row, float* to) {
   const Eigen::Index cols = image.cols();
   const float* from = image.data() + row * cols;

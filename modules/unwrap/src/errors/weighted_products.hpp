@@ -10,12 +10,12 @@
 
 namespace tofmap {
 
-/// Σ a b.
+/// The dot product Σ aᵢ bᵢ. The order of the additions does not depend on the processor.
 float dot(std::size_t count, const float* a, const float* b);
 
-/// The normal equations of weighted least squares with one column a coefficient, of as many numbers
-/// as there are weights: adds the weighted products of all pairs of columns to `information`, and
-/// those of each column with `right` to `gradient`.
+/// Adds the normal equations of a weighted least-squares problem: Aᵀ W A to `information` and
+/// Aᵀ W r to `gradient`. A has one column per coefficient, W is the diagonal matrix of the weights,
+/// and r is `right`. Columns and `right` have one element per weight.
 template <int terms>
 void add_weighted_products(const std::array<const float*, terms>& columns,
                            const std::vector<float>& weight, const std::vector<float>& right,

@@ -10,7 +10,7 @@
 namespace tofmap {
 namespace {
 
-/// The options of `joint` as its stages know them.
+/// The options of WrapCountEstimator.
 WrapCountOptions count_estimation(const UnwrapOptions& options) {
   return {.prior = {.outlier_share = options.outlier_share,
                     .slope_m = options.slope_m,
@@ -20,8 +20,8 @@ WrapCountOptions count_estimation(const UnwrapOptions& options) {
           .scales = options.scales};
 }
 
-/// Makes pixels invalid that have a runner_up count which the pair of frequencies cannot tell from
-/// the chosen one, and which is nearly as likely.
+/// Invalidates pixels whose runner-up is nearly as probable as the chosen wrap count, if the pair
+/// of frequencies cannot tell the two apart.
 void drop_ambiguous(const WrapCountBeliefs& beliefs, const UnwrapLimits& limits,
                     RangeImage& image) {
   constexpr float nearly = 0.1F;

@@ -15,11 +15,12 @@
 namespace tofmap {
 namespace {
 
-/// How often counts are right, as log odds, against the log odds of beliefs: one curve for each
-/// noise of the residual, 1/32 … 2 residual steps. Where noise is low, beliefs of middling odds are
-/// those of edges. Read off the shares of right counts of the development grid of
-/// bench_unwrap_accuracy: 15 places, 15 cameras each, in whole images and in those of half the
-/// size. Lines join the points; the first and the last go on.
+/// The calibration curves: log odds that a wrap count is right, at the log odds of its belief in
+/// `believed_odds`. There is one curve for each noise of the residual, from 1/32 to 2 residual
+/// steps. With low noise, medium odds occur mostly at edges, so the curves are flat there. Fitted
+/// to the development data of `bench_unwrap_accuracy --grid`: 15 places with 15 cameras each, at
+/// full and at half image size. Between the points the curves are linear; the first and the last
+/// segment are extrapolated.
 constexpr std::array<float, 8> believed_odds{-4, 0, 8, 14, 18, 45, 65, 85};
 using Curve = std::array<float, believed_odds.size()>;
 constexpr std::array<Curve, 5> curves{{{-2.1F, 0.1F, 0.3F, 0.4F, 6.3F, 7.6F, 10.3F, 11},
@@ -28,9 +29,9 @@ constexpr std::array<Curve, 5> curves{{{-2.1F, 0.1F, 0.3F, 0.4F, 6.3F, 7.6F, 10.
                                        {-3.2F, -0.1F, 3.5F, 4.8F, 7.3F, 8.7F, 9, 10.5F},
                                        {-2.5F, -0.2F, 2, 4.2F, 5.4F, 7.1F, 8.4F, 10.5F}}};
 constexpr float first_noise_octaves = -5;
-constexpr float curve_octaves = 1.5F;  ///< from one curve to the next
+constexpr float curve_octaves = 1.5F;  ///< step of the noise from one curve to the next
 
-/// A curve as a line and the changes of its slope at the inner points.
+/// A curve as a line with changes of its slope at the inner points.
 struct BentLine {
   float start = 0;
   float slope = 0;
@@ -52,19 +53,20 @@ constexpr auto bent_lines = [] {
   return lines;
 }();
 
-/// Beliefs in the chosen counts and in all others, and noise.
+/// The inputs of the calibration for successive pixels.
 struct Pixels {
-  const float* best;
-  const float* others;
+  const float* best;    ///< probability of the chosen wrap count
+  const float* others;  ///< probability of all other wrap counts together
   const float* sigma_a_cycles;
   const std::uint8_t* counts;
 };
 
-/// `steps_per_cycle`: the noise of the residual over the residual step, for a noise of one cycle.
+/// `steps_per_cycle` is the noise of the residual in residual steps if A's phase has a noise of one
+/// cycle.
 TOFMAP_VECTOR_CLONES void fill_confidence(int count, const Pixels& pixels_, float steps_per_cycle,
                                           float* confidence) {
   const Pixels pixels = pixels_;
-  constexpr float least = 1e-37F;  // smaller numbers are no normal floats
+  constexpr float least = 1e-37F;  // smaller numbers are not normal floats
   constexpr auto last_curve = static_cast<float>(curves.size() - 1);
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {

@@ -8,11 +8,13 @@
 
 namespace tofmap {
 
-/// How often counts that are believed in so much are right, 0 … 1: the confidence of `joint`
-/// (docs/unwrapping.md, equation 22). At the same noise it is the larger, the larger the odds are.
-/// The noise is that of the residual over the residual step, as if both frequencies had A's: B may
-/// be of another exposure. Where there is no count `sigma_a_cycles` is any number, and the
-/// confidence 0.
+/// The confidence of `joint`, 0 … 1: beliefs, calibrated to the probability that the wrap count is
+/// right (docs/unwrapping.md, equation 22). At the same noise, it rises with the log odds of the
+/// belief. 0 where the wrap count is invalid; `sigma_a_cycles` is not used there.
+///
+/// `sigma_a_cycles` is the noise of A's phase. The calibration depends on the noise of the residual
+/// relative to the residual step. That noise is computed as if B had the noise of A, since B may
+/// come from another exposure.
 ImageF wrap_count_confidence(const WrapCountBeliefs& beliefs, const ImageF& sigma_a_cycles,
                              const UnwrapLimits& limits);
 

@@ -17,10 +17,10 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// Phase noise from which on neighbouring pixels alone do not tell which way a phase wraps.
+/// Phase noise above which neighbouring pixels alone do not tell in which direction a phase wraps.
 constexpr float loud_cycles = 0.08F;
 
-/// A coarser scale is worth its time if at least this share of the pixels is that noisy.
+/// A coarser pyramid level is worth its time if more than this share of the pixels is that noisy.
 constexpr float loud_share = 0.02F;
 
 std::complex<float> phasor(float phase, float amplitude) {
@@ -38,16 +38,19 @@ bool is_loud(const PhaseSigma& sigma) {
   return loud > loud_share * returns;
 }
 
-/// The count that brings the pixel nearest to the range of a block, both in cycles.
+/// The wrap count that brings a pixel with this phase nearest to the range `block_cycles` of its
+/// block.
 std::uint8_t nearest_count(float block_cycles, float phase, int counts) {
   return static_cast<std::uint8_t>(
       std::clamp(static_cast<int>(std::lround(block_cycles - phase)), 0, counts - 1));
 }
 
-/// What the counts of a block, which the pixel is in, say of the pixel's: a factor for each.
+/// Converts the beliefs of a block into the coarse-to-fine prior of one of its pixels: a factor for
+/// each wrap count of the pixel.
 void set_factors(const WrapCountBeliefs& coarse, Eigen::Index row, Eigen::Index col,
                  float block_phase, float phase, std::vector<float>& factors) {
-  // Blocks and pixels see the same light: little of what blocks say is news.
+  // Exponent that tempers the factors: blocks and pixels see the same light, so little of the
+  // block's information is new.
   constexpr float news = 0.15F;
   constexpr float least_share = 1e-3F;
   const auto counts = static_cast<int>(factors.size());
@@ -64,7 +67,8 @@ void set_factors(const WrapCountBeliefs& coarse, Eigen::Index row, Eigen::Index 
   set(coarse.count(row, col), 1);
 }
 
-/// Lets noisy pixels hear what the blocks of 2 x 2 that they are in have found out.
+/// Multiplies the unary factors of noisy pixels by the coarse-to-fine prior of their blocks, which
+/// have 2 x 2 pixels.
 void apply_coarse_prior(const DualFrequencyFrame& pixels, const PhaseSigma& sigma,
                         const DualFrequencyFrame& blocks, const WrapCountBeliefs& coarse,
                         WrapCountModel& model) {
@@ -79,13 +83,14 @@ void apply_coarse_prior(const DualFrequencyFrame& pixels, const PhaseSigma& sigm
   }
 }
 
-/// What two scales together give to the count of the coarse one, which is the surer: both see the
-/// same light, so agreement makes nothing surer, and the choice of the surer one errs to its side.
+/// The probability of the coarse level's wrap count, given that the coarse level is surer than the
+/// fine one. Both levels see the same light, so agreement does not raise the probability;
+/// disagreement lowers it, as choosing the surer level is biased towards overconfidence.
 float joint_probability(float coarse, float fine, bool agree) {
   return agree ? coarse : coarse * coarse / (coarse + fine);
 }
 
-/// Takes over what the blocks know better: where pixels are loud and the block is surer.
+/// Replaces the beliefs of noisy pixels by those of their blocks where the block is surer.
 void take_coarse_counts(const DualFrequencyFrame& pixels, const NoisyFrame& blocks, int block_px,
                         const WrapCountBeliefs& coarse, int counts, WrapCountBeliefs& fine) {
   for (Eigen::Index v = 0; v < pixels.phase_a.rows(); ++v) {
@@ -117,7 +122,7 @@ void take_coarse_counts(const DualFrequencyFrame& pixels, const NoisyFrame& bloc
 
 namespace {
 
-/// Phasors of one frequency in a block, summed, and the variance of the noise of the sum.
+/// The sum of the phasors of one frequency in a block, and the variance of its noise.
 struct BlockSum {
   std::complex<float> phasor = 0;
   float noise_variance = 0;
@@ -129,7 +134,7 @@ struct BlockSum {
   }
 
   float amplitude() const { return std::max(std::abs(phasor), 1e-6F); }
-  /// At most that of a phase that is anything.
+  /// Phase noise of the sum: its noise relative to its length.
   float sigma_cycles() const { return std::sqrt(noise_variance) / amplitude(); }
 };
 
@@ -176,7 +181,8 @@ NoisyFrame halve(const DualFrequencyFrame& frame, const PhaseSigma& sigma) {
   return out;
 }
 
-/// Prepares the scales that noise asks for, at most so many: their blocks and noise.
+/// Builds the pyramid: blocks and noise of the levels that the noise requires, at most `most`
+/// levels. Returns the number of levels.
 int WrapCountEstimator::divide(const DualFrequencyFrame& frame, const PhaseSigma& sigma, int most) {
   scales_.resize(static_cast<std::size_t>(most));
   const DualFrequencyFrame* finer = &frame;

@@ -15,14 +15,14 @@
 namespace tofmap {
 namespace {
 
-/// No probability ratio of an edge is larger: it bounds the messages, so that products of them
-/// stay floats.
+/// Upper bound of the pairwise factors. It bounds the messages, so that products of messages do not
+/// overflow or underflow.
 constexpr float largest_ratio = 1e12F;
 
-/// The evidence for a range beyond the limits.
+/// Smallest unary factor, also that of ranges beyond the limits.
 constexpr float impossible = 1e-8F;
 
-/// One diagonal of pixels and what is known of them.
+/// The measurements of successive pixels on one diagonal.
 struct Pixels {
   int rows;
   const float* phase_a;
@@ -39,23 +39,23 @@ struct EvidenceScale {
   float farthest_cycles_a;
 };
 
-/// Pixels whose evidence is found at a time.
+/// Number of pixels whose unary factors are computed at a time.
 constexpr int evidence_rows = 4 * DiagonalLayout::lanes;
 
-/// What the residual tells of each pixel, besides its offset.
+/// How sharply the residual of each pixel is distributed around its true value.
 struct Sharpness {
   std::array<float, evidence_rows> precision;  ///< 1 / variance of the residual, 1 / cycles²
-  std::array<float, evidence_rows> height;     ///< density of the residual at the true count
+  std::array<float, evidence_rows> height;     ///< density of the residual at the true wrap count
 };
 
-/// Returns the least precision of the pixels whose residual tells anything.
+/// Returns the smallest precision among the pixels whose residual is informative.
 TOFMAP_VECTOR_CLONES float fill_sharpness(const Pixels& pixels_, const EvidenceScale& scale,
                                           Sharpness& out) {
   const Pixels pixels = pixels_;
   const float squared_b = scale.wavelength_b_m * scale.wavelength_b_m;
   float* precision = out.precision.data();
   float* height = out.height.data();
-  constexpr float least_telling = 1e-3F;  // a noise of thirty cycles
+  constexpr float least_telling = 1e-3F;  // a noise of thirty cycles of B
   std::array<float, DiagonalLayout::lanes> least;
   least.fill(largest_ratio);
   for (int i = 0; i < pixels.rows; i += DiagonalLayout::lanes) {
@@ -73,8 +73,8 @@ TOFMAP_VECTOR_CLONES float fill_sharpness(const Pixels& pixels_, const EvidenceS
   return least_of(least);
 }
 
-/// Equation 11: the probability of every count given the residual of the pixel. `passes` tells that
-/// B's noise may pass half a cycle.
+/// Equation 11: the unary factors of each pixel from its residual. `passes` states that the noise
+/// of the residual may exceed half a cycle of B, so that the nearest other wrap of B matters, too.
 template <bool passes>
 [[gnu::always_inline]] inline void fill_evidence_of(const Pixels& pixels,
                                                     const EvidenceScale& scale, int counts,
@@ -87,15 +87,15 @@ template <bool passes>
   const auto ratio = static_cast<float>(scale.wavelength_ratio);
   for (int k = 0; k < counts; ++k) {
     BFloat16* at = evidence + static_cast<std::size_t>(k) * step;
-    // Cycles of B in k wavelengths of A, without the whole ones: counts that the pair cannot tell
-    // apart get the same evidence to the last bit.
+    // Cycles of B in k wavelengths of A, reduced to −1/2 … 1/2, so that wrap counts which the pair
+    // cannot tell apart get the same unary factor to the last bit.
     const auto shift = static_cast<float>(residual_shift_cycles(scale.wavelength_ratio, k));
     const float farthest = k == 0 ? 1 : scale.farthest_cycles_a - static_cast<float>(k);
 #pragma GCC ivdep
     for (int i = 0; i < rows; ++i) {
       const float offset = to_half_cycle(pixels.phase_a[i] * ratio + shift - pixels.phase_b[i]);
       const float size = offset < 0 ? -offset : offset;
-      // The density of the offset against that of any.
+      // Density of the residual, up to the factor `height`. An outlier has density 1 per cycle.
       float density = exp_of_negative(-0.5F * precision[i] * size * size);
       if constexpr (passes) {
         const float other = 1 - size;
@@ -137,7 +137,7 @@ TOFMAP_VECTOR_CLONES void fill_sharp_evidence(const Pixels& pixels, const Eviden
   fill_evidence_of<false>(Pixels(pixels), EvidenceScale(scale), counts, sharpness, evidence, step);
 }
 
-/// Amplitudes of pixels and their neighbours to four sides.
+/// Amplitudes of pixels and their four neighbours.
 struct Cross {
   const float* here;
   const float* left;
@@ -146,7 +146,8 @@ struct Cross {
   const float* below;
 };
 
-/// How far an amplitude lies between those of two opposite neighbours: from the nearer of both.
+/// How far an amplitude lies inside the interval between those of two opposite neighbours: the
+/// difference from the nearer one. Negative if it lies outside.
 [[gnu::always_inline]] inline float depth_between(float one, float here, float other) {
   const float from_one = here - one;
   const float to_other = other - here;
@@ -155,13 +156,13 @@ struct Cross {
   return lesser > -greater ? lesser : -greater;
 }
 
-/// 1 for pixels that see two surfaces, else 0.
+/// Finds mixed pixels: 1 in `mixed`, else 0.
 TOFMAP_VECTOR_CLONES void find_mixed(int count, const Cross& cross_, const float* sigma_cycles,
                                      float* mixed) {
-  constexpr float least_contrast = 0.05F;  // shading of one surface changes less in a pixel
+  constexpr float least_contrast = 0.05F;  // shading changes less from pixel to pixel
   constexpr float sigmas =
-      2.5F * std::numbers::sqrt2_v<float>;  // of a difference of two amplitudes
-  // Noise of the amplitude, which is that of a signal's two parts, as of a phase of one radian.
+      2.5F * std::numbers::sqrt2_v<float>;  // for a difference of two amplitudes
+  // The relative noise of an amplitude equals the noise of its phase in radians.
   constexpr float per_sigma = sigmas * 2 * std::numbers::pi_v<float>;
   const Cross cross = cross_;
 #pragma GCC ivdep
@@ -180,11 +181,11 @@ struct EdgeScale {
   float wavelength_a_m;
   float slope_m2;
   float edge_share;
-  float edge_density;  ///< of any step between surfaces, 1 / m
+  float edge_density;  ///< density of the range difference between surfaces, 1 / m
   float amplitude_weight;
 };
 
-/// Equations 12 to 14: the steps between pixels and their neighbours.
+/// Equations 12 to 14: the pairwise factors between pixels and their neighbours.
 TOFMAP_VECTOR_CLONES void fill_edges(const Pixels& from, const Pixels& to, const EdgeScale& scale,
                                      float* same, float* next) {
   const float* phase_from = from.phase_a;
@@ -214,7 +215,7 @@ TOFMAP_VECTOR_CLONES void fill_edges(const Pixels& from, const Pixels& to, const
     };
     const float ratio_same = ratio(difference);
     const float ratio_next = ratio(difference + toward);
-    // A pixel without a return has no variance: its neighbours learn nothing from it.
+    // Pixels without a return have a very large variance: they tell their neighbours nothing.
     const float present = variance_from[i] + variance_to[i] < largest_ratio ? 1.0F : 0.0F;
     same[i] = present * (ratio_same > 0 ? ratio_same : 0.0F);
     next[i] = present * toward * (ratio_next > 0 ? ratio_next : 0.0F);
@@ -237,8 +238,8 @@ void WrapCountModel::resize(int rows, int cols, int counts) {
   }
 }
 
-/// The residual of a pixel that sees two surfaces is that of none: its evidence is made flat. The
-/// outer pixels of the image are taken at their word.
+/// Makes the unary factors of mixed pixels nearly uniform, since their residual is that of neither
+/// surface. Pixels at the border of the image are never taken for mixed.
 void WrapCountModel::mark_mixed_pixels(const ImageF& amplitude, const ImageF& sigma_cycles) {
   constexpr float flat = 0.999F;
   const auto rows = static_cast<int>(amplitude.rows());
@@ -309,7 +310,8 @@ void WrapCountModel::assign(const DualFrequencyFrame& frame, const UnwrapLimits&
     for (int done = 0; done < count; done += evidence_rows) {
       const Pixels block = pixels(d, first + done, std::min(evidence_rows, count - done));
       BFloat16* evidence = &evidence_[layout_.place(d, first + done, counts)];
-      // From here on half a cycle is seven standard deviations: what passes it is lost in rounding.
+      // Above this precision, half a cycle is more than seven standard deviations, and the nearest
+      // other wrap of B has a density that is lost in rounding.
       constexpr float sharp = 200;
       const bool is_sharp = fill_sharpness(block, evidence_scale, sharpness) > sharp;
       (is_sharp ? fill_sharp_evidence : fill_evidence)(block, evidence_scale, counts_, sharpness,

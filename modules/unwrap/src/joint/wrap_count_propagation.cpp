@@ -17,21 +17,21 @@
 namespace tofmap {
 namespace {
 
-/// Edges of a pixel to the neighbours before it.
+/// The edges of a pixel to its left and its upper neighbour.
 enum Neighbour { left, above };
 
-/// Rows treated at a time: few enough for the second-level cache, and enough to pass through memory
-/// in long lines.
+/// Rows processed at a time: few enough to fit into the second-level cache, and enough for long
+/// contiguous reads from memory.
 constexpr int block_rows = 32 * DiagonalLayout::lanes;
 
-/// The change of messages is watched on every so many diagonals: that costs little, and their
-/// largest change is that of all, or close to it.
+/// The change of messages is measured on every n-th diagonal. That costs little, and the largest
+/// change of the sample is close to that of all messages.
 constexpr int watched_diagonals = 8;
 
 /// One number for each pixel of a block.
 using Row = std::array<float, block_rows>;
 
-/// Numbers of a block of pixels for every count, `step` apart.
+/// One plane for each wrap count with the values of a block of pixels; planes are `step` apart.
 template <class T>
 struct Planes {
   T* data;
@@ -40,29 +40,31 @@ struct Planes {
   T* operator[](int count) const { return data + static_cast<std::size_t>(count) * step; }
 };
 
-/// One edge of each pixel of a block, to a neighbour on the next diagonal of the sweep.
+/// The edges from the pixels of a block to one of their neighbours on the next diagonal of the
+/// sweep.
 struct Edge {
-  Planes<const BFloat16> back;  ///< the last message the other way
-  Planes<BFloat16> out;         ///< in the same place, but before anything was sent
-  const float* same;
-  const float* next;
+  Planes<const BFloat16> back;  ///< the latest messages from that neighbour, or ones
+  Planes<BFloat16> out;         ///< the messages to that neighbour; in the place of `back`
+  const float* same;            ///< WrapCountModel::Edges::same
+  const float* next;            ///< WrapCountModel::Edges::next
 };
 
-/// A block of pixels of one diagonal, and what it sends to both neighbours on the next.
+/// A block of pixels on one diagonal, and their edges to both neighbours on the next diagonal of
+/// the sweep.
 struct Block {
   int rows;
-  int lanes;  ///< rows of whole vectors, of which the last ones have no pixel
+  int lanes;  ///< `rows`, rounded up to whole vectors; the last ones may be padding
   int counts;
   Planes<const BFloat16> evidence;
-  Planes<const BFloat16> in_first;  ///< messages from both neighbours on the diagonal before
-  Planes<const BFloat16> in_second;
+  Planes<const BFloat16> in_first;   ///< messages from the first neighbour on the diagonal before
+  Planes<const BFloat16> in_second;  ///< messages from the second one
   Edge first;
   Edge second;
-  float direction;  ///< −1 where the edges are stored the other way: their steps change sign
-  float* scratch;   ///< room for 2 (counts + 1) vectors; the last of each half is 0
+  float direction;  ///< 1 if edges are stored at this pixel, −1 if at the neighbour: the sign of i
+  float* scratch;   ///< memory for 2 (counts + 1) vectors; the last one of each half is 0
 };
 
-/// What a block's pixels have for one count: their evidence, and the messages of all neighbours.
+/// The factors of a belief for one wrap count: unary factors and the messages of all neighbours.
 struct Factors {
   const BFloat16* evidence;
   const BFloat16* in_first;
@@ -77,8 +79,7 @@ struct Factors {
         back_first(block.first.back[count]),
         back_second(block.second.back[count]) {}
 
-  /// Asks memory for what comes after `row`: there are more planes than the processor follows by
-  /// itself.
+  /// Prefetches what follows `row`: there are more planes than the hardware prefetcher follows.
   [[gnu::always_inline]] void prefetch(int row) const {
     constexpr int ahead = 64;
     for (const BFloat16* plane : {evidence, in_first, in_second, back_first, back_second}) {
@@ -87,8 +88,9 @@ struct Factors {
   }
 };
 
-/// What persists between blocks. A message along an edge has its place at the right or lower pixel
-/// of the edge, whichever way it goes: the next one the other way takes it, after it was heard.
+/// The buffers that all blocks share. The messages along an edge in both directions have one place,
+/// at the right or lower pixel of the edge. A pixel reads the incoming message before its own
+/// message in the opposite direction replaces it.
 struct Buffers {
   std::array<std::vector<BFloat16>, 2>& messages;
   const BFloat16* ones;
@@ -97,14 +99,15 @@ struct Buffers {
 
 enum class Sweep { forward, backward };
 
-/// The pixels of diagonal d from `row` on, in a sweep to later or to earlier diagonals. `has_back`
-/// is false before anything has been sent against the sweep.
+/// The block of pixels on diagonal d that begins at `row`. `has_back` is false as long as no
+/// message has been sent in the direction opposite to the sweep.
 Block block_at(const WrapCountModel& model, const Buffers& buffers, Sweep sweep, int d, int row,
                bool has_back) {
   const DiagonalLayout& layout = model.layout();
   const auto counts = static_cast<std::size_t>(model.counts());
   const bool forward = sweep == Sweep::forward;
-  // Messages to and from earlier pixels are kept here, those to and from later ones there.
+  // Messages from and to the left and upper neighbours are stored here, those from and to the right
+  // and lower neighbours there.
   const std::size_t here = layout.place(d, row, counts);
   const std::size_t there = layout.place(d + 1, row, counts);
   const Planes<BFloat16> to_left{&buffers.messages[left][here], layout.plane_step(d)};
@@ -114,7 +117,7 @@ Block block_at(const WrapCountModel& model, const Buffers& buffers, Sweep sweep,
   const auto read_only = [](const Planes<BFloat16>& planes) {
     return Planes<const BFloat16>{planes.data, planes.step};
   };
-  // Edges are stored at their left or upper pixel.
+  // Pairwise factors are stored at the left or upper pixel of the edge.
   const std::size_t edge_right = layout.place(forward ? d : d - 1, row, 1);
   const std::size_t edge_down = forward ? edge_right : edge_right - 1;
   const auto edge = [&](const Planes<BFloat16>& slot, const WrapCountModel::Edges& edges,
@@ -135,12 +138,11 @@ Block block_at(const WrapCountModel& model, const Buffers& buffers, Sweep sweep,
           buffers.scratch};
 }
 
-/// Makes products of two messages, 1e-24 … 1, so large that products of two such are normal
-/// numbers.
+/// Scales products of two messages, 1e-24 … 1, so that the product of two of them is a normal
+/// float.
 constexpr float large = 0x1p40F;
 
-/// Numbers of as many pixels as fit into one vector of the layout: each stays in a register while
-/// loops go through the counts.
+/// One number for each pixel of a vector. It stays in a register during loops over the wrap counts.
 using Lanes [[gnu::vector_size(DiagonalLayout::lanes * sizeof(float))]] = float;
 using LaneBits [[gnu::vector_size(sizeof(Lanes))]] = std::uint32_t;
 using LaneHalves [[gnu::vector_size(sizeof(Lanes) / 2)]] = BFloat16;
@@ -170,7 +172,8 @@ template <class Vector, class Number>
   store(__builtin_convertvector(rounded, LaneHalves), to);
 }
 
-/// 1 / √x of positive normal numbers, to 5e-6: Newton's method, begun with half the exponent.
+/// 1 / √x of positive normal numbers, with a relative error of at most 5e-6: two steps of Newton's
+/// method from an estimate that halves the exponent.
 [[gnu::always_inline]] inline Lanes inverse_root_of(const Lanes& x) {
   const Lanes half = 0.5F * x;
   Lanes root = std::bit_cast<Lanes>(0x5f375a86U - (std::bit_cast<LaneBits>(x) >> 1U));
@@ -179,9 +182,9 @@ template <class Vector, class Number>
   return root;
 }
 
-/// Equation 16, for the messages along one edge of the pixels from `row` of a block on. `weighted`
-/// holds what remains of their beliefs without the message the other way, count by count, and a
-/// vector of 0.
+/// Equation 16 for one vector of pixels, which begins at `row` of the block: computes and stores
+/// the messages along one edge. `weighted` holds, for each wrap count, the beliefs divided by the
+/// message in the opposite direction, then a vector of zeros; `sum` is their sum.
 [[gnu::always_inline]] inline void send(const Block& block, const Edge& edge, int row,
                                         const float* weighted, const Lanes& sum) {
   const Lanes none{};
@@ -201,7 +204,7 @@ template <class Vector, class Number>
   }
 }
 
-/// Builds and sends the messages of a block.
+/// Computes and sends the messages of a block.
 TOFMAP_VECTOR_CLONES void send_block(const Block& block_) {
   const Block block = block_;
   float* first = block.scratch;
@@ -230,7 +233,7 @@ TOFMAP_VECTOR_CLONES void send_block(const Block& block_) {
   }
 }
 
-/// The largest difference between messages along one edge of each pixel and what they were.
+/// The largest difference between the messages along one edge of each pixel and earlier ones.
 TOFMAP_VECTOR_CLONES float largest_change(const Block& block, const Planes<const BFloat16>& now,
                                           const Planes<const BFloat16>& before) {
   Row largest{};
@@ -246,16 +249,16 @@ TOFMAP_VECTOR_CLONES float largest_change(const Block& block, const Planes<const
   return *std::max_element(largest.begin(), largest.begin() + block.rows);
 }
 
-/// The two most likely counts of a block and their probabilities.
+/// The two most probable wrap counts of each pixel of a block and their probabilities.
 struct BlockBeliefs {
   Row best;
   Row runner_up;
   Row best_count;
   Row runner_up_count;
-  Row others;  ///< of all other counts together
+  Row others;  ///< probability of all wrap counts but the best
 };
 
-/// Equation 15, where all messages have come in.
+/// Equation 15, for a block that has received all its messages.
 TOFMAP_VECTOR_CLONES void read_block(const Block& block_, BlockBeliefs& out) {
   const Block block = block_;
   const Lanes none{};
@@ -309,8 +312,8 @@ void WrapCountPropagation::reset(const WrapCountModel& model) {
   rows_ = model.layout().rows();
   cols_ = model.layout().cols();
   counts_ = model.counts();
-  // Where there is no pixel nothing is known, and where there is no edge nothing is learned: these
-  // messages stay 1, and are sent as 1 again.
+  // Messages across the border of the image stay 1. Edges have no factors there, so messages that
+  // are sent outwards are 1, too.
   for (auto& message : messages_) message.assign(size, bfloat16_one);
   for (auto& message : before_) message.assign(size, bfloat16_one);
 }
@@ -335,7 +338,8 @@ void WrapCountPropagation::sweep_backward(const WrapCountModel& model) {
   }
 }
 
-/// The last sweep back, in which all messages of a pixel have come in before it sends its own.
+/// The last backward sweep. Before a pixel sends its messages it has received all messages of its
+/// neighbours, so its belief is read then.
 void WrapCountPropagation::read_backward(const WrapCountModel& model, WrapCountBeliefs& beliefs) {
   const DiagonalLayout& layout = model.layout();
   const auto counts = static_cast<std::size_t>(model.counts());
@@ -369,8 +373,8 @@ void WrapCountPropagation::read_backward(const WrapCountModel& model, WrapCountB
   beliefs.largest_message_change = change;
 }
 
-/// Keeps the messages whose change the last sweep back will watch: those that were sent back, or 1
-/// before there were any.
+/// Copies the messages whose change the last backward sweep will measure: those of the backward
+/// sweep before it, or ones if there was none.
 void WrapCountPropagation::remember_watched(const WrapCountModel& model, bool was_sent) {
   const DiagonalLayout& layout = model.layout();
   const auto counts = static_cast<std::size_t>(model.counts());

@@ -16,15 +16,15 @@
 namespace tofmap {
 namespace {
 
-/// Nodes of one row: the marginals of their configurations, and the counts of their pixels.
+/// One row of jump nodes: the marginals of their configurations, and the wrap counts of p and q.
 struct NodeRow {
   Configurations<const float> marginal;
   const std::uint8_t* count_p;
   const std::uint8_t* count_q;
 };
 
-/// The probability of the step that the counts make at each node, and whether there is a node;
-/// both 0 where it is absent.
+/// For each jump node, finds the probability of the step between the wrap counts of its pixels, and
+/// whether the node is present (1 or 0). The probability of an absent node is 0.
 TOFMAP_VECTOR_CLONES void find_steps(int nodes, const NodeRow& row_, float* steps, float* present) {
   const NodeRow row = row_;
 #pragma GCC ivdep
@@ -38,8 +38,7 @@ TOFMAP_VECTOR_CLONES void find_steps(int nodes, const NodeRow& row_, float* step
   }
 }
 
-/// Steps at the nodes of a row, with room for one that is absent before the first and after the
-/// last.
+/// The steps at the jump nodes of a row, padded by an absent node at both ends.
 struct Steps {
   std::vector<float> probability;
   std::vector<float> present;
@@ -60,8 +59,8 @@ struct Steps {
   }
 };
 
-/// Means over the nodes around each pixel of a row: `across` to its left and right, `above` and
-/// `below` it.
+/// Mean probability over the jump nodes around each pixel of a row: nodes i and i + 1 of `across`
+/// are left and right of pixel i, nodes i of `above` and `below` are above and below it.
 TOFMAP_VECTOR_CLONES void fill_means(int pixels, const float* across, const float* across_present,
                                      const float* above, const float* above_present,
                                      const float* below, const float* below_present,
@@ -76,14 +75,14 @@ TOFMAP_VECTOR_CLONES void fill_means(int pixels, const float* across, const floa
   }
 }
 
-/// Multiplies odds, in place.
+/// Multiplies the odds of two probabilities; the result replaces `probability`.
 TOFMAP_VECTOR_CLONES void multiply_odds(int pixels, const float* other, const std::uint8_t* counts,
                                         float* probability) {
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
     const float both = other[i] * probability[i];
     const float neither = (1 - other[i]) * (1 - probability[i]);
-    // A residual that is sure and neighbours that are sure of the opposite leave nothing known.
+    // If residual and neighbours contradict each other with certainty, nothing is known.
     const float odds = both + neither > 0 ? both / (both + neither) : 0.5F;
     probability[i] = counts[i] == invalid_wrap_count ? 0.0F : odds;
   }

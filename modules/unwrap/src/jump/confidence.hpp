@@ -8,14 +8,15 @@
 
 namespace tofmap {
 
-/// How sure the chosen counts are, 0 … 1, before calibration. 0 where a count is invalid.
+// Confidences of the methods that estimate phase jumps. They rank pixels; they are not calibrated.
 
-/// What neighbours say: the mean marginal probability of the steps to the (up to four)
-/// neighbours; 0 for a step of more than one. One half for a pixel that has no neighbour.
+/// The confidence by neighbours, 0 … 1: the mean marginal probability of the steps from a pixel to
+/// its up to four neighbours. A step of more than one wrap has probability 0. 1/2 for pixels
+/// without neighbours, 0 where the wrap count is invalid.
 ImageF jump_confidence(const ImageU8& counts, const JumpProbabilities& marginals);
 
-/// Neighbours and the pixel's own residual together, their odds multiplied as of independent
-/// witnesses.
+/// The confidence by neighbours and by the pixel's own residual, 0 … 1: the odds of both are
+/// multiplied as if they were independent. 0 where the wrap count is invalid.
 ImageF jump_and_residual_confidence(const ImageU8& counts, const JumpProbabilities& marginals,
                                     const ResidualCost& residual);
 

@@ -8,13 +8,13 @@
 
 namespace tofmap {
 
-/// The planes of the three configurations of jump nodes, from some row of nodes on. `Value` is
-/// float, or const float to read.
+/// Pointers into the planes of the three configurations of jump nodes, at the beginning of a row.
+/// `Value` is float or const float.
 template <class Value>
 struct Configurations {
-  Value* minus;
-  Value* none;
-  Value* plus;
+  Value* minus;  ///< configuration −1: the wrap count grows by one
+  Value* none;   ///< configuration 0
+  Value* plus;   ///< configuration +1
 
   template <class Planes>
   Configurations(Planes& planes, Eigen::Index row)

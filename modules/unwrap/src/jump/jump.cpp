@@ -12,7 +12,7 @@
 namespace tofmap {
 namespace {
 
-/// Counts as anchored, kept within 0 … count_a − 1; invalid where there is no region.
+/// The anchored wrap counts, clamped to 0 … count_a − 1; invalid in pixels without a region.
 ImageU8 absolute_counts(const RelativeCounts& relative, int count_a) {
   ImageU8 counts =
       ImageU8::Constant(relative.count.rows(), relative.count.cols(), invalid_wrap_count);
@@ -25,7 +25,7 @@ ImageU8 absolute_counts(const RelativeCounts& relative, int count_a) {
   return counts;
 }
 
-/// Counts, and how sure they are.
+/// The result of integration.
 struct Integrated {
   ImageU8 counts;
   ImageF confidence;
@@ -36,7 +36,8 @@ Integrated integrated(const JumpEstimate& jumps, const MeasuredFrame& frame,
                       const UnwrapLimits& limits, const JumpMethod& method) {
   const RelativeCounts relative =
       integrate_jumps(jumps.beliefs.marginals, jumps.evidence, frame.valid);
-  // A wrapped range is corrected by adding λ_A (section II.C), once.
+  // The paper corrects a wrapped range by adding λ_A once (section II.C), so it has two wrap
+  // counts.
   ImageU8 counts = absolute_counts(relative, method.has_all_counts ? limits.count_a : 2);
   ImageF confidence = jump_confidence(counts, jumps.beliefs.marginals);
   return {std::move(counts), std::move(confidence), relative.region_count};

@@ -8,7 +8,8 @@
 
 namespace tofmap {
 
-/// The methods `paper`, `jump` and `single`: evidence, propagation, integration, anchors.
+/// The methods `paper`, `jump` and `single`: computes the evidence for phase jumps, propagates
+/// beliefs, and integrates the jumps into absolute wrap counts.
 UnwrapResult unwrap_by_jumps(JumpEstimator& estimator, const MeasuredFrame& frame,
                              const UnwrapLimits& limits, const JumpMethod& method,
                              const UnwrapOptions& options);

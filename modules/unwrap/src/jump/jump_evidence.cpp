@@ -18,20 +18,20 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// What is known of the nodes of a row: phases of their pixels p and q and the noise of these, and
-/// medians on both sides, of the reconstruction and of the wrapped phase.
+/// The inputs of the jump nodes of one row: phases of their pixels p and q, the noise of these
+/// phases, and the medians of equation 3.
 struct NodeRow {
   const float* phase_p;
   const float* phase_q;
   const float* noise_p;
   const float* noise_q;
-  const float* r_neg = nullptr;
-  const float* a_neg = nullptr;
+  const float* r_neg = nullptr;  ///< medians of the reconstruction R̂
+  const float* a_neg = nullptr;  ///< medians of the wrapped phase
   const float* r_pos = nullptr;
   const float* a_pos = nullptr;
 };
 
-/// JumpTerms as kernels need them.
+/// JumpTerms in the form that the vectorised loops need.
 struct Factors {
   float slope_variance;
   float half_precision;
@@ -45,7 +45,7 @@ struct Factors {
         trust_frequency(static_cast<float>(terms.trust_frequency)) {}
 };
 
-/// What both frequencies say of the difference of counts, within what a configuration can say.
+/// The difference of wrap counts by both frequencies (equation 3), limited to −1 … 1.
 [[gnu::always_inline]] inline float wraps_between(const NodeRow& row, int i) {
   const float wraps = std::abs(row.r_neg[i] - row.a_neg[i]) - std::abs(row.r_pos[i] - row.a_pos[i]);
   const float above = wraps > -1 ? wraps : -1.0F;
@@ -78,7 +78,7 @@ template <bool two_frequencies>
     const float minus = product(-1);
     const float none = product(0);
     const float plus = product(1);
-    // A sum, unlike a choice, leaves the compiler no branch.
+    // NaN if the node is absent, else 0. Adding it avoids a branch.
     const float absent = 0 * step;
     const float scale = 1 / (minus + none + plus) + absent;
     out.minus[i] = minus * scale;
@@ -99,11 +99,11 @@ TOFMAP_VECTOR_CLONES void fill_from_two_frequencies(int nodes, const NodeRow& ro
   fill_nodes<true>(nodes, NodeRow(row), Factors(factors), Configurations<float>(out));
 }
 
-/// Windows treated at a time, one in each lane.
+/// Windows processed at a time, one in each lane.
 constexpr int median_lanes = 64;
 
-/// Medians of windows whose k-th pixels are in pixels[k], for up to median_lanes windows. `window`
-/// has room for a line of lanes a pixel.
+/// Medians of up to median_lanes windows; pixels[k] points to the k-th pixels of all windows.
+/// `window` is memory for median_lanes numbers per pixel of a window.
 TOFMAP_VECTOR_CLONES void window_medians(int windows, const std::vector<const float*>& pixels,
                                          float* window, float* medians) {
   constexpr float missing = std::numeric_limits<float>::infinity();
@@ -119,7 +119,7 @@ TOFMAP_VECTOR_CLONES void window_medians(int windows, const std::vector<const fl
       present[static_cast<std::size_t>(i)] += is_present ? 1 : 0;
     }
   }
-  // Odd and even neighbours change places in turn until all lanes are sorted.
+  // Odd-even transposition sort of all lanes at once.
   for (int round = 0; round < size; ++round) {
     for (int k = round % 2; k + 1 < size; k += 2) {
       float* lower = window + k * median_lanes;
@@ -145,7 +145,7 @@ TOFMAP_VECTOR_CLONES void window_medians(int windows, const std::vector<const fl
   std::copy_n(middle.begin(), windows, medians);
 }
 
-/// Medians of windows, as many as wanted. `pixels` is moved along.
+/// Medians of any number of windows. Advances `pixels` beyond the last window.
 void line_medians(Eigen::Index windows, std::vector<const float*>& pixels,
                   std::vector<float>& window, float* medians) {
   window.resize(pixels.size() * median_lanes);
@@ -156,7 +156,7 @@ void line_medians(Eigen::Index windows, std::vector<const float*>& pixels,
   }
 }
 
-/// Medians on both sides of the nodes to the right of pixels, a row at a time.
+/// Medians on both sides of the jump nodes between horizontal neighbours, one row at a time.
 class RowMedians {
  public:
   RowMedians(const ImageF& image, int window_px)
@@ -173,20 +173,21 @@ class RowMedians {
     line_medians(windows_, pixels_, window_, medians_.data());
   }
 
-  // Windows are numbered by where they end: those of the node after pixel t end at t and t + k.
+  // A window has the number of its last pixel: those of the node after pixel t end at t and t + k.
   const float* neg() const { return medians_.data(); }
   const float* pos() const { return medians_.data() + pixels_.size(); }
 
  private:
   const ImageF& image_;
   Eigen::Index windows_;
-  std::vector<float> line_;  ///< a row, with missing pixels before and after it
+  std::vector<float> line_;  ///< a row, padded by NaN at both ends
   std::vector<float> medians_;
   std::vector<const float*> pixels_;
   std::vector<float> window_;
 };
 
-/// Medians on both sides of the nodes below pixels, a row after the other from the first on.
+/// Medians on both sides of the jump nodes between vertical neighbours. Rows must be visited in
+/// ascending order from the first one.
 class ColumnMedians {
  public:
   ColumnMedians(const ImageF& image, int window_px)
@@ -219,9 +220,9 @@ class ColumnMedians {
 
   const ImageF& image_;
   Eigen::Index row_ = 0;
-  Eigen::Index next_ = 0;  ///< row at which windows end that come next
+  Eigen::Index next_ = 0;  ///< last row of the windows to be computed next
   std::vector<float> no_row_;
-  std::vector<float> medians_;  ///< of windows that end at k + 1 successive rows, in a ring
+  std::vector<float> medians_;  ///< ring buffer: windows that end at k + 1 successive rows
   std::vector<const float*> pixels_;
   std::vector<float> window_;
 };
@@ -238,7 +239,8 @@ SideMedians side_medians(const ImageF& image, int window_px, Eigen::Index rows, 
   return out;
 }
 
-/// Evidence of the nodes of one direction, whose q is `q_from_p` pixels after p.
+/// Computes the evidence of the jump nodes of one direction; the index of q is that of p plus
+/// `q_from_p`.
 template <class Medians>
 void fill_direction(const ImageF& phase, const ImageF& noise_cycles, const ImageF& reconstruction,
                     const JumpTerms& terms, Eigen::Index q_from_p, std::array<ImageF, 3>& out) {

@@ -22,20 +22,21 @@
 namespace tofmap {
 namespace {
 
-/// A jump node between the pixels p and q, numbered row by row.
+/// A jump node between the pixels p and q, which are indices row by row, with its most probable
+/// step.
 struct Bridge {
   int p;
   int q;
   int step;         ///< n(q) − n(p)
-  float certainty;  ///< marginal of the step
-  int rank_step;    ///< the lower, the higher its rank
+  float certainty;  ///< marginal probability of the step
+  int rank_step;    ///< see rank_step(); 0 is the highest rank
 };
 
-/// Nodes of one direction, decided, at the places of their pixels p.
+/// The most probable steps of all jump nodes of one direction, at the indices of their pixels p.
 struct Decisions {
   std::vector<std::int8_t> step;  ///< n(q) − n(p)
-  std::vector<float> support;  ///< marginal of the step times the node's own evidence for it; NaN
-                               ///< where there is no node
+  std::vector<float> support;     ///< marginal probability of the step times its evidence (equation
+                                  ///< 9); NaN where there is no node
 
   explicit Decisions(Eigen::Index pixels)
       : step(static_cast<std::size_t>(pixels)),
@@ -58,7 +59,7 @@ TOFMAP_VECTOR_CLONES void decide(int nodes, const ReadConfigurations& marginal_,
     const float side = is_minus ? minus : plus;
     const float side_evidence = is_minus ? evidence.minus[i] : evidence.plus[i];
     const bool is_none = none >= side;
-    // Configuration −1 is a count that grows.
+    // Configuration −1 means that the wrap count grows by one.
     const int side_step = is_minus ? 1 : -1;
     step[i] = static_cast<std::int8_t>(is_none ? 0 : side_step);
     support[i] = is_none ? none * evidence.none[i] : side * side_evidence;
@@ -76,7 +77,7 @@ Decisions decided(const std::array<ImageF, 3>& marginal, const std::array<ImageF
   return out;
 }
 
-/// The greatest number that is not NaN; at least 0.
+/// The largest of the values that are not NaN; at least 0.
 TOFMAP_VECTOR_CLONES float greatest_of(const float* values, int count) {
   constexpr int lanes = DiagonalLayout::lanes;
   std::array<float, lanes> greatest{};
@@ -94,18 +95,19 @@ TOFMAP_VECTOR_CLONES float greatest_of(const float* values, int count) {
   return result;
 }
 
-/// Ranks are sorted in steps, which is linear in time: by what they lack to 1, eight steps an
-/// octave, down to what rounding leaves of it.
+// Bridges are sorted by rank with a bucket sort, which takes linear time. The buckets are steps of
+// 1 − rank on a logarithmic scale, eight per octave, down to the rounding error of a float.
 constexpr float least_lack = 1.0F / (1 << 24);
 constexpr int step_of_lack(float lack) {
-  constexpr int shift = 20;  // leaves the exponent and three digits
+  constexpr int shift = 20;  // leaves the exponent and three binary digits
   return (std::bit_cast<std::int32_t>(lack) - std::bit_cast<std::int32_t>(least_lack)) >> shift;
 }
 constexpr int rank_steps = step_of_lack(1) + 1;
 int rank_step(float rank) { return step_of_lack(std::max(1 - rank, least_lack)); }
 
-/// All bridges of a frame. Their rank is their support over the greatest of the frame: what a node
-/// can have at most depends on how much the terms of the evidence are trusted.
+/// All bridges of a frame. The rank of a bridge is its support over the largest support in the
+/// frame, since the support that a node can reach depends on the trust in the terms of the
+/// evidence.
 class Bridges {
  public:
   Bridges(const JumpProbabilities& marginals, const JumpProbabilities& evidence)
@@ -122,17 +124,17 @@ class Bridges {
   int rows() const { return rows_; }
   int cols() const { return cols_; }
 
-  /// Whether certain nodes lie between pixel p and its right or lower neighbour. They are wrong
-  /// once in a hundred times at most, and need no order among them.
+  /// Whether the jump node between pixel p and its right or lower neighbour is certain, that is,
+  /// its rank is at least 0.99. Certain nodes need no order among themselves.
   bool is_certain_right_of(int p) const { return is_certain(x_, p); }
   bool is_certain_below(int p) const { return is_certain(y_, p); }
 
-  /// n(q) − n(p), where there is a node.
+  /// n(q) − n(p) of the right or lower neighbour q, if there is a jump node.
   int step_right_of(int p) const { return x_.step[static_cast<std::size_t>(p)]; }
   int step_below(int p) const { return y_.step[static_cast<std::size_t>(p)]; }
 
-  /// Those for which `is_wanted(p, q)`, from the highest rank to the lowest; equals stay in image
-  /// order.
+  /// The bridges for which `is_wanted(p, q)` is true, from the highest rank to the lowest. Bridges
+  /// of the same rank step keep the order of the image.
   template <class IsWanted>
   std::vector<Bridge> sorted(const IsWanted& is_wanted) const {
     std::array<int, rank_steps + 1> first{};
@@ -149,7 +151,7 @@ class Bridges {
     };
     for (int row = 0; row < rows_; ++row) {
       for (int p = row * cols_; p < (row + 1) * cols_; ++p) {
-        append(x_, marginals_.x, p, p + 1, p - row);  // rows of these nodes are shorter by one
+        append(x_, marginals_.x, p, p + 1, p - row);  // rows of x nodes are shorter by one
         append(y_, marginals_.y, p, p + cols_, p);
       }
     }
@@ -173,11 +175,11 @@ class Bridges {
   int cols_;
   Decisions x_;
   Decisions y_;
-  float greatest_ = 0;  ///< support
+  float greatest_ = 0;  ///< largest support in the frame
 };
 
-/// Reads the forest back into images: regions are numbered in image order, and anchored by
-/// `anchor(root)`, the count of the root.
+/// Converts the forest into images. Regions are numbered in the order of the image; `anchor(root)`
+/// gives the absolute wrap count of a root.
 template <class Anchor>
 RelativeCounts read_forest(OffsetUnion& forest, const ImageU8& valid, const Anchor& anchor) {
   RelativeCounts out;
@@ -198,9 +200,9 @@ RelativeCounts read_forest(OffsetUnion& forest, const ImageU8& valid, const Anch
   return out;
 }
 
-/// Makes the smaller of two trees part of the larger one, at their pixels p and q with
-/// n(q) − n(p) = step; unless they are one, or `may_join(root, child, offset)` of their roots is
-/// not so.
+/// Joins the trees of the pixels p and q, with n(q) − n(p) = step: the smaller tree becomes part of
+/// the larger one. Does nothing if p and q are in the same tree, or if
+/// `may_join(root, child, offset)` of their roots returns false.
 template <class MayJoin>
 void join_trees(int pixel_p, int pixel_q, int step, OffsetUnion& forest, const MayJoin& may_join) {
   const OffsetUnion::Place p = forest.find(pixel_p);
@@ -214,8 +216,8 @@ void join_trees(int pixel_p, int pixel_q, int step, OffsetUnion& forest, const M
   if (may_join(root, child, child_offset)) forest.join(root, child, child_offset);
 }
 
-/// Joins what certain bridges join for which `is_undisputed(p, q, step)`, row by row: they are most
-/// of all, and cost little in this order.
+/// Joins pixels along all certain bridges for which `is_undisputed(p, q, step)` is true. These are
+/// most of the bridges; joining them row by row is cheap.
 template <class IsUndisputed>
 class CertainJoins {
  public:
@@ -237,7 +239,7 @@ class CertainJoins {
   }
 
  private:
-  /// Runs of pixels become trees of depth one.
+  /// Joins the pixels of a row. Each run of joined pixels becomes a tree of depth one.
   void join_runs(int begin) {
     int run = begin;
     int offset = 0;
@@ -256,7 +258,7 @@ class CertainJoins {
     }
   }
 
-  /// A single bridge between two runs is enough.
+  /// Joins the runs of a row to those of the row above. One bridge between two runs is enough.
   void join_to_row_above(int begin) {
     int joined_above = -1;
     int joined = -1;
@@ -275,13 +277,13 @@ class CertainJoins {
   const Bridges& bridges_;
   const IsUndisputed& is_undisputed_;
   OffsetUnion& forest_;
-  std::vector<int> run_;  ///< the first pixel of the run that a pixel is in
+  std::vector<int> run_;  ///< the first pixel of the run of each pixel
   std::vector<int> run_above_;
 };
 
-/// Joins what the other bridges join, from the highest rank to the lowest, where
-/// `may_join(p, q, offset, certainty)` lets the tree with the root q become part of the larger one
-/// with the root p. It may take note of that.
+/// Joins trees along the other bridges, from the highest rank to the lowest. Before each join,
+/// `may_join(root, child, offset, certainty)` decides whether the tree with the root `child`
+/// becomes part of the larger one with the root `root`. If it returns true, the trees are joined.
 template <class MayJoin>
 void join_others(const Bridges& bridges, OffsetUnion& forest, const MayJoin& may_join) {
   const auto is_open = [&](int p, int q) { return forest.parent(p) != forest.parent(q); };
@@ -292,7 +294,7 @@ void join_others(const Bridges& bridges, OffsetUnion& forest, const MayJoin& may
   }
 }
 
-/// The least count of every region at 0.
+/// Anchors every region so that its smallest wrap count is 0.
 void anchor_at_zero(RelativeCounts& counts) {
   std::vector<int> least(counts.anchor.size(), std::numeric_limits<int>::max());
   for (Eigen::Index i = 0; i < counts.region.size(); ++i) {

@@ -14,12 +14,13 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// Evidence and messages are kept within these odds: loops make beliefs grow with every iteration,
-/// and no sum of products may leave the range of a float.
+/// Evidence and messages are limited to odds from 1 / greatest_odds to greatest_odds, so that sums
+/// of their products stay within the range of a float. Without a limit, loops would make beliefs
+/// grow with every iteration.
 constexpr float greatest_odds = 1e6F;
 
-/// Odds of configurations −1 and +1 against 0. Evidence and messages need no other scale, and two
-/// numbers instead of three.
+/// Evidence or message as the odds of configurations −1 and +1 against 0: two numbers instead of
+/// three, and no normalisation.
 struct Odds {
   float minus;
   float plus;
@@ -34,9 +35,11 @@ struct Odds {
   return above < greatest_odds ? above : greatest_odds;
 }
 
-/// Message of a curl node to the jump node whose configuration is i = p + q − r by the curl
-/// constraint: μ_i = Σ_jkl δ(i − (j + k − l)) p_j q_k r_l, over all three indices (the paper's
-/// sum names j twice), as a product of polynomials: first p and q, then r reversed.
+/// The message of a curl node to the jump node whose configuration is i = j + k − l by the
+/// zero-curl constraint, from the messages p(j), q(k) and r(l) of the other three jump nodes:
+///   μ(i) = Σ_jkl δ(i − (j + k − l)) p(j) q(k) r(l).
+/// The sum is over all three indices; the paper prints j twice. It is computed as a product of
+/// polynomials: p by q, then by r reversed.
 [[gnu::always_inline]] inline Odds curl_message(const Odds& p, const Odds& q, const Odds& r) {
   const float pq_minus_2 = p.minus * q.minus;
   const float pq_minus_1 = p.minus + q.minus;
@@ -50,7 +53,7 @@ struct Odds {
   return {bounded(minus * scale), bounded(plus * scale)};
 }
 
-/// The largest change of an element of a message, of elements that sum to 1.
+/// The largest change of an element of a message that is normalised to the sum 1.
 [[gnu::always_inline]] inline float change_of(const Odds& before, const Odds& after) {
   const float sum_before = 1 + before.minus + before.plus;
   const float sum_after = 1 + after.minus + after.plus;
@@ -61,28 +64,27 @@ struct Odds {
   return (side > none ? side : none) / (sum_before * sum_after);
 }
 
-/// The most likely configuration; of equals 0, then −1.
+/// The most probable configuration; of equally probable ones 0, then −1.
 [[gnu::always_inline]] inline float decided(const Odds& belief) {
   const float side = belief.minus >= belief.plus ? -1.0F : 1.0F;
   const float greater = belief.minus >= belief.plus ? belief.minus : belief.plus;
   return greater > 1 ? side : 0.0F;
 }
 
-/// What a diagonal has for each of its pixels: evidence of the nodes to the right (x) and down (y),
-/// NaN where there is none, and the newest message of every curl node to each of its four jump
-/// nodes, kept at the jump node. Odds take two planes. Nodes at the border keep even odds on the
-/// side that has no curl node.
+/// The planes of each diagonal; odds take two of them. For the jump nodes to the right of (s_x) and
+/// below (s_y) each pixel, they hold the evidence, NaN where the node is absent, and the latest
+/// messages from both curl nodes. Messages from outside of the image remain even odds.
 enum Plane {
   evidence_x = 0,
   evidence_y = 2,
-  from_above = 4,  ///< to s_x, by the curl node above it
-  from_below = 6,
-  from_left = 8,  ///< to s_y
-  from_right = 10,
+  from_above = 4,   ///< to s_x from the curl node above it
+  from_below = 6,   ///< to s_x from the curl node below it
+  from_left = 8,    ///< to s_y from the curl node left of it
+  from_right = 10,  ///< to s_y from the curl node right of it
   plane_count = 12,
 };
 
-/// The planes of one diagonal, from some row on.
+/// The planes of one diagonal, beginning at some row.
 struct Diagonal {
   float* data;
   std::size_t step;
@@ -104,16 +106,16 @@ Diagonal diagonal_at(std::vector<float>& planes, const DiagonalLayout& layout, i
   return {planes.data() + layout.place(diagonal, row, plane_count), layout.plane_step(diagonal)};
 }
 
-/// The messages of four jump nodes to the curl node between them: their evidence times the message
-/// of their other curl node.
+/// The messages from the four jump nodes of a curl node: the evidence of each times the message of
+/// its other curl node.
 struct CurlInputs {
   Odds top;
   Odds left;
   Odds bottom;
   Odds right;
 
-  /// Of row i of `here`; `next` is the diagonal after it. In the first iteration nothing has been
-  /// sent back or up.
+  /// The inputs of the curl node in row i of diagonal `here`; `next` is the diagonal after it. In
+  /// the first iteration no message has been sent backward or up.
   [[gnu::always_inline]] CurlInputs(const Diagonal& here, const Diagonal& next, int i,
                                     bool is_first)
       : top(here.odds(evidence_x, i) * here.odds(from_above, i)),
@@ -125,19 +127,20 @@ struct CurlInputs {
     right = right * next.odds(from_right, i);
   }
 
-  /// There is a curl node where no jump node is absent. A sum, unlike four choices, has no branch.
+  /// Whether all four jump nodes are present, so that there is a curl node. A sum avoids branches.
   [[gnu::always_inline]] bool has_curl() const {
     const float sum = top.minus + left.minus + bottom.minus + right.minus;
     return sum == sum;
   }
 };
 
+/// The message, or even odds if there is no curl node.
 [[gnu::always_inline]] inline Odds if_curl(bool has_curl, const Odds& message) {
   return {has_curl ? message.minus : 1.0F, has_curl ? message.plus : 1.0F};
 }
 
-/// Each message solves the curl constraint for the jump node it goes to: right = bottom + left −
-/// top, and so on.
+/// Sends the messages forward and down. Each message solves the zero-curl constraint for the jump
+/// node that receives it, for example right = bottom + left − top.
 template <bool is_first>
 [[gnu::always_inline]] inline void send_on(int rows, const Diagonal& here, const Diagonal& next) {
 #pragma GCC ivdep
@@ -159,23 +162,24 @@ TOFMAP_VECTOR_CLONES void send_first_forward_and_down(int rows, const Diagonal& 
   send_on<true>(rows, Diagonal(here), Diagonal(next));
 }
 
-/// What the sweeps back find out about beliefs. Entries of a pixel's row.
+/// What the backward and up sweeps determine besides messages; each array has an element per row.
 struct Findings {
-  float* jump_x;  ///< decided configurations of this diagonal
-  float* jump_y;
-  const float* next_jump_x;
-  const float* next_jump_y;
-  float* change;  ///< the largest so far
+  float* jump_x;             ///< most probable s_x of this diagonal
+  float* jump_y;             ///< most probable s_y of this diagonal
+  const float* next_jump_x;  ///< most probable s_x of the next diagonal
+  const float* next_jump_y;  ///< most probable s_y of the next diagonal
+  float* change;             ///< largest change of a message so far
 };
 
-/// Returns how many curl nodes are not zero.
+/// Sends the messages backward and up. Returns the number of curl nodes whose constraint is
+/// violated.
 template <bool is_first>
 [[gnu::always_inline]] inline int send_back(int rows, const Diagonal& here, const Diagonal& next,
                                             const Findings& findings) {
   int violations = 0;
 #pragma GCC ivdep
   for (int i = 0; i < rows; ++i) {
-    // What was sent back and up on the next diagonal is of this iteration.
+    // The next diagonal has already sent its messages of this iteration backward and up.
     const CurlInputs in(here, next, i, false);
     const bool has_curl = in.has_curl();
     const Odds to_left = if_curl(has_curl, curl_message(in.top, in.right, in.bottom));
@@ -208,11 +212,10 @@ TOFMAP_VECTOR_CLONES int send_first_backward_and_up(int rows, const Diagonal& he
   return send_back<true>(rows, Diagonal(here), Diagonal(next), Findings(findings));
 }
 
-/// Where a curl node sends: to its right, left, upper or lower jump node.
+/// The jump node of a curl node that a message is sent to.
 enum class Towards { right, left, top, bottom };
 
-/// The jump node of curl node i that a sweep sends to: its pixel's diagonal and row, and where it
-/// keeps the message.
+/// Where the message of curl node i to one of its jump nodes is stored.
 struct Place {
   const Diagonal& diagonal;
   Plane plane;
@@ -235,6 +238,7 @@ template <Towards to>
   if constexpr (to == Towards::bottom) return curl_message(in.top, in.right, in.left);
 }
 
+/// Sends the messages of one sweep.
 template <Towards to>
 [[gnu::always_inline]] inline void send_one_way(int rows, const Diagonal& here,
                                                 const Diagonal& next, float* changes) {
@@ -266,7 +270,7 @@ TOFMAP_VECTOR_CLONES void send(Towards to, int rows, const Diagonal& here_, cons
 }
 
 /// Sends one message from every curl node, diagonal by diagonal in the direction of the messages.
-/// `changes`, the largest so far, has a number for every row of the image.
+/// `changes` holds the largest change so far for every row of the image.
 void sweep(Towards to, const DiagonalLayout& layout, std::vector<float>& planes,
            std::vector<float>& changes) {
   const bool is_onward = to == Towards::right || to == Towards::bottom;
@@ -280,18 +284,19 @@ void sweep(Towards to, const DiagonalLayout& layout, std::vector<float>& planes,
   }
 }
 
-/// Rows whose nodes are brought from images to diagonals, or back, before those of the next rows:
-/// few enough for their lines to stay in the first-level cache.
+/// Rows that are copied between images and diagonals at a time: few enough for their cache lines to
+/// stay in the first-level cache.
 constexpr int band_rows = 32;
 
-/// Probabilities of the configurations of nodes in a band.
+/// Probabilities of the configurations of jump nodes on one diagonal within a band of rows.
 struct Triples {
   std::array<float, band_rows> minus;
   std::array<float, band_rows> none;
   std::array<float, band_rows> plus;
 };
 
-/// Odds of probabilities, NaN where these are. No curl node is there, so nothing of it spreads.
+/// Converts probabilities to odds. NaN stays NaN; it does not spread, since there is no curl node
+/// at an absent jump node.
 TOFMAP_VECTOR_CLONES void load_odds(int rows, const Triples& probability, float* minus_odds,
                                     float* plus_odds) {
   const float* minus = probability.minus.data();
@@ -306,7 +311,7 @@ TOFMAP_VECTOR_CLONES void load_odds(int rows, const Triples& probability, float*
   }
 }
 
-/// Normalised products of the evidence and both curls' messages.
+/// Equation 8: the normalised product of the evidence and the messages of both curl nodes.
 TOFMAP_VECTOR_CLONES void read_probabilities(int rows, const Diagonal& here_, Plane evidence,
                                              Plane one, Plane other, Triples& probability) {
   const Diagonal here = here_;
@@ -323,19 +328,19 @@ TOFMAP_VECTOR_CLONES void read_probabilities(int rows, const Diagonal& here_, Pl
   }
 }
 
-/// Nodes of one diagonal in successive rows, a step apart in their images.
+/// The jump nodes of one diagonal in successive rows.
 struct Slant {
   int diagonal;
-  int row;
-  int rows;
-  Eigen::Index place;
-  Eigen::Index step;
+  int row;             ///< the first row
+  int rows;            ///< the number of rows
+  Eigen::Index place;  ///< index of the first node in its image
+  Eigen::Index step;   ///< from one node to the next in its image
 };
 
-/// Calls `visit` with all nodes of an image of `rows` x `cols` of them, band by band.
+/// Calls `visit` for every Slant of an image of `rows` x `cols` jump nodes, band by band.
 template <class Visit>
 void for_each_slant(Eigen::Index rows, Eigen::Index cols, const Visit& visit) {
-  if (rows == 0 || cols == 0) return;  // an image of one row or column
+  if (rows == 0 || cols == 0) return;  // the camera image has a single row or column
   const auto last_row = static_cast<int>(rows) - 1;
   const auto last_col = static_cast<int>(cols) - 1;
   for (int band = 0; band <= last_row; band += band_rows) {
@@ -394,7 +399,8 @@ void JumpPropagation::load(const JumpProbabilities& evidence) {
   load_nodes(evidence.y, evidence_y);
 }
 
-/// Without evidence, and with even messages: those that no curl node sends stay so.
+/// Resizes the buffers and sets all evidence to absent and all messages to even odds. Messages that
+/// no curl node sends remain even.
 void JumpPropagation::reset(int rows, int cols) {
   layout_ = DiagonalLayout(rows, cols);
   planes_.assign(layout_.size(plane_count), 1.0F);
@@ -465,7 +471,7 @@ void JumpPropagation::iterate_together(bool is_first, JumpBeliefs& beliefs) {
   sweep_backward_and_up(is_first, beliefs);
 }
 
-/// Even messages everywhere.
+/// Sets all messages to even odds.
 void JumpPropagation::forget_messages() {
   for (int d = -1; d <= layout_.diagonals(); ++d) {
     const Diagonal here = diagonal_at(planes_, layout_, d, layout_.begin(d) - 1);

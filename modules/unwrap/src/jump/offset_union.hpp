@@ -7,8 +7,8 @@
 
 namespace tofmap {
 
-/// Disjoint sets whose members know their integer offset to one another: the union-find of a
-/// spanning forest, where each edge tells a difference of counts.
+/// Union-find over a spanning forest in which each edge is a difference of wrap counts: the members
+/// of a set know their integer offsets from the root.
 class OffsetUnion {
  public:
   explicit OffsetUnion(int size) : members_(static_cast<std::size_t>(size)) {
@@ -20,9 +20,11 @@ class OffsetUnion {
     int offset;  ///< count(member) − count(root)
   };
 
+  /// The root of a member's set and the member's offset from it. Shortens the paths that it
+  /// follows.
   Place find(int number) {
     Member* at = &member(number);
-    // Paths are halved on the way: who points at a member points at the one beyond it afterwards.
+    // Path halving: every other member on the path is made to point at its grandparent.
     int offset = 0;
     while (member(at->parent).parent != at->parent) {
       const Member& next = member(at->parent);
@@ -37,31 +39,32 @@ class OffsetUnion {
   /// Makes every member point at its root.
   void flatten() {
     for (Member& at : members_) {
-      // Members come after their parents more often than not; those are flat then.
+      // Most members have a higher number than their parent, which then points at its root already.
       const Place place = find(at.parent);
       at.to_parent += place.offset;
       at.parent = place.root;
     }
   }
 
-  /// What a member points at: its root, if no set has been joined since the last flatten().
+  /// The parent of a member; this is its root if no sets have been joined since the last flatten().
   int parent(int number) const { return members_[static_cast<std::size_t>(number)].parent; }
 
-  /// Hangs the set of `child_root` under `root`: count(child_root) = count(root) + offset.
+  /// Joins the set of `child_root` to that of `root`, with count(child_root) = count(root) +
+  /// offset.
   void join(int root, int child_root, int offset) {
     member(child_root).parent = root;
     member(child_root).to_parent = offset;
     member(root).size += member(child_root).size;
   }
 
-  /// Members of the set with this root.
+  /// The number of members of the set with this root.
   int size(int root) const { return members_[static_cast<std::size_t>(root)].size; }
 
  private:
   struct Member {
     int parent = 0;
     int to_parent = 0;  ///< count(member) − count(parent)
-    int size = 1;       ///< of the set, if this is a root
+    int size = 1;       ///< size of the set if this is a root
   };
 
   Member& member(int number) { return members_[static_cast<std::size_t>(number)]; }

@@ -11,7 +11,7 @@
 namespace tofmap {
 namespace {
 
-/// Sums over differences of neighbours.
+/// Sums over the phase differences between neighbours.
 struct Differences {
   double count = 0;
   double sum = 0;

@@ -19,10 +19,10 @@
 namespace tofmap {
 namespace {
 
-/// Adds the costs `other` of counts in a row to `costs`, where the count of the other region is the
-/// one plus `offset`; any count beyond costs `beyond`. `other` has room for as many numbers before
-/// and after it, which are read and dropped: whole vectors are loaded wherever they begin. Returns
-/// the least sum.
+/// Adds the costs `other` of another region to `costs`, where the wrap count of the other region is
+/// that of this region plus `offset`. Wrap counts outside of `other` cost `beyond`. `other` must be
+/// padded by `size` numbers at both ends: whole vectors are read there, but their values are not
+/// used. Returns the smallest sum.
 TOFMAP_VECTOR_CLONES float add_shifted(const float* other, float beyond, int offset, int size,
                                        float* costs) {
   constexpr int lanes = DiagonalLayout::lanes;
@@ -44,7 +44,8 @@ TOFMAP_VECTOR_CLONES float add_shifted(const float* other, float beyond, int off
   return least_of(least);
 }
 
-/// ln(P / (1 − P)), never negative; certainties round to 1 in float, so it is bounded at 1 − 1e-6.
+/// ln(P / (1 − P)), at least 0. 1 − P is taken to be at least 1e-6, since P may round to 1 in
+/// float.
 float log_odds(float certainty) {
   return std::max(std::log(certainty / std::max(1 - certainty, 1e-6F)), 0.0F);
 }
@@ -94,29 +95,29 @@ bool RegionFits::join(int root, int other, int offset, float certainty, double o
   return true;
 }
 
-/// Sums of both regions, those of `from` complete, in both_: of enough pixels of `into` that the
-/// least sum is that of all pixels, but for what the others add to it at the best count of `into`.
-/// Returns the least sum.
+/// Computes the costs of both regions together in both_ and returns the smallest. `from` must be
+/// summed completely. Of `into`, only as many pixels are summed as are needed to find the smallest
+/// cost; the cost of the others at the best wrap count of `into` is left out.
 float RegionFits::add_contested(Region& into, const Region& from, int offset) {
   constexpr int first_pixels = 4;
   for (int pixels = first_pixels;; pixels *= 2) {
     sum_up(into, pixels);
     const float least = add_sums(into, from, offset);
-    // All pixels that are not summed have the same best count, and only widen its lead.
+    // All pixels that are not summed agree on the best wrap count, and only increase its lead.
     const bool is_sure =
         into.first == none || both_[static_cast<std::size_t>(into.best) + 1] <= least;
     if (is_sure) return least;
   }
 }
 
-/// The sums of both slots in both_; returns the least.
+/// Adds the sums of both slots into both_ and returns the smallest.
 float RegionFits::add_sums(const Region& into, const Region& from, int offset) {
   std::copy_n(slot(into.slot), size_, both_.data());
   const float beyond = ResidualCost::bound * static_cast<float>(from.summed);
   return add_shifted(slot(from.slot), beyond, offset, size_, both_.data());
 }
 
-/// Makes both_ the sums of `into`.
+/// Moves both_ into the slot of `into` and frees the slot of `from`.
 void RegionFits::take_sums(Region& into, Region& from) {
   std::ranges::copy(both_, slot(into.slot));
   into.summed += std::exchange(from.summed, 0);
@@ -140,7 +141,7 @@ int RegionFits::new_slot() {
   return number;
 }
 
-/// Sums the costs of up to so many more pixels of a region.
+/// Sums the costs of at most `pixels` further pixels of a region.
 void RegionFits::sum_up(Region& of, int pixels) {
   if (of.slot == none) of.slot = new_slot();
   constexpr int batch_size = 128;
@@ -148,7 +149,7 @@ void RegionFits::sum_up(Region& of, int pixels) {
   while (of.first != none && pixels > 0) {
     int size = 0;
     for (; of.first != none && pixels > 0 && size < batch_size; --pixels) {
-      // All counts beyond the limits cost the same, so offsets need not go farther than those.
+      // All wrap counts outside the limits cost the same, so larger offsets make no difference.
       const int offset = std::clamp(forest_.find(of.first).offset, -size_, size_);
       batch[static_cast<std::size_t>(size++)] = {of.first, offset};
       of.first = next_[static_cast<std::size_t>(of.first)];
@@ -160,7 +161,7 @@ void RegionFits::sum_up(Region& of, int pixels) {
   if (of.first == none) of.last = none;
 }
 
-/// Gives the pixels that are not summed yet to another region.
+/// Moves the pixels that are not summed yet from one region to another.
 void RegionFits::hand_over(Region& from, Region& into) {
   if (from.first == none) return;
   if (into.first == none) {

@@ -13,24 +13,26 @@
 
 namespace tofmap {
 
-/// How well regions fit the residual. A region is named by its root in a forest, and its count is
-/// the root's.
+/// How well the wrap counts of regions fit the inter-frequency residuals of their pixels. A region
+/// is identified by its root in a forest; the wrap count of the region is that of its root.
 ///
-/// Most joins are between regions whose best counts agree; then both fit together as well as apart,
-/// and their pixels need only be remembered. Where they do not, costs of all counts are summed, of
-/// as many pixels as decide the matter.
+/// Most joins are between regions whose best wrap counts agree. Their common fit is as good as
+/// their separate fits, so their lists of pixels are only concatenated. For other joins, the costs
+/// of all wrap counts are summed over as many pixels as the decision requires.
 class RegionFits {
  public:
-  /// The regions are the trees of a flat forest. `nearest` is the best count of each pixel, and all
-  /// pixels of a tree make the same one best for the root. Invalid ones take no part.
+  /// The initial regions are the trees of `forest`, which must be flat (OffsetUnion::flatten).
+  /// `nearest` is the best wrap count of each pixel by its own residual; all pixels of a tree must
+  /// agree on the wrap count of the root. Pixels with invalid_wrap_count take no part.
   RegionFits(const ResidualCost& residual, const ImageU8& nearest, OffsetUnion& forest);
 
-  /// The count of the root at which the beats of all pixels together cost least.
+  /// The wrap count of the root at which the residuals of all pixels of the region cost least.
   int best_count(int root) const { return region(root).best; }
 
-  /// Makes `other`, whose count is that of `root` plus `offset`, part of the region of `root`, for
-  /// the forest to join them afterwards: unless both cost more together than apart by more than
-  /// `objection_share` of the log odds of the certainty that speaks for it. Returns if it did.
+  /// Joins the region `other`, whose wrap count is that of `root` plus `offset`, to the region
+  /// `root`, unless their best common fit costs more than their separate fits by more than
+  /// `objection_share` times the log odds of `certainty`, the probability of the join. Returns
+  /// whether they were joined; the caller must then join the trees of the forest in the same way.
   bool join(int root, int other, int offset, float certainty, double objection_share);
 
  private:
@@ -38,12 +40,12 @@ class RegionFits {
   static constexpr int all = std::numeric_limits<int>::max();
 
   struct Region {
-    int best = 0;      ///< count of the root that costs least
-    int first = none;  ///< pixels that are not summed yet, as a list; the best count of each of
-                       ///< them makes the root's `best`
-    int last = none;
-    int slot = none;  ///< of the summed costs of all others
-    int summed = 0;   ///< how many those are
+    int best = 0;      ///< wrap count of the root with the smallest cost
+    int first = none;  ///< first pixel in the list of those not summed yet; the best wrap count of
+                       ///< each of them agrees with `best`
+    int last = none;   ///< last pixel in that list
+    int slot = none;   ///< slot with the summed costs of all other pixels
+    int summed = 0;    ///< number of summed pixels
   };
 
   Region& region(int root) { return regions_[static_cast<std::size_t>(root)]; }
@@ -58,12 +60,12 @@ class RegionFits {
 
   const ResidualCost& residual_;
   OffsetUnion& forest_;
-  int size_;                     ///< counts of a slot
-  std::vector<Region> regions_;  ///< by root
-  std::vector<int> next_;        ///< of every pixel in its list
-  std::vector<float> sums_;      ///< slots, and the room of one before the first and after the last
+  int size_;                     ///< wrap counts per slot
+  std::vector<Region> regions_;  ///< indexed by root
+  std::vector<int> next_;        ///< the pixel that follows each pixel in its list
+  std::vector<float> sums_;      ///< slots, padded by one slot at both ends
   std::vector<int> free_slots_;
-  std::vector<float> both_;
+  std::vector<float> both_;  ///< summed costs of two regions together
 };
 
 }  // namespace tofmap

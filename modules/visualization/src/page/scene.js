@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Draws clouds that can be turned; z is up. Points whose normal looks away are not drawn: from
-// outside one looks into a room.
+// Draws the 3D view of a page; z is up. Points whose normal faces away from the viewer are not
+// drawn, so that a room can be seen into from outside.
 (() => {
   const vertexShader = `
     attribute vec3 color;
@@ -25,14 +25,14 @@
 
   const bytes = (base64) => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
 
-  /// Places are stored as shares of the box, in 65535 steps.
+  /// Coordinates are stored as fractions of the box, in 65535 steps.
   const unpack = (base64, box) => {
     const steps = new Uint16Array(bytes(base64).buffer);
     return Float32Array.from(steps, (step, i) =>
       box.min[i % 3] + (box.max[i % 3] - box.min[i % 3]) * step / 65535);
   };
 
-  /// The box that holds all places but the outermost hundredth on each side.
+  /// The box of all points except the outermost 1 % on each side.
   const boxOfMost = (places) => {
     const box = { min: new THREE.Vector3(), max: new THREE.Vector3() };
     for (const axis of [0, 1, 2]) {
@@ -71,7 +71,7 @@
     try {
       renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
     } catch (error) {
-      return;  // no WebGL: the text within says so
+      return;  // no WebGL: the text inside the element stays
     }
     place.replaceChildren(renderer.domElement);
     renderer.setPixelRatio(window.devicePixelRatio);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Shows the frames of a strip one at a time. Without this all of them are to be seen.
+// Shows the frames of a strip one at a time. Without this script, all frames are visible.
 document.querySelectorAll(".strip").forEach((strip) => {
   const frames = [...strip.querySelectorAll(".frame")];
   const slider = strip.querySelector("input[type=range]");

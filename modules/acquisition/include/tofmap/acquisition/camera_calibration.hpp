@@ -11,60 +11,69 @@
 
 namespace tofmap {
 
-/// A share of the periodic range error: cosine_m cos 2πkφ + sine_m sin 2πkφ, with k = `order`.
+/// One harmonic of the periodic error of a range: cosine_m cos 2πkφ + sine_m sin 2πkφ, where k is
+/// `order` and φ is the measured phase in cycles.
 struct WiggleHarmonic {
-  int order = 4;
+  int order = 4;  ///< periods per wavelength
   double cosine_m = 0;
   double sine_m = 0;
 };
 
-/// How much farther than the truth a camera measures at one frequency, by the phase φ that it
-/// measures. Its correlation function is no pure sine: odd harmonics of it make the range swing
-/// four times a wavelength and at multiples of that ("wiggling"; Lindner and Kolb 2006).
+/// The systematic range error at one frequency, measured minus true, as a function of the measured
+/// phase φ. The periodic part arises because the correlation function of a camera is not a pure
+/// sine: its odd harmonics make the error repeat four times per wavelength and at multiples of that
+/// ("wiggling"; Lindner and Kolb 2006).
 struct PhaseError {
-  double offset_m = 0;
-  std::vector<WiggleHarmonic> harmonics = {};
-  /// Added to the above: at phases i / size, linear between them, periodic. Empty: nothing.
+  double offset_m = 0;                         ///< the same at all phases
+  std::vector<WiggleHarmonic> harmonics = {};  ///< added to the offset
+  /// Error at the phases i / size, added to offset and harmonics. Linear between the entries and
+  /// periodic. Empty: no table.
   std::vector<double> table_m = {};
 
-  /// At a phase, cycles, of any whole part.
+  /// The error at a phase in cycles. Whole cycles make no difference.
   double at_m(double phase_cycles) const;
 };
 
-/// What the recordings have in common that a calibration is of.
+/// Properties of the recordings from which a calibration was determined.
 struct CalibratedWith {
   int width_px = 0;
   int height_px = 0;
   Modulation modulation;
 };
 
-/// What is known of one camera beyond what a recording says.
+/// The calibration of one camera, which completes or replaces the properties in a recording.
 struct CameraCalibration {
-  std::filesystem::path file;          ///< that it was read from, for messages; empty: from none
-  std::optional<CalibratedWith> with;  ///< for no other recordings
-  std::optional<CameraModel> camera;   ///< instead of the recording's
-  PhaseError error_a;
-  PhaseError error_b;
-  double saturation_amplitude = 0;  ///< from which on a pixel counts as saturated; 0: not known
+  std::filesystem::path file;  ///< the file of the calibration, for messages; empty if not from one
+  std::optional<CalibratedWith> with;  ///< if not empty, other recordings are refused
+  std::optional<CameraModel> camera;   ///< replaces the camera of the recording, if not empty
+  PhaseError error_a;                  ///< at frequency A
+  PhaseError error_b;                  ///< at frequency B
+  /// A pixel with this amplitude or a larger one is saturated. 0: unknown; the value of the
+  /// recording remains.
+  double saturation_amplitude = 0;
 };
 
-/// Reads a calibration (docs/calibration.md). Throws InputError that names the file, the key and
-/// what is expected.
+/// Reads a calibration file (docs/calibration.md). Throws InputError, which names the file, the key
+/// and what is expected, if the file cannot be read or is not valid.
 CameraCalibration read_calibration(const std::filesystem::path& file);
 
-/// Writes it so that every number reads back as the same bits, with a comment of one line at the
-/// top unless it is empty. Throws InputError if it cannot be written whole.
+/// Writes a calibration file in which every number reads back as the same bits. `comment` becomes
+/// one line at the top, unless it is empty. Throws InputError if the file cannot be written
+/// completely.
 void write_calibration(const std::filesystem::path& file, const CameraCalibration& calibration,
                        const std::string& comment = "");
 
-/// Whether a file is a calibration, whatever it says.
+/// True if the file says that it is a calibration of the version that read_calibration() reads.
+/// Does not check the rest of the file.
 bool is_calibration(const std::filesystem::path& file);
 
-/// The sensor with what the calibration knows better. Throws InputError if it is of a camera of
-/// another size or other frequencies, or an error rises with the phase faster than a range does.
+/// The sensor with the camera and the saturation amplitude of the calibration, where it has them.
+/// Throws InputError if the calibration is of a camera of another size or with other frequencies,
+/// or if an error rises so fast with the phase that a longer range would measure shorter.
 SensorModel calibrated(const SensorModel& sensor, const CameraCalibration& calibration);
 
-/// Takes the errors out of both phases, which stay in [0, 1).
+/// Subtracts the errors of the calibration from both phases of a frame. The phases stay in [0, 1);
+/// NaN stays NaN.
 void calibrate(DualFrequencyFrame& frame, const Modulation& modulation,
                const CameraCalibration& calibration);
 

@@ -10,53 +10,60 @@
 
 namespace tofmap {
 
-/// How a device writes ranges as whole numbers of 16 bits.
+/// How a device represents ranges as integers of 16 bits.
 struct RangeScale {
-  double unit_m = 1e-4;     ///< of one step
-  bool is_z_depth = false;  ///< along the optical axis instead of the pixel's ray
+  double unit_m = 1e-4;     ///< range per step of the integer
+  bool is_z_depth = false;  ///< true: depth along the optical axis; false: radial range
 };
 
-/// What an image of a device says of itself, in its last rows.
+/// The description of a frame that a device writes into the last rows of its images.
 struct FrameTag {
-  std::uint32_t number = 0;  ///< of the frame, as the device counts
-  double timestamp_s = 0;    ///< of A, by the device's clock
+  std::uint32_t number = 0;  ///< number of the frame, counted by the device
+  double timestamp_s = 0;    ///< time of image A, by the device's clock
   SensorModel sensor;
   RangeScale scale;
 };
 
-/// One dual-frequency frame as a depth and an infrared image (docs/cameras.md): A above B, and
-/// below them the tag, in both.
+/// One dual-frequency frame as a depth image and an infrared image (docs/cameras.md). Each holds A,
+/// B and the tag, one below the other.
 struct StackedImages {
-  ImageU16 range;
-  ImageU16 amplitude;
+  ImageU16 range;      ///< wrapped ranges; 0: no return
+  ImageU16 amplitude;  ///< 0: no return
 };
 
-/// Rows of the tag in images of that width.
+/// Number of rows of the tag in images of this width.
 int tag_rows(int width_px);
 
-/// The tag at the end of an image; nothing if there is none, or if it is damaged.
+/// The tag at the bottom of an image. Empty if the image has no tag or a damaged one.
 std::optional<FrameTag> read_tag(const ImageU16& image);
 
-/// Phases and amplitudes as the whole numbers of a device's images, and back. No return is 0. A
-/// phase that rounds to a range of 0 is written as a whole wavelength, which is the same.
+/// Converts phases and amplitudes to the integers of a device's images, and back. The integer 0
+/// means no return. A phase whose range rounds to 0 is therefore written as a whole wavelength,
+/// which is the same phase.
 class DeviceImageCodec {
  public:
-  /// Throws UsageError if 65534 steps of the scale's unit do not hold both wavelengths.
+  /// Throws UsageError if a wavelength exceeds 65534 steps of the scale.
   DeviceImageCodec(const SensorModel& sensor, const RangeScale& scale);
 
-  /// Both halves and the tag.
+  /// Encodes a frame with its tag. `number` becomes FrameTag::number. If the frame has no
+  /// amplitudes, they are 0.
   StackedImages stack(const DualFrequencyFrame& frame, std::uint32_t number) const;
 
-  /// What the halves of images hold, tagged or not; the caller sets index and timestamp. The
-  /// amplitude may be empty. Throws UsageError if they are not of the camera's size.
+  /// Decodes images with or without a tag. The caller sets index and timestamp of the frame.
+  /// `amplitude` may be empty. Throws UsageError if an image does not hold two images of the
+  /// camera's size.
   DualFrequencyFrame unstack(const ImageU16& range, const ImageU16& amplitude) const;
 
-  /// Images of one frequency, which are of the camera's size. Where a range is longer than the
-  /// wavelength, which cannot be, the phase is NaN.
+  /// Encodes the phases of one frequency, an image of the camera's size. NaN becomes 0.
   ImageU16 encode_range(const ImageF& phase, double wavelength_m) const;
+
+  /// Decodes the ranges of one frequency to phases. The phase is NaN where there is no return, and
+  /// where a range exceeds the wavelength, which no wrapped range does. Throws UsageError if the
+  /// image is not of the camera's size.
   ImageF decode_range(const Eigen::Ref<const ImageU16>& range, double wavelength_m) const;
 
-  /// How many pixels have a range longer than a wavelength, rounding aside.
+  /// Number of pixels whose range exceeds the wavelength by more than rounding. `range` has the
+  /// camera's size.
   int count_beyond(const Eigen::Ref<const ImageU16>& range, double wavelength_m) const;
 
  private:
@@ -64,11 +71,13 @@ class DeviceImageCodec {
 
   SensorModel sensor_;
   RangeScale scale_;
-  ImageF steps_per_m_;  ///< of radial range
+  ImageF steps_per_m_;  ///< steps of the scale per metre of radial range
 };
 
-/// Amplitudes in the device's unit, at least 1 where there is a return, 65535 at most.
+/// Rounds amplitudes to integers of 16 bits: 1 … 65535 where the amplitude is above 0, else 0.
 ImageU16 encode_amplitude(const ImageF& amplitude);
+
+/// The same numbers as floats.
 ImageF decode_amplitude(const Eigen::Ref<const ImageU16>& amplitude);
 
 }  // namespace tofmap

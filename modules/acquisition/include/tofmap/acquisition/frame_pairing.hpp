@@ -11,58 +11,61 @@
 
 namespace tofmap {
 
-/// What became of the images that a device delivered. Every image that arrived is in one of
-/// `paired` … `undecided`.
+/// What became of the images that a device delivered. After finish(), each image that arrived is
+/// counted in exactly one of `paired` … `undecided`.
 struct PairingCounts {
   int paired = 0;        ///< images that became part of a frame
-  int half_missing = 0;  ///< their other half never came
-  int duplicates = 0;
-  int out_of_order = 0;  ///< later ones were there already
-  int unreadable = 0;    ///< of a wrong size, or with a damaged tag
-  int undecided = 0;     ///< nothing told whether they were A's or B's
-  int lost = 0;          ///< instants of which no image came, as numbers or times tell
+  int half_missing = 0;  ///< images whose counterpart did not arrive
+  int duplicates = 0;    ///< images that arrived a second time
+  int out_of_order = 0;  ///< images that arrived after a later image of the same stream
+  int unreadable = 0;    ///< images of a wrong size, or whose tag is damaged or does not match
+  int undecided = 0;     ///< images that could be of either frequency
+  int lost = 0;          ///< instants without any image, by gaps in the numbers or times
 
-  /// Images that came and became part of no frame.
+  /// Number of images that arrived but did not become part of a frame.
   int dropped() const { return half_missing + duplicates + out_of_order + unreadable + undecided; }
 };
 
+/// The stream that delivered an image: depth (`range`) or infrared (`amplitude`).
 enum class DeviceStream : std::uint8_t { range, amplitude };
 
-/// What tells the instants of images apart, and grows with them.
+/// The kind of DeviceImage::key. A later instant has a larger key.
 enum class ImageKey : std::uint8_t {
   number,  ///< counts instants without gaps
-  time,    ///< in any unit
+  time,    ///< a time in any unit
 };
 
 /// An image as a device delivers it.
 struct DeviceImage {
   DeviceStream stream = DeviceStream::range;
   double timestamp_s = 0;  ///< by the device's clock
-  std::int64_t key = 0;    ///< the same for images of one instant
+  std::int64_t key = 0;    ///< identifies the instant; equal for the images of one instant
   ImageU16 pixels;
 };
 
-/// The range and amplitude image of one instant.
+/// The range image and the amplitude image of one instant.
 struct JoinedImages {
-  double timestamp_s = 0;
-  std::int64_t key = 0;
+  double timestamp_s = 0;  ///< by the device's clock
+  std::int64_t key = 0;    ///< DeviceImage::key
   ImageU16 range;
-  ImageU16 amplitude;  ///< empty (0 x 0) if the device has none
+  ImageU16 amplitude;  ///< empty (0 x 0) if the device delivers no amplitudes
 
   bool has_amplitude() const { return amplitude.size() > 0; }
 };
 
-/// Joins the images of two streams by their keys. What arrives out of order, twice or without its
-/// other half is dropped and counted: no two images of different instants are joined.
+/// Joins the range images and amplitude images of a device by their keys. Images of different
+/// instants are never joined. Images that arrive out of order, twice, or without their counterpart
+/// are dropped and counted.
 class StreamJoiner {
  public:
-  /// Without amplitudes range images pass through, in order.
+  /// `has_amplitude` false: the device delivers range images only, which are passed on in order.
   StreamJoiner(ImageKey key, bool has_amplitude) : key_(key), has_amplitude_(has_amplitude) {}
 
-  /// Takes an image, and returns what it completes.
+  /// Adds an image. Returns the images of an instant if this image completes them, else nothing.
   std::optional<JoinedImages> add(DeviceImage image, PairingCounts& counts);
 
-  /// No image is to come: those that wait are counted.
+  /// Drops and counts the images that still wait for their counterpart. Call at the end of the
+  /// streams.
   void finish(PairingCounts& counts);
 
  private:
@@ -82,36 +85,39 @@ class StreamJoiner {
   Stream amplitude_;
 };
 
-/// Which of the two images of a pair.
+/// One of the two images of a dual-frequency frame.
 enum class Half : std::uint8_t { a, b };
 
-/// The images of A and B of a device that takes them in turn.
+/// The images of one dual-frequency frame of a device that delivers A and B alternately.
 struct AlternatingPair {
   JoinedImages a;
   JoinedImages b;
 };
 
-/// Pairs the images of a device that takes A and B in turn: an A with the B after it.
+/// Pairs the images of a device that delivers A and B alternately: each A with the B that follows
+/// it.
 ///
-/// Whether an image is A's or B's follows from how many periods have passed since the last one, and
-/// is checked by content: none at the frequency of the shorter wavelength reaches beyond it. At the
-/// beginning, and where times do not tell how many have passed, only content decides; until it
-/// does, images are dropped.
+/// The number of periods since the previous image tells whether an image is A or B. The content
+/// overrules it: an image with ranges beyond the shorter wavelength is of the longer wavelength. At
+/// the beginning, unless Settings::first is set, and after a time difference that is not close to a
+/// whole number of periods, only the content can decide; until it does, images are dropped.
 class AlternatingPairer {
  public:
   struct Settings {
-    double period_s = 0;        ///< between two images
-    Half longer = Half::a;      ///< which of both has the longer wavelength
-    std::optional<Half> first;  ///< what the first image is; else content tells
+    double period_s = 0;        ///< time between two images; above 0
+    Half longer = Half::a;      ///< the image with the longer wavelength
+    std::optional<Half> first;  ///< the first image; empty: unknown, the content decides
   };
 
+  /// Throws UsageError unless the period is above 0.
   explicit AlternatingPairer(const Settings& settings);
 
-  /// Takes the images of the next instant. `reaches_beyond`: whether ranges in it are longer than
-  /// the shorter wavelength.
+  /// Adds the images of the next instant. `reaches_beyond` is true if they contain ranges beyond
+  /// the shorter wavelength. Returns a pair if these images complete it, else nothing.
   std::optional<AlternatingPair> add(JoinedImages images, bool reaches_beyond,
                                      PairingCounts& counts);
 
+  /// Drops and counts an image A that still waits for its B. Call at the end of the streams.
   void finish(PairingCounts& counts);
 
  private:

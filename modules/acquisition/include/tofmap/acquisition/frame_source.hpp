@@ -9,15 +9,16 @@
 
 namespace tofmap {
 
-/// What a source delivers for one instant: a frame, or why there is none.
+/// What a source delivers for one instant: a frame, or the reason why the frame is damaged.
 struct SourcedFrame {
-  int index = 0;                            ///< counts all frames from 0, damaged ones too
-  double timestamp_s = 0;                   ///< of image A
+  int index = 0;                            ///< counts all frames from 0, including damaged ones
+  double timestamp_s = 0;                   ///< time of image A
   std::optional<DualFrequencyFrame> frame;  ///< empty if the frame is damaged
-  std::string damage;  ///< names the file and what is wrong; empty if the frame is whole
+  std::string damage;  ///< names the file and what is wrong; empty if the frame is not damaged
 };
 
-/// The seam to the hardware: whatever delivers dual-frequency frames in the order of time.
+/// The interface of everything that delivers dual-frequency frames in the order of time:
+/// recordings, devices and the simulator.
 class FrameSource {
  public:
   FrameSource() = default;
@@ -25,14 +26,15 @@ class FrameSource {
   FrameSource& operator=(const FrameSource&) = delete;
   virtual ~FrameSource() = default;
 
+  /// The sensor that took the frames. It stays the same over all frames.
   virtual const SensorModel& sensor() const = 0;
 
-  /// The next frame, or nothing at the end of the recording. A damaged frame is returned as
-  /// such, so that it can be counted and skipped; throws InputError only where no further
-  /// frame can come.
+  /// The next frame. Empty at the end of the source. A damaged frame is returned with the reason,
+  /// so that the caller can count and skip it. Throws InputError only if no further frame can
+  /// follow.
   virtual std::optional<SourcedFrame> next() = 0;
 
-  /// How many frames there are in all, damaged ones included; nothing for a live source.
+  /// Total number of frames, including damaged ones. Empty if it is unknown, as for live sources.
   virtual std::optional<int> frame_count() const = 0;
 };
 

@@ -2,27 +2,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What tofmap's OpenNI2 devices answer beyond OpenNI2's own properties (docs/cameras.md). The
-/// playback speed is OpenNI2's own property, DEVICE_PROPERTY_PLAYBACK_SPEED (float): 1 is the speed
-/// of the recording, 0 as fast as frames can be made, -1 one frame whenever a client waits for one.
+/// Properties and commands of tofmap's OpenNI2 devices that OpenNI2 itself does not define
+/// (docs/cameras.md). The playback speed is a property of OpenNI2, DEVICE_PROPERTY_PLAYBACK_SPEED
+/// (float): 1 plays at the speed of the recording, 0 as fast as possible, and -1 delivers one frame
+/// whenever a client waits for one.
 namespace tofmap::openni2_property {
 
-/// What messages of the driver begin with where a URI asks for what is not allowed.
+/// Prefix of the driver's messages about a URI that is not allowed.
 inline constexpr const char* usage_error = "tofmap, wrong use: ";
 
+/// Base of the numbers below.
 inline constexpr int vendor = 0x746f0000;
 
-inline constexpr int frequency_a_hz = vendor + 1;    ///< of the device, double, read only
-inline constexpr int frequency_b_hz = vendor + 2;    ///< of the device, double, read only
-inline constexpr int layout = vendor + 3;            ///< of the device, text, read only
-inline constexpr int frames_delivered = vendor + 4;  ///< of the device, int, read only
+inline constexpr int frequency_a_hz = vendor + 1;    ///< device property, double, read only
+inline constexpr int frequency_b_hz = vendor + 2;    ///< device property, double, read only
+inline constexpr int layout = vendor + 3;            ///< device property, text, read only
+inline constexpr int frames_delivered = vendor + 4;  ///< device property, int, read only
 
-/// Of the device, int, write only: that a client has read so many images more. At the speed -1 a
-/// device that is told makes no image before the last one was read on all its running streams, for
-/// up to a second after which OpenNI2 must have dropped it; one that is not told gives 10 ms.
+/// Device property, int, write only: the number of images that the client has read since it last
+/// set this property. At speed -1, a device whose client sets it makes no image until the previous
+/// one was read on all running streams, but waits at most one second, after which OpenNI2 must have
+/// dropped the image. A device whose client never sets it waits 10 ms.
 inline constexpr int images_read = vendor + 5;
 
-/// A command of the device, without data: it goes as if its plug had been pulled.
+/// Device command, without data: the device disappears as if it had been unplugged.
 inline constexpr int unplug = vendor + 16;
 
 }  // namespace tofmap::openni2_property

@@ -14,72 +14,88 @@
 
 namespace tofmap {
 
-/// How a device delivers dual-frequency frames (docs/cameras.md). Images that carry a tag, as those
-/// of tofmap's own devices, say it themselves; the rest is for others.
+/// How a device delivers dual-frequency frames (docs/cameras.md). The images of tofmap's own
+/// devices carry a tag that describes them; except for `timeout_s`, the options are for images
+/// without a tag.
 struct DeviceOptions {
+  /// `stacked`: each image holds A above B. `alternating`: the images of A and B alternate. `auto`:
+  /// the tag decides; images without a tag are refused.
   std::string layout = "auto";
+  /// Modulation frequency of image A in Hz, 0 … 1e9. 0: the device is asked for it.
   double frequency_a_hz = 0;
+  /// Modulation frequency of image B in Hz, 0 … 1e9. 0: the device is asked for it.
   double frequency_b_hz = 0;
+  /// What depth images hold. `z`: depth along the optical axis, OpenNI2's convention. `radial`:
+  /// range along the ray of each pixel.
   std::string depth = "z";
+  /// Largest range in the scene in metres, 0 … 65.5. 0: unknown.
   double max_range_m = 0;
+  /// The first image of an alternating device: `a` or `b`. `auto`: determined from the ranges,
+  /// since no range exceeds the wavelength of its image.
   std::string first = "auto";
+  /// Time between two images of an alternating device in seconds, 0 … 10. 0: the inverse of the
+  /// device's frame rate.
   double period_s = 0;
+  /// Longest time to wait for an image in seconds, 0.1 … 3600. The source ends after it.
   double timeout_s = 5;
 
   static std::vector<OptionField<DeviceOptions>> fields();
 };
 
-/// Whether the text names a device or .oni file instead of a folder: it has a scheme ("://") or
-/// that ending.
+/// True if the text names a device or an .oni file rather than a folder: it contains "://" or ends
+/// in ".oni".
 bool is_device_uri(const std::string& text);
 
-/// An OpenNI2 device, or an .oni file, as a source of dual-frequency frames.
+/// An OpenNI2 device or an .oni file as a source of dual-frequency frames.
 ///
-/// Frames are made of the images that belong together; what does not is dropped and counted. An
-/// .oni file is read as fast as frames are asked for, a device as it delivers: ask from a thread of
-/// its own (QueuedSource), since it keeps only the latest image. Files stay open until the program
-/// ends, some hundred kilobytes each: OpenNI2's player crashes now and then when it is closed.
+/// The source joins images of the same instant to frames; it drops and counts images that it cannot
+/// join. An .oni file is read as fast as the caller asks for frames. A device delivers at its own
+/// rate and keeps only the latest image, so call next() from a thread of its own (QueuedSource).
+/// .oni files stay open until the program ends and hold some hundred kilobytes each, because
+/// OpenNI2's player occasionally crashes when it is closed.
 class OpenNi2Source final : public FrameSource {
  public:
   struct Settings {
     DeviceOptions options = {};
     CameraCalibration calibration = {};
-    /// Where to record what the device delivers; empty: nowhere.
+    /// .oni file to which the images of the device are recorded. Empty: no recording.
     std::filesystem::path oni_file = {};
-    int most_frames = 0;  ///< it ends after so many; 0: it does not
-    /// Asked several times a second while waiting for images; false ends the source.
+    int most_frames = 0;  ///< the source ends after this number of frames; 0: no limit
+    /// Called several times a second while the source waits for images. The source ends when it
+    /// returns false. May be empty.
     std::function<bool()> keep_going = {};
   };
 
-  /// Opens the device and waits for its first images, which tell what it delivers. Throws
-  /// InputError that names the URI and the remedy if it cannot be opened, delivers no range images,
-  /// nothing at all within the time limit, or not what the options say; UsageError if the options
-  /// leave open what must be known.
+  /// Opens the device and waits for its first images, which show what the device delivers. Throws
+  /// InputError, which names the URI and the remedy, if the device cannot be opened, delivers no
+  /// range image within the time limit, or does not fit the options. Throws UsageError if the
+  /// options lack something that the device does not say.
   OpenNi2Source(const std::string& uri, Settings settings);
   ~OpenNi2Source() override;
 
   const SensorModel& sensor() const override;
 
-  /// The next whole frame; nothing when the source has ended, for which end() has the reason.
-  /// Indices count the frames returned.
+  /// The next complete frame. Empty when the source has ended; end() has the reason. The indices
+  /// count the returned frames. Throws InputError if images arrive, but none of them make a frame.
   std::optional<SourcedFrame> next() override;
 
-  /// Not known in advance.
+  /// Always empty: the number is not known in advance.
   std::optional<int> frame_count() const override { return std::nullopt; }
 
+  /// Why the source has ended.
   enum class End : std::uint8_t {
-    none,          ///< it goes on
+    none,          ///< the source has not ended
     of_recording,  ///< the file has no more frames
-    unplugged,
-    timeout,  ///< no image came within the time limit
-    asked,    ///< keep_going said no, or there are enough frames
+    unplugged,     ///< the device was unplugged
+    timeout,       ///< no image arrived within the time limit
+    asked,         ///< Settings::keep_going returned false, or Settings::most_frames were delivered
   };
   End end() const;
 
-  /// Whether frames come when they are asked for, as from files, and none is missed.
+  /// True if the source makes each frame when it is asked for, as files do, so that none is missed.
   bool waits_for_reader() const;
 
-  /// What became of the images so far. May be asked from another thread.
+  /// What became of the images so far. May be called from another thread.
   PairingCounts counts() const;
 
  private:

@@ -8,13 +8,18 @@
 
 namespace tofmap {
 
-/// Reads a gray PNG of exactly 16 (8) bits. Throws InputError that names the file if it is
-/// missing, truncated, no PNG, or of another depth or colour type.
+/// Reads a gray PNG of 16 bits. Throws InputError, which names the file, if the file is missing,
+/// truncated, not a PNG, or of another bit depth or colour type.
 ImageU16 read_png_16(const std::filesystem::path& file);
+
+/// Reads a gray PNG of 8 bits. Throws InputError as read_png_16() does.
 ImageU8 read_png_8(const std::filesystem::path& file);
 
-/// Writes a gray PNG. Throws InputError that names the file if it cannot be written whole.
+/// Writes a gray PNG of 16 bits. Throws InputError, which names the file, if it cannot be written
+/// completely, and UsageError if the image is empty or a side exceeds 16384 pixels.
 void write_png(const std::filesystem::path& file, const ImageU16& image);
+
+/// Writes a gray PNG of 8 bits. Throws as for 16 bits.
 void write_png(const std::filesystem::path& file, const ImageU8& image);
 
 }  // namespace tofmap

@@ -12,31 +12,32 @@
 
 namespace tofmap {
 
-/// What to do with a frame that arrives when the queue is full.
+/// What happens when a frame arrives and the queue is full.
 enum class LateFrames : std::uint8_t {
-  drop_oldest,  ///< for cameras, which do not wait: the latest frames are the ones that matter
-  block,        ///< for recordings: the source waits
+  drop_oldest,  ///< the oldest frame of the queue is dropped: for cameras, which do not wait
+  block,        ///< the source waits until there is room: for recordings
 };
 
-/// Takes frames from a source in a thread of its own and keeps a bounded number of them until they
-/// are asked for.
+/// Fetches frames from a source in its own thread and keeps a limited number of them in a queue.
 class QueuedSource final : public FrameSource {
  public:
-  /// The source must outlive this, and nobody else may ask it. `capacity` must be above 0.
+  /// Starts the thread. `source` must outlive the queue, and no other code may call its next().
+  /// `capacity` is the largest number of frames in the queue; throws UsageError if it is below 1.
   QueuedSource(FrameSource& source, int capacity, LateFrames late_frames);
 
-  /// Waits until the source has come back from its current frame.
+  /// Waits until the source has returned its current frame.
   ~QueuedSource() override;
 
   const SensorModel& sensor() const override { return source_.sensor(); }
 
-  /// The oldest frame that is kept; waits for one if there is none. What the source throws is
-  /// thrown here, after the frames before it.
+  /// Removes the oldest frame from the queue and returns it; waits for one if the queue is empty.
+  /// Empty at the end of the source. An exception of the source is thrown here, after the frames
+  /// that precede it.
   std::optional<SourcedFrame> next() override;
 
   std::optional<int> frame_count() const override { return source_.frame_count(); }
 
-  /// Frames that were dropped because nobody asked for them in time.
+  /// Number of frames that were dropped because the queue was full.
   int dropped() const;
 
  private:
@@ -52,7 +53,7 @@ class QueuedSource final : public FrameSource {
   int dropped_ = 0;
   bool has_ended_ = false;
   bool is_closing_ = false;
-  std::thread thread_;  ///< last: it uses all the others
+  std::thread thread_;  ///< declared last, because it uses all other members
 };
 
 }  // namespace tofmap

@@ -9,56 +9,64 @@
 
 namespace tofmap {
 
-/// What both frequencies measure at one pixel, and how far it is, known or found by unwrapping.
+/// The ranges that both frequencies measure at one pixel, and a reference range, which is either
+/// known or the result of unwrapping. All ranges are radial.
 struct RangeSample {
-  float a_m = 0;  ///< with the wraps that come nearest to the reference
-  float b_m = 0;
-  float reference_m = 0;
-  /// Standard deviations of the noise of a_m and b_m, both in one unknown unit: λ / amplitude, or 1
-  /// without amplitudes.
+  float a_m = 0;  ///< range of A, with the wrap count that brings it nearest to the reference
+  float b_m = 0;  ///< range of B, with the wrap count that brings it nearest to the reference
+  float reference_m = 0;  ///< true range, or the range found by unwrapping
+  /// Standard deviation of the noise of a_m in an unknown unit, which noise_b shares: λ /
+  /// amplitude, or 1 without amplitudes.
   float noise_a = 1;
-  float noise_b = 1;
+  float noise_b = 1;  ///< standard deviation of the noise of b_m, like noise_a
 };
 
-/// Appends the pixels `first`, `first` + `stride`, … of a frame, row by row, that have a return at
-/// both frequencies, not saturated, and a reference range.
+/// Appends samples of the pixels `first`, `first` + `stride`, … of a frame, counted row by row.
+/// Leaves out pixels without a return at one of the frequencies, saturated pixels, and pixels
+/// without a reference range (NaN). `reference_m` has the camera's size.
 void append_range_samples(const DualFrequencyFrame& frame, const SensorModel& sensor,
                           const ImageF& reference_m, int first, int stride,
                           std::vector<RangeSample>& samples);
 
-/// A value and the standard deviation of its error.
+/// An estimated value and the standard deviation of its error.
 struct Estimate {
   double value = 0;
   double sigma = 0;
 };
 
-/// What both frequencies measure too far.
+/// The systematic errors of both frequencies, measured minus true, that a fit found.
 struct PhaseErrorFit {
   PhaseError error_a;
   PhaseError error_b;
-  double offset_sigma_a_m = 0;  ///< 0 if offsets were not looked for
-  double offset_sigma_b_m = 0;
-  Estimate offset_m;          ///< of A less that of B
-  double residual_rms_m = 0;  ///< of what was fitted, with the errors taken out
+  double offset_sigma_a_m = 0;  ///< standard deviation of error_a.offset_m; 0 if it was not fitted
+  double offset_sigma_b_m = 0;  ///< standard deviation of error_b.offset_m; 0 if it was not fitted
+  Estimate offset_m;            ///< offset of A minus offset of B
+  double residual_rms_m = 0;    ///< weighted RMS of the fitted values after subtracting the errors
 };
 
+/// Options of the fits.
 struct PhaseErrorFitOptions {
-  std::vector<int> orders;  ///< of the harmonics
-  /// What is farther off, from the median of all, counts as wrong, unless its noise explains it.
+  std::vector<int> orders;  ///< orders of the harmonics, in periods per wavelength
+  /// Samples whose fitted value differs from the median of all samples by more than this, and by
+  /// more than three standard deviations of their noise, are left out. Metres.
   double max_error_m = 0.15;
 };
 
-/// Finds offsets and harmonics of both frequencies from references that are known ranges. Samples
-/// count by the inverse of their variance, which is found from how they spread. Harmonics
-/// below four standard deviations are left out. Throws InputError if the samples do not tell all
-/// unknowns: there are too few, or their phases do not cover the cycle.
+/// Fits offsets and harmonics of both frequencies to known reference ranges by least squares.
+/// Weights samples by their inverse variance, which is estimated from the spread of the samples.
+/// Leaves out harmonics below four standard deviations. Throws InputError if the samples do not
+/// determine all unknowns: there are too few of them, or their phases do not cover the cycle.
 PhaseErrorFit fit_to_references(std::span<const RangeSample> samples, const Modulation& modulation,
                                 const PhaseErrorFitOptions& options);
 
-/// Finds harmonics from how both frequencies disagree; references tell wraps alone. Both are taken
-/// to have the same harmonics in cycles, as electronics that drive both have. Offsets stay zero:
-/// what both share cannot be seen, and `offset_m` has motion between both images in it, too.
-/// Harmonics below 2 mm are left out, which motion may feign. Otherwise as above.
+/// Fits harmonics to the differences of the ranges of both frequencies (docs/calibration.md,
+/// equation 2). The reference ranges only determine wrap counts, so they need not be exact.
+///
+/// Assumes that both frequencies have the same harmonics in cycles, because the same electronics
+/// modulates both. The offsets in `error_a` and `error_b` stay 0: an offset that both frequencies
+/// share cannot be observed, and `offset_m` also contains the motion between the two images. Leaves
+/// out harmonics below 2 mm, which motion alone can cause. Weights, the limit of four standard
+/// deviations and failures are as in fit_to_references().
 PhaseErrorFit fit_to_residual(std::span<const RangeSample> samples, const Modulation& modulation,
                               const PhaseErrorFitOptions& options);
 

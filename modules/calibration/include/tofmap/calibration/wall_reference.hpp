@@ -10,19 +10,22 @@
 
 namespace tofmap {
 
-/// How far a flat wall was from the optical centre in some frames of a recording, along the wall's
-/// normal: by frame index, metres.
+/// Distances of a flat wall from the optical centre along the normal of the wall, in metres, by
+/// frame index. Not every frame of a recording needs one.
 using WallDistances = std::map<int, double>;
 
-/// Reads lines 'frame distance' ('#' begins a comment). Throws InputError that names file and line
-/// for anything else, and for distances that are not positive.
+/// Reads a file with lines 'frame distance_m'; '#' begins a comment. Throws InputError, which names
+/// file and line, if a line has another form, a distance is not positive, or a frame is given
+/// twice. Throws InputError if the file cannot be read or has no such line.
 WallDistances read_wall_distances(const std::filesystem::path& file);
 
-/// The ranges of a flat wall that fills most of the image, at a known distance: how it is tilted is
-/// found from the phases of A. Nothing if less than half of the returns lie on one plane there.
+/// The radial ranges of a flat wall that fills most of the image, in metres. `distance_m` is the
+/// distance of the wall from the optical centre along its normal; the tilt of the wall is estimated
+/// from the phases of A. NaN where a ray does not meet the wall, or only at a grazing angle.
 ///
-/// The wall may be tilted as long as half of it is within half a wavelength of where it would be
-/// without tilt. An offset of A below a quarter of a wavelength does not matter.
+/// Empty if less than half of the returns lie on one plane at this distance. The tilt can be found
+/// if at least half of the wall is within half a wavelength of where it would be without tilt, and
+/// if the offset of A is below a quarter of a wavelength.
 std::optional<ImageF> wall_range(const DualFrequencyFrame& frame, const SensorModel& sensor,
                                  double distance_m);
 

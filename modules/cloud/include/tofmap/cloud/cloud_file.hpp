@@ -8,8 +8,9 @@
 
 namespace tofmap {
 
-/// A point of a map: position and unit normal in the world frame (metres), the probability
-/// that it is a true surface, and how many observations support it.
+/// A point of a map: position in metres and unit normal, both in the world frame; the mean
+/// confidence of its observations, that is, the probability that their wrap counts are right; and
+/// the number of observations.
 struct EIGEN_ALIGN16 MapPoint {
   PCL_ADD_POINT4D;
   PCL_ADD_NORMAL4D;
@@ -20,13 +21,15 @@ struct EIGEN_ALIGN16 MapPoint {
 
 using MapCloud = pcl::PointCloud<MapPoint>;
 
-/// Writes a binary PLY (or PCD, if the file is named so) with properties x y z nx ny nz (PCD:
-/// normal_x …) confidence observations.
-/// Throws InputError that names the file if it cannot be written whole.
+/// Writes a binary PCD file if the name ends in .pcd, otherwise a binary PLY file. Its properties
+/// are x y z nx ny nz (PCD: normal_x …) confidence observations. Throws InputError, which names the
+/// file, if it cannot be written completely.
 void write_map(const std::filesystem::path& file, const MapCloud& map);
 
-/// Reads a PLY, PCD or VTK cloud; normals, confidence and observations that the file does not
-/// have are NaN, 1 and 1. Throws InputError that names the file if it cannot be read.
+/// Reads a PLY, PCD or VTK (.vtk, .vtp) file. Points that are not finite are dropped. Normals,
+/// confidence and observations that the file does not have are NaN, 1 and 1. If positions are not
+/// stored as 32-bit floats, and from VTK files, only positions are read, and points at exactly
+/// (0, 0, 0) are dropped as well. Throws InputError, which names the file, if it cannot be read.
 MapCloud read_map(const std::filesystem::path& file);
 
 }  // namespace tofmap

@@ -10,20 +10,21 @@
 
 namespace tofmap {
 
-/// Points of any origin, in a frame and a unit of their own, in the order of their file.
+/// The points of a file, in the frame and the unit of length of the file, and in its order.
 struct PointSet {
   std::vector<Eigen::Vector3d> points;       ///< all finite
-  std::optional<Eigen::Vector3d> viewpoint;  ///< where the sensor stood, if the file says so
+  std::optional<Eigen::Vector3d> viewpoint;  ///< position of the sensor; empty if not in the file
 };
 
-/// Reads the positions of a PLY, PCD or VTK (.vtk, .vtp) file, whatever else it holds and whatever
-/// numbers they are stored as. Points that are not finite are left out, and so are those at exactly
-/// (0, 0, 0), which sensors write for no return. Throws InputError that names the file if it cannot
-/// be read or holds no point.
+/// Reads the positions of a PLY, PCD or VTK (.vtk, .vtp) file. They may be stored as any type of
+/// number; other properties are ignored. Points that are not finite are dropped, and so are points
+/// at exactly (0, 0, 0), which sensors write for pixels without a return. A viewpoint of (0, 0, 0)
+/// counts as none. Throws InputError, which names the file, if it cannot be read or has no points.
 PointSet read_points(const std::filesystem::path& file);
 
-/// Writes a binary PLY with properties x y z label, the label being the cloud that a point is of,
-/// by its place in `clouds`. Throws InputError that names the file if it cannot be written whole.
+/// Writes all clouds into one binary PLY file with properties x y z label, where the label is the
+/// index of the point's cloud; a binary PCD file if the name ends in .pcd. Throws InputError, which
+/// names the file, if it cannot be written completely.
 void write_labelled_points(const std::filesystem::path& file,
                            const std::vector<std::vector<Eigen::Vector3d>>& clouds);
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-// The project's own point type: PCL's templates cannot come from its libraries.
+// PCL's libraries have no instances of its templates for the point types of this project.
 #ifndef PCL_NO_PRECOMPILE
 #define PCL_NO_PRECOMPILE
 #endif
@@ -20,11 +20,11 @@
 
 namespace tofmap {
 
-/// A point on a surface as one frame saw it: position in metres, unit normal towards the
-/// camera, standard deviation along the viewing ray (noise and systematic error) and of the
-/// normal's direction (radians), probability that its wrap count is right. A pixel without a
-/// point is NaN throughout; one without a normal (too few neighbours on its surface) has a
-/// position and a NaN normal.
+/// A point on a surface, as one frame saw it: position in metres; unit normal towards the camera;
+/// standard deviation of the position along the viewing ray (noise and systematic error), metres;
+/// standard deviation of the direction of the normal, radians; and the probability that the wrap
+/// count is right. For a pixel without a range, the confidence is 0 and all else NaN. A pixel whose
+/// plane could not be fitted has a position, but NaN for the normal and its standard deviation.
 struct EIGEN_ALIGN16 SurfacePoint {
   PCL_ADD_POINT4D;
   PCL_ADD_NORMAL4D;
@@ -37,29 +37,38 @@ struct EIGEN_ALIGN16 SurfacePoint {
   bool has_normal() const { return std::isfinite(normal_z); }
 };
 
-/// Organised like the image it comes from (width x height), in the camera frame, unless said
-/// otherwise. `is_dense` is false.
+/// A cloud organised like the range image it comes from (width x height), in the frame of the
+/// camera unless stated otherwise. `is_dense` is false.
 using SurfaceCloud = pcl::PointCloud<SurfacePoint>;
 
+/// Options of surface_cloud().
 struct CloudOptions {
+  /// Half width of the square window of the plane fit, without its centre, 1 … 15 px.
   int window_radius_px = 3;
+  /// Largest half width, 1 … 31 px, up to which the window of a pixel grows if noise alone would
+  /// make the normal too uncertain.
   int max_window_radius_px = 15;
+  /// Largest distance of a neighbour from the plane of a pixel, in standard deviations, 1 … 10.
   double gate_sigmas = 3;
+  /// Smallest number of pixels that a plane is fitted to, 3 … 961. A pixel with fewer has no
+  /// normal.
   int min_neighbours = 12;
+  /// Largest standard deviation of the direction of a normal, 0.001 … 3.2 rad. A pixel above it has
+  /// no normal.
   double max_normal_sigma_rad = 0.35;
 
   static std::vector<OptionField<CloudOptions>> fields();
 };
 
-/// The points of a range image, smoothed along their rays, with normals and uncertainty.
+/// Computes the points of a range image, smoothed along their rays, with normals and uncertainty.
 ///
-/// In inverse depth a plane is linear in the pixel's tangents, q = 1/z = a x + b y + c, at
-/// any slant. Each pixel takes the neighbours in its window that lie on its own surface, as
-/// far as their predicted noise can tell, fits that plane with weights from their noise, and
-/// is moved along its ray onto it; its sigma_m is the fit's, together with the image's
-/// systematic_m. Windows grow where noise alone would leave the normal less certain than the
-/// options allow. `rays` are those of the camera that took the image. The result does not depend on
-/// the number of threads.
+/// In inverse depth, a plane of any slant is linear in the tangents x and y of a pixel's ray: q =
+/// 1/z = a x + b y + c. For each pixel, a plane is fitted to the pixels in its window that lie on
+/// the same surface within their predicted noise, weighted by the inverse of their variance. The
+/// pixel is moved along its ray onto the plane. Its sigma_m combines the uncertainty of the fit
+/// with the systematic_m of the image. Windows grow where noise alone would leave the normal less
+/// certain than the options allow. `rays` are those of the camera that took the image. The result
+/// does not depend on the number of threads. Throws UsageError if image and rays differ in size.
 SurfaceCloud surface_cloud(const RangeImage& image, const PixelRays& rays,
                            const CloudOptions& options);
 

@@ -7,21 +7,22 @@
 
 namespace tofmap {
 
-/// Wrong use: an argument or option that is not allowed. The message names the
-/// argument, the value given and what is allowed. The program exits with status 2.
+/// Wrong use: an argument or option that is not allowed. The message names the argument, the given
+/// value and the allowed values. The program exits with status 2.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Missing, damaged or contradictory input, or a place that cannot be written. The
-/// message names the file and the remedy. The program exits with status 3.
+/// Missing, damaged or contradictory input, or a file or folder that cannot be written. The message
+/// names the file and the remedy. The program exits with status 3.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Runs a step, and puts the name of what it works on before the message of an InputError.
+/// Runs `step` and returns its result. If the step throws an InputError, rethrows it with `origin`
+/// and a colon before the message.
 template <class Step>
 auto naming(const std::string& origin, const Step& step) {
   try {

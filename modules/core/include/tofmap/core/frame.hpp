@@ -8,30 +8,32 @@
 
 namespace tofmap {
 
-/// What is fixed over a recording: the camera, its two frequencies, how far the scene can reach
-/// (0: not known; then the pair's combined range limits the wraps), and the amplitude from which on
-/// a pixel counts as saturated, its phase as spoiled (0: none does).
+/// The properties of the sensor and scene that stay the same over a recording.
 struct SensorModel {
   CameraModel camera;
   Modulation modulation;
+  /// Largest range in the scene. 0: unknown; the combined range of the two frequencies then limits
+  /// the wrap counts.
   double max_range_m = 0;
+  /// A pixel with this amplitude or a larger one is saturated, and its phase is not used. 0: no
+  /// pixel is saturated.
   double saturation_amplitude = 0;
 };
 
-/// What a dual-frequency time-of-flight camera measures at one instant.
+/// One measurement of a dual-frequency time-of-flight camera.
 ///
-/// Phases are in cycles, [0, 1): `phase = (range / λ) mod 1`; NaN where there is no return.
-/// A pixel without a return at one frequency may have one at the other.
-/// Amplitudes are linear in the signal, in any one scale; both images are empty (0 x 0) if
-/// the camera gives none. All images that are present have the camera's size.
-/// The timestamp is A's; B may have been taken up to one frame period later.
+/// All images that are present have the camera's size. A pixel without a return at one frequency
+/// may have one at the other.
 struct DualFrequencyFrame {
-  int index = 0;
-  double timestamp_s = 0;
+  int index = 0;           ///< position in the recording, from 0
+  double timestamp_s = 0;  ///< of image A; B may have been taken up to one frame period later
+  /// Phase in cycles, [0, 1): `phase = (range / λ) mod 1`. NaN where there is no return.
   ImageF phase_a;
-  ImageF phase_b;
+  ImageF phase_b;  ///< like phase_a, at frequency B
+  /// Amplitude, linear in the signal, in an arbitrary scale. Both amplitude images are empty
+  /// (0 x 0) if the camera delivers no amplitudes.
   ImageF amplitude_a;
-  ImageF amplitude_b;
+  ImageF amplitude_b;  ///< like amplitude_a, at frequency B
 
   bool has_amplitude() const { return amplitude_a.size() > 0; }
 };

@@ -8,8 +8,8 @@
 
 namespace tofmap {
 
-/// A single-channel image: rows are image rows (v), columns are image columns (u),
-/// stored row by row; `image(v, u)` is one pixel. Pixel (0, 0) is the top left one.
+/// A single-channel image, stored row by row. `image(v, u)` is the pixel in row v and column u;
+/// (0, 0) is the top left pixel.
 template <class Scalar>
 using Image = Eigen::Array<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -23,7 +23,7 @@ bool same_size(const Eigen::DenseBase<A>& a, const Eigen::DenseBase<B>& b) {
   return a.rows() == b.rows() && a.cols() == b.cols();
 }
 
-/// True if they are equal, with NaN equal to NaN.
+/// True if both images have the same size and values. NaN equals NaN.
 inline bool same_values(const ImageF& a, const ImageF& b) {
   return same_size(a, b) && ((a == b) || (a.isNaN() && b.isNaN())).all();
 }

@@ -6,9 +6,9 @@
 
 namespace tofmap {
 
-/// Throws InputError that names what is there if it is something else than a file: a folder, or a
-/// pipe, which could keep a reader waiting for ever. What is missing passes: those who open it know
-/// what it should have been.
+/// Throws InputError if `path` exists but is not a regular file: a folder, or a pipe, which could
+/// keep a reader waiting for ever. Does nothing if `path` does not exist, because the caller that
+/// opens it has a better message.
 void refuse_no_file(const std::filesystem::path& path);
 
 }  // namespace tofmap

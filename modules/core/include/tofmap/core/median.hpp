@@ -8,8 +8,8 @@
 
 namespace tofmap {
 
-/// The median of numbers, of an even number the upper of the two middle ones; reorders them. There
-/// must be one at least.
+/// The median of `values`; for an even number of values, the upper of the two middle ones. Reorders
+/// `values`, which must not be empty.
 template <class Number>
 Number median(std::vector<Number>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -17,7 +17,7 @@ Number median(std::vector<Number>& values) {
   return *middle;
 }
 
-/// The standard deviation of a normal distribution over its median absolute deviation.
+/// Ratio of the standard deviation of a normal distribution to its median absolute deviation.
 inline constexpr double sigma_of_median_deviation = 1.4826;
 
 }  // namespace tofmap

@@ -9,18 +9,18 @@
 
 namespace tofmap {
 
-/// A value of an enumeration with the name that options, reports and messages have for it.
+/// A value of an enumeration and its name in options, reports and messages.
 ///
-/// An enumeration that is an option offers, in its own namespace,
-/// `std::span<const NamedValue<Enum>> named_values(Enum)`, with the values in the order in which
-/// they are listed to users. The argument only selects the function.
+/// An enumeration that is used as an option has in its namespace a function
+/// `std::span<const NamedValue<Enum>> named_values(Enum)`, which returns the values in the order in
+/// which users see them. The argument only selects the overload.
 template <class Enum>
 struct NamedValue {
   std::string_view name;
   Enum value;
 };
 
-/// The name of a value. Empty if it has none.
+/// The name of a value. Empty if the value has no name.
 template <class Enum>
 std::string_view name_of(Enum value) {
   for (const NamedValue<Enum>& named : named_values(value)) {
@@ -29,7 +29,7 @@ std::string_view name_of(Enum value) {
   return {};
 }
 
-/// The value of this name. Empty if there is none.
+/// The value with this name. Empty if no value has this name.
 template <class Enum>
 std::optional<Enum> find_named(std::string_view name) {
   for (const NamedValue<Enum>& named : named_values(Enum{})) {
@@ -38,7 +38,7 @@ std::optional<Enum> find_named(std::string_view name) {
   return std::nullopt;
 }
 
-/// All names, with `separator` between them.
+/// The names of all values of an enumeration, with `separator` between them.
 template <class Enum>
 std::string all_names(std::string_view separator) {
   std::string text;

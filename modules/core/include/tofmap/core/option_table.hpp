@@ -16,20 +16,21 @@
 
 namespace tofmap {
 
-/// A bound option whose value is one of an enumeration.
+/// Access by name to the value of an enumeration that is a bound option.
 struct EnumReference {
-  std::function<std::string_view()> name;          ///< of the present value
-  std::function<bool(std::string_view name)> set;  ///< false if no value has that name
+  std::function<std::string_view()> name;          ///< returns the name of the current value
+  std::function<bool(std::string_view name)> set;  ///< returns false if no value has that name
   std::string choices;                             ///< "a | b | c"
 };
 
-/// A member of a struct whose type is an enumeration with named values (named_value.hpp).
+/// A pointer to a member whose type is an enumeration with named values (named_value.hpp), for any
+/// such enumeration.
 template <class Struct>
 class EnumMember {
  public:
   template <class Enum>
   requires std::is_enum_v<Enum> EnumMember(
-      Enum Struct::*member)  // NOLINT(google-explicit-constructor): stands in field tables
+      Enum Struct::*member)  // NOLINT(google-explicit-constructor): used in field tables
       : bind_([member](Struct& options) {
           Enum* value = &(options.*member);
           return EnumReference{.name = [value] { return name_of(*value); },
@@ -42,56 +43,57 @@ class EnumMember {
                                .choices = all_names<Enum>(" | ")};
         }) {}
 
+  /// Access to the member of `options`, which must outlive the result.
   EnumReference bind(Struct& options) const { return bind_(options); }
 
  private:
   std::function<EnumReference(Struct&)> bind_;
 };
 
-/// One row of an options struct's field table: the single place where the name, allowed
-/// values, unit and meaning of an option are written. YAML, command line, checks, printed
-/// help and documentation are all derived from it.
+/// One row of the field table of an options struct: the only place that states the name, allowed
+/// values, unit and meaning of an option. YAML, command line, checks, printed help and
+/// documentation are derived from it.
 ///
-/// A stage's struct offers `static std::vector<OptionField<Struct>> fields();`. Defaults are
-/// those of the struct's member initialisers.
+/// An options struct has a function `static std::vector<OptionField<Struct>> fields();`. The member
+/// initialisers of the struct are the defaults.
 template <class Struct>
 struct OptionField {
   std::string_view name;
   std::variant<bool Struct::*, int Struct::*, double Struct::*, std::string Struct::*,
                EnumMember<Struct>>
       member;
-  double min = -std::numeric_limits<double>::infinity();  ///< numbers only
-  double max = std::numeric_limits<double>::infinity();   ///< numbers only
-  std::string_view unit;                                  ///< empty if it has none
-  std::string_view meaning;
-  std::string_view choices{};  ///< strings only: "a | b | c"; empty: any text
+  double min = -std::numeric_limits<double>::infinity();  ///< smallest allowed value of a number
+  double max = std::numeric_limits<double>::infinity();   ///< largest allowed value of a number
+  std::string_view unit;                                  ///< empty if the option has no unit
+  std::string_view meaning;                               ///< one line of help
+  std::string_view choices{};  ///< allowed values of a string, "a | b | c"; empty: any text
 };
 
-/// An option in words.
+/// An option as text, for help and documentation.
 struct OptionText {
-  std::string group;  ///< empty at the top level
-  std::string name;
-  std::string value;    ///< as YAML has it
+  std::string group;    ///< empty at the top level
+  std::string name;     ///< within the group
+  std::string value;    ///< current value, as written in YAML
   std::string allowed;  ///< "1 … 10", "true | false", "a | b | c", "any text"
-  std::string unit;     ///< empty if it has none
-  std::string meaning;
+  std::string unit;     ///< empty if the option has no unit
+  std::string meaning;  ///< one line of help
 
-  /// As `set` takes it.
+  /// `group.name`, or `name` at the top level: the key that OptionTable::set takes.
   std::string key() const { return group.empty() ? name : group + "." + name; }
 };
 
-/// The options of a program: bound structs, addressed as `group.name`.
+/// The options of a program: fields of bound structs, addressed as `group.name`.
 ///
 ///     OptionTable table;
 ///     table.bind("unwrap", unwrap_options);
 ///     table.load("config.yaml");
 ///     table.set("unwrap.max_range_m", "30");
 ///
-/// The table writes into the bound structs, which must outlive it. Every failure is a
-/// UsageError that names the key, the value and what is allowed.
+/// The table writes into the bound structs, which must outlive it. An unknown option or a value
+/// that is not allowed throws a UsageError, which names the key, the value and what is allowed.
 class OptionTable {
  public:
-  /// Adds a struct's fields under `group`; with an empty group, at the top level.
+  /// Adds the fields of a struct as the group `group`. An empty name adds them at the top level.
   template <class Struct>
   void bind(const std::string& group, Struct& options) {
     for (const OptionField<Struct>& field : Struct::fields()) {
@@ -116,21 +118,22 @@ class OptionTable {
     }
   }
 
-  /// Sets one option from text.
+  /// Sets the option `key`, which is `group.name`, from text.
   void set(const std::string& key, const std::string& value);
 
-  /// Sets one option from `group.name=value`, the form of `--set`.
+  /// Sets one option from `group.name=value`, the argument of `--set`.
   void assign(const std::string& assignment);
 
-  /// Sets all options that a YAML file names: a map of groups, each a map of names. Groups that
-  /// only `others` has are passed over, so that commands can share a file.
-  /// Throws InputError if the file cannot be read or is no YAML map.
+  /// Sets all options that a YAML file names. The file is a map of groups, and each group is a map
+  /// of option names. Ignores groups that only `others` has, so that commands can share a file.
+  /// Throws InputError if the file cannot be read or is not a YAML map.
   void load(const std::filesystem::path& file, const OptionTable& others = {});
 
-  /// All options as YAML that `load` takes; with comments of unit, range and meaning on wish.
+  /// All options as YAML that load() accepts. `with_comments` adds a comment with meaning, range
+  /// and unit to each option.
   std::string to_yaml(bool with_comments) const;
 
-  /// All options in their order.
+  /// All options, in the order in which they were bound.
   std::vector<OptionText> texts() const;
 
  private:

@@ -9,8 +9,8 @@
 
 namespace tofmap {
 
-/// The results of step(0) … step(count − 1) in their order, computed by as many threads as
-/// OpenMP has. If steps throw, the first of them, by number, is rethrown once all have ended.
+/// Runs step(0) … step(count − 1) in parallel on all OpenMP threads and returns their results in
+/// order. If steps throw, rethrows the exception of the lowest number after all steps have ended.
 template <class Step>
 auto side_by_side(int count, const Step& step) {
   using Result = decltype(step(0));
@@ -30,14 +30,14 @@ auto side_by_side(int count, const Step& step) {
   return results;
 }
 
-/// A copy of the worker for each thread that OpenMP has.
+/// Copies of `worker`, one for each OpenMP thread.
 template <class Worker>
 std::vector<Worker> one_a_thread(const Worker& worker) {
   return std::vector<Worker>(static_cast<std::size_t>(omp_get_max_threads()), worker);
 }
 
-/// side_by_side with workers that keep buffers between steps: step(worker, i), where no two threads
-/// share a worker. `workers` is of `one_a_thread`.
+/// Runs step(worker, i) for i = 0 … count − 1 in parallel. No two threads share a worker, so a
+/// worker can keep buffers between steps. `workers` comes from one_a_thread().
 template <class Worker, class Step>
 auto side_by_side(int count, std::vector<Worker>& workers, const Step& step) {
   return side_by_side(count, [&](int i) {

@@ -7,7 +7,7 @@
 
 namespace tofmap {
 
-/// Words in a row, with `separator` between them.
+/// The words, with `separator` between them.
 template <class Words>
 std::string joined(const Words& words, std::string_view separator) {
   std::string text;
@@ -18,11 +18,11 @@ std::string joined(const Words& words, std::string_view separator) {
   return text;
 }
 
-/// The same text where it is valid UTF-8; each byte that is not, as in names of files of old
-/// systems, becomes U+FFFD. What goes into JSON or HTML must be valid.
+/// The text with each byte that is not part of valid UTF-8 replaced by U+FFFD. File names of old
+/// systems may hold such bytes; JSON and HTML must not.
 std::string valid_utf8(std::string_view text);
 
-/// "1 frame", "2 frames".
+/// A number and its noun: "1 frame", "2 frames".
 inline std::string counted(std::size_t count, std::string_view what) {
   return std::to_string(count) + " " + std::string(what) + (count == 1 ? "" : "s");
 }

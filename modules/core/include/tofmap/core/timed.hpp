@@ -6,8 +6,8 @@
 
 namespace tofmap {
 
-/// Runs a step, adds its wall-clock duration in milliseconds to `spent_ms`, and returns what the
-/// step returns. The time counts even if the step throws.
+/// Runs `step`, adds its wall-clock duration in milliseconds to `spent_ms`, and returns the result
+/// of the step. Adds the duration even if the step throws.
 template <class Step>
 auto timed(double& spent_ms, const Step& step) {
   struct Timer {

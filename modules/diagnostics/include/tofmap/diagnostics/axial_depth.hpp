@@ -10,13 +10,15 @@
 
 namespace tofmap {
 
-/// Whether what is given as phases along the rays of pixels is depth along the optical axis:
-/// towards the border of the image it ends at the cosine of the ray's angle, and not at a whole
-/// cycle. Only scenes beyond a wavelength tell; false if they do not.
+/// Whether the phases of a recording were computed from depth along the optical axis as if it were
+/// range along the rays. Phases of ranges reach up to one cycle in every pixel. Phases computed
+/// from depth reach up to cos θ cycles, where θ is the angle between the pixel's ray and the
+/// optical axis. The difference shows only towards the border of the image and in scenes that reach
+/// beyond one wavelength; returns false if the frames do not show it.
 bool looks_like_axial_depth(const std::vector<DualFrequencyFrame>& frames,
                             const SensorModel& sensor);
 
-/// The same as a sentence with the remedy; nothing if it does not look so.
+/// A warning, with the remedy, if looks_like_axial_depth(); otherwise empty.
 std::optional<std::string> axial_depth_warning(const std::vector<DualFrequencyFrame>& frames,
                                                const SensorModel& sensor);
 

@@ -9,42 +9,51 @@
 
 namespace tofmap {
 
-/// What the frames of a recording show of the camera's errors.
+/// The errors of a camera, as the frames of a recording show them.
 struct ErrorSurvey {
-  CameraErrors camera;       ///< as the last frame left it
-  double flow_px = 0;        ///< how far the image moves from A's exposure to B's; median
-  double ambient_share = 0;  ///< of the pixels, those with more noise than their amplitudes explain
-  double ambient_factor =
-      1;  ///< mean factor of their noise; regions are smoothed, so at least this
-  bool has_amplitudes = true;  ///< without them, `ambient_*` compare with the rest of the image
-  int frames = 0;
+  CameraErrors camera;  ///< systematic errors, as estimated up to the last frame
+  double flow_px = 0;   ///< median over the frames of the image motion from A's exposure to B's
+  /// Share of the valid pixels whose noise is at least 1.4 times what their amplitudes predict,
+  /// 0 … 1. Ambient light raises the noise in this way.
+  double ambient_share = 0;
+  /// Mean factor by which the noise of these pixels exceeds the prediction. It is a lower bound,
+  /// since the estimate is smoothed over the image.
+  double ambient_factor = 1;
+  /// Whether the last frame has amplitudes. Without amplitudes, `ambient_share` and
+  /// `ambient_factor` compare the noise with that of the rest of the image.
+  bool has_amplitudes = true;
+  int frames = 0;  ///< number of frames with enough pixels to estimate systematic errors
 };
 
-/// Sums up measured frames, in their order.
+/// Collects an ErrorSurvey from measured frames.
 class ErrorTally {
  public:
+  /// Adds the next frame. Frames must be added in the order in which they were measured.
   void add(const MeasuredFrame& frame);
+
+  /// The survey of the frames added so far.
   ErrorSurvey survey() const;
 
  private:
-  CameraErrors camera_;
-  std::vector<float> flows_px_;
-  double pixels_ = 0;
-  double ambient_pixels_ = 0;
-  double ambient_factors_ = 0;
+  CameraErrors camera_;          ///< of the last frame
+  std::vector<float> flows_px_;  ///< one number per frame whose errors could be estimated
+  double pixels_ = 0;            ///< valid pixels
+  double ambient_pixels_ = 0;    ///< those with raised noise
+  double ambient_factors_ = 0;   ///< sum of the factors of pixels with raised noise
   bool has_amplitudes_ = true;
 };
 
-/// The survey of frames of one camera, in their order.
+/// Measures the frames of one camera, which must be in order, and returns their survey. Throws
+/// UsageError if the options are not allowed or the images of a frame differ in size.
 ErrorSurvey survey_errors(const std::vector<DualFrequencyFrame>& frames, const SensorModel& sensor,
                           const UnwrapOptions& options = {});
 
-/// What was found and what unwrapping does about it, in sentences. Empty for a camera without such
-/// errors.
+/// Sentences that say which errors were found and what unwrapping does about each of them. Empty if
+/// all errors are small.
 std::vector<std::string> remarks_about(const ErrorSurvey& survey);
 
-/// What makes ranges and maps wrong although unwrapping allows for it, in sentences with the
-/// remedy.
+/// Warnings, each with a remedy, about errors that make ranges and maps wrong although unwrapping
+/// compensates for them.
 std::vector<std::string> warnings_about(const ErrorSurvey& survey);
 
 }  // namespace tofmap

@@ -10,40 +10,42 @@
 
 namespace tofmap {
 
-/// What is known about a map when it is judged.
+/// The facts by which a map is judged.
 struct MapEvidence {
-  int frames = 0;      ///< frames of the recording, damaged ones included
-  int registered = 0;  ///< frames with a pose
-  int degenerate = 0;  ///< frames with a direction of motion that no surface constrained
-  bool is_empty = false;
-  bool is_interrupted = false;
+  int frames = 0;                    ///< frames of the recording, including damaged ones
+  int registered = 0;                ///< frames whose pose was found
+  int degenerate = 0;                ///< frames with a degenerate direction of motion
+  bool is_empty = false;             ///< the map has no points
+  bool is_interrupted = false;       ///< the run was ended early
   bool is_unwrapped = true;          ///< false for method `none`
-  std::optional<double> accuracy_m;  ///< median error of the surface, if the truth is known
-  double voxel_m = 0;
-  bool is_seen_twice = true;  ///< frames overlap, so that they could have contradicted each other
+  std::optional<double> accuracy_m;  ///< median error of the surface; empty without ground truth
+  double voxel_m = 0;                ///< edge length of the map's voxels
+  bool is_seen_twice = true;  ///< some frames overlap, so that they can contradict each other
   bool is_warned = false;     ///< there are warnings about the recording or the map
 };
 
-/// A verdict and the reasons why it is no better.
+/// A verdict and the reasons why it is not better.
 struct Judgement {
   Verdict verdict = Verdict::good;
-  std::vector<std::string> reasons;
+  std::vector<std::string> reasons;  ///< clauses without a full stop; empty for a good verdict
 };
 
-/// The worst verdict that any part of the evidence gives. docs/reports.md states the same rules.
+/// Judges a map: each part of the evidence gives a verdict, and the worst one counts.
+/// docs/reports.md states the rules.
 Judgement judge(const MapEvidence& evidence);
 
-/// " Held against it: …", which continues a sentence. Empty if there are no reasons.
+/// The reasons as text to append to a sentence: " Reasons: …; ….". Empty if there are none.
 std::string told_reasons(const Judgement& judgement);
 
-/// The verdict on a map whose truth is known: good up to the size of a voxel, bad beyond five times
-/// that. NaN, the accuracy of an empty map, is bad.
+/// The verdict on a map whose ground truth is known: good if the accuracy is at most the size of a
+/// voxel, bad if it is more than five times that. NaN, the accuracy of an empty map, is bad.
 Verdict verdict_on_accuracy(double accuracy_m, double voxel_m);
 
-/// The verdict on ranges alone. NaN (not known) is doubtful.
+/// The verdict on ranges without a map, by the percentage of wrong wrap counts: good up to 2 %, bad
+/// above 10 %. NaN (unknown) is doubtful.
 Verdict verdict_on_wraps(double wrong_wrap_percent);
 
-/// `part` of all frames that came, in percent. 0 if none came.
+/// `part` as a percentage of evidence.frames. 0 if there are no frames.
 double percent_of_frames(const MapEvidence& evidence, int part);
 
 }  // namespace tofmap

@@ -13,38 +13,39 @@
 
 namespace tofmap {
 
-/// What a look at every frame of a recording tells.
+/// Properties of a recording, from a pass over all of its frames.
 struct RecordingSurvey {
-  int frames = 0;
-  std::vector<std::string> damages;  ///< of frames that could not be read
-  int without_amplitude = 0;         ///< frames
-  int without_return = 0;            ///< frames of which no pixel has one
-  int repeated = 0;                  ///< frames with the phases of the frame before them
-  int repeated_single = 0;  ///< frames with the phases of the frame before at one frequency alone
-  std::vector<std::string>
-      constant_images;         ///< phases that are the same wherever there is a return
-  double no_return_share = 0;  ///< of all pixels
-  double saturated_share = 0;
-  double median_period_s = 0;
-  double longest_gap_s = 0;
-  int frame_before_gap = 0;
+  int frames = 0;                    ///< number of frames looked at, including damaged ones
+  std::vector<std::string> damages;  ///< one message per frame that could not be read
+  int without_amplitude = 0;         ///< number of frames without amplitudes
+  int without_return = 0;  ///< number of frames in which no pixel has a return at both frequencies
+  int repeated = 0;        ///< number of frames with the same phases as the previous frame
+  /// Number of frames with the same phases as the previous frame at one frequency only.
+  int repeated_single = 0;
+  /// File names of phase images that have the same phase in all pixels with a return.
+  std::vector<std::string> constant_images;
+  double no_return_share = 0;  ///< share of all pixels without a return at A or B, 0 … 1
+  double saturated_share = 0;  ///< share of all pixels that are saturated at A or B, 0 … 1
+  double median_period_s = 0;  ///< median time between consecutive frames; 0 if unknown
+  double longest_gap_s = 0;    ///< longest time between consecutive frames; 0 if unknown
+  int frame_before_gap = 0;    ///< index of the frame at which the longest gap begins
   std::optional<std::string> axial_depth_warning;  ///< see axial_depth.hpp
-  std::optional<ResidualSurvey>
-      residual;        ///< if some hundred pixels have returns at both frequencies
-  ErrorSurvey errors;  ///< of some frames, spread over the recording
+  std::optional<ResidualSurvey> residual;          ///< empty if too few pixels have both returns
+  ErrorSurvey errors;  ///< of up to twelve frames, spread over the recording
 };
 
-/// Whether a frame has the phases of the one before it.
+/// Whether a frame has the same phases as the frame `last` before it, at both frequencies.
 bool repeats(const DualFrequencyFrame& frame, const DualFrequencyFrame& last);
 
-/// So many such frames as a sentence; nothing if there are none.
+/// A warning that `repeated` frames repeat the previous frame. Empty if `repeated` is 0.
 std::optional<std::string> repetition_warning(int repeated);
 
-/// Reads all frames. `keep_going` is asked before each, with the number done; false ends it.
+/// Reads all frames of a recording and surveys them. `keep_going` is called before each frame with
+/// the number of frames done; the survey ends early if it returns false. It may be empty.
 RecordingSurvey survey_recording(const SequenceReader& recording,
                                  const std::function<bool(int frames_done)>& keep_going = {});
 
-/// What of it is likely to be a mistake, in sentences with the remedy.
+/// Warnings, each with a remedy, about properties of the recording that are probably mistakes.
 std::vector<std::string> warnings_about(const RecordingSurvey& survey, const SensorModel& sensor);
 
 }  // namespace tofmap

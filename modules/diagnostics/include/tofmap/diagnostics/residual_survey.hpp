@@ -11,35 +11,38 @@
 
 namespace tofmap {
 
-/// How both frequencies of a recording agree, each pixel by itself with the wraps that make them
-/// agree best.
+/// How well the two frequencies of a recording agree. Each pixel is considered by itself, with the
+/// wrap counts that make its two ranges agree best.
 struct ResidualSurvey {
-  /// What A measures more than B; median. Of several that fit as well, the one nearest to zero.
+  /// Median difference of A's range minus B's range. If several offsets fit equally well, the one
+  /// nearest to zero.
   double offset_m = 0;
-  /// Other offsets that fit as well, nearest to zero first: another wrap of both makes up for the
-  /// difference.
+  /// The other offsets that fit equally well, nearest to zero first. They correspond to other wrap
+  /// counts of both frequencies.
   std::vector<double> other_offsets_m;
-  double spread_m = 0;          ///< of single pixels around it; robust standard deviation
-  double swapped_spread_m = 0;  ///< as if A had been taken at B's frequency, and B at A's
-  /// By how much the difference between A and B changes with one more wrap of both.
+  double spread_m = 0;          ///< robust standard deviation of single pixels about `offset_m`
+  double swapped_spread_m = 0;  ///< `spread_m` if the frequencies of A and B are swapped
+  /// By how much A's range minus B's range changes with one more wrap of both: |λ_A − λ_B|.
   double ambiguity_m = 0;
 };
 
-/// Nothing if too few pixels have returns at both frequencies.
+/// Compares the frequencies of some frames of a recording. Empty if fewer than 300 of the pixels
+/// looked at, which are every third, have returns at both frequencies.
 std::optional<ResidualSurvey> survey_residual(const std::vector<DualFrequencyFrame>& frames,
                                               const SensorModel& sensor);
 
-/// If A and B do not belong together, a sentence that says so, with the remedy.
+/// A warning, with the remedy, if the images of A and B seem not to belong together. Otherwise
+/// empty.
 std::optional<std::string> pairing_warning(const ResidualSurvey& residual);
 
-/// A sentence with the remedy if the offset between the frequencies is not sure: unwrapping
-/// estimated another over the frames (`camera`, null if nothing is known), or it is so large that
-/// other offsets that fit the phases are nearly as likely. Empty if there is no offset worth
-/// telling, or if both agree on a small one, which unwrapping allows for.
+/// A warning, with the remedy, if the offset between the frequencies is uncertain. It is uncertain
+/// if unwrapping estimated another offset (`camera`; null if unknown), or if it is so large that
+/// other offsets that fit the phases are nearly as likely. Empty if the offset is below 2 cm, or if
+/// both estimates agree on a small offset, which unwrapping compensates for.
 std::optional<std::string> offset_warning(const ResidualSurvey& residual,
                                           const CameraErrors* camera);
 
-/// A sentence if the pair of frequencies tells no wrap counts apart.
+/// A warning if the pair of frequencies cannot tell wrap counts apart. Otherwise empty.
 std::optional<std::string> frequency_pair_warning(const Modulation& modulation);
 
 }  // namespace tofmap

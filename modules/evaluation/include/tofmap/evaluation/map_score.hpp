@@ -14,22 +14,25 @@
 
 namespace tofmap {
 
-/// The true surface as the camera could see it: true ranges, put where the camera truly was, one
-/// point a voxel of 4 cm (the first), in the world frame of the true poses. Points are kept
-/// relative to an origin near them, so that a national grid costs them no digits.
+/// The true surface as far as the camera saw it: points from true ranges and true poses, the first
+/// in each voxel of 4 cm. Coordinates are stored relative to an origin in the world frame of the
+/// true poses, so that floats are precise enough even if the world frame has large coordinates,
+/// such as those of a national grid.
 class ReferenceSurface {
  public:
   ReferenceSurface() = default;
+  /// `origin_m` is a position in the world frame, see origin_near().
   explicit ReferenceSurface(const Eigen::Vector3d& origin_m) : origin_m_(origin_m) {}
 
-  /// Adds every second pixel, in both axes, of a frame's true radial ranges. The pose is one of the
-  /// world, not relative to the origin.
+  /// Adds the points of a frame, from every second pixel in both directions. `range_truth_m` holds
+  /// radial ranges in metres; pixels that are not finite are ignored. `world_from_camera` is not
+  /// relative to the origin.
   void add(const ImageF& range_truth_m, const PixelRays& rays, const Pose& world_from_camera);
 
-  /// In the world frame.
+  /// The origin of the points, in the world frame, metres.
   const Eigen::Vector3d& origin_m() const { return origin_m_; }
 
-  /// Relative to the origin.
+  /// The points relative to the origin, metres.
   const std::vector<Eigen::Vector3f>& points() const { return points_; }
 
  private:
@@ -38,31 +41,35 @@ class ReferenceSurface {
   std::vector<Eigen::Vector3f> points_;
 };
 
-/// An origin near most of the positions of a trajectory: their median by coordinate, in whole
-/// metres, so that voxels lie alike wherever the world's origin is. Zero of an empty one.
+/// An origin for ReferenceSurface near the positions of a trajectory: the median of each
+/// coordinate, rounded to whole metres, so that the voxels do not depend on a shift of the world
+/// frame by whole metres. Zero if the trajectory is empty.
 Eigen::Vector3d origin_near(const Trajectory& poses);
 
-/// From here on points of a map are not only inexact, but wrong.
+/// Map points with a larger error, metres, count as wrong (MapScore::far_percent).
 inline constexpr double far_error_m = 0.2;
 
-/// How right a map is.
+/// The errors of a map against the true surface.
 struct MapScore {
-  double accuracy_m = 0;   ///< mean distance of map points to the true surface, each at most 5 m
-  double far_percent = 0;  ///< map points more than far_error_m off
-  double completeness_percent = 0;  ///< true points with a map point within 0.1 m
-  std::vector<float> errors_m;      ///< of each point of the map, as map_errors_m finds them
+  double accuracy_m = 0;            ///< mean of errors_m, each limited to 5 m
+  double far_percent = 0;           ///< share of map points with an error above far_error_m
+  double completeness_percent = 0;  ///< share of true points with a map point within 0.1 m
+  std::vector<float> errors_m;      ///< map_errors_m() of each map point
 };
 
-/// How far each point of a map is from the true surface, metres; `truth_from_map` moves it into the
-/// frame of the reference. Near the reference (0.1 m) the distance is taken along its normal, so
-/// that its sampling does not count as error. Errors of more than `most_m` are `most_m`: far points
-/// take long to place. Throws UsageError if the reference is empty, or `most_m` not positive.
+/// The distance of each map point from the true surface, metres. `truth_from_map` transforms the
+/// map into the world frame of the reference. Points closer than 0.1 m to their nearest reference
+/// point get their distance from the plane through its neighbours, so that the sampling of the
+/// reference does not count as error; other points get the distance from that point. Errors above
+/// `most_m` are set to `most_m`, which saves the search for far points. Throws UsageError if the
+/// reference is empty or `most_m` is not positive.
 std::vector<float> map_errors_m(const MapCloud& map, const Pose& truth_from_map,
                                 const ReferenceSurface& reference,
                                 double most_m = std::numeric_limits<double>::infinity());
 
-/// Scores a map by these errors. An empty map has an accuracy of NaN. Throws UsageError if the
-/// reference is empty.
+/// Scores a map against the true surface. `truth_from_map` transforms the map into the world frame
+/// of the reference. The accuracy of an empty map is NaN. Throws UsageError if the reference is
+/// empty.
 MapScore score_map(const MapCloud& map, const Pose& truth_from_map,
                    const ReferenceSurface& reference);
 

@@ -30,39 +30,42 @@ struct Truth {
 Truth read_truth(const SequenceReader& source, const RecordedTruth& recorded,
                  const std::function<void(int index)>& on_frame = {});
 
-/// Errors of a map. Empty where the truth is unknown.
+/// The scores of a map. Each is empty if its truth is unknown.
 struct MapScores {
   std::optional<TrajectoryScore> trajectory;
   std::optional<MapScore> surface;
 };
+/// Scores the trajectory of a map and, after aligning it with the truth, its surface.
 MapScores score_of(const RoomMap& map, const Truth& truth);
 
 /// How one frame was unwrapped.
 struct UnwrappingRecord {
   double timestamp_s = 0;
   std::optional<RangeScore> score;  ///< empty if the true ranges of the frame are unknown
-  ErrorsOverRange over_range;       ///< empty if they are unknown
-  double milliseconds = 0;
-  int iterations = 0;
-  std::optional<bool> converged;  ///< UnwrapResult::converged
+  ErrorsOverRange over_range;       ///< empty if the true ranges of the frame are unknown
+  double milliseconds = 0;          ///< time of measuring and unwrapping
+  int iterations = 0;               ///< UnwrapResult::iterations
+  std::optional<bool> converged;    ///< UnwrapResult::converged
 };
 
-/// Throws UsageError if truth and image differ in size.
+/// Makes the record of a frame that took `milliseconds`. `truth_m` holds true radial ranges. Throws
+/// UsageError if truth and image differ in size.
 UnwrappingRecord record_of(const UnwrapResult& unwrapped, double timestamp_s, double milliseconds,
                            const std::optional<ImageF>& truth_m, double wavelength_a_m);
 
 /// The range errors of all frames together.
 ErrorsOverRange over_range(std::span<const UnwrappingRecord> frames);
 
-/// What a method of unwrapping makes of a recording.
+/// The result of an unwrapping method on a recording.
 struct MethodResult {
   UnwrapMethod method = UnwrapMethod::joint;
-  std::string name;                        ///< of the method
-  std::vector<UnwrappingRecord> frames;    ///< frames that could be read and repeat none
-  std::vector<SampledFrame> sample;        ///< some of them, spread evenly
+  std::string name;  ///< name of `method`
+  std::vector<UnwrappingRecord>
+      frames;  ///< undamaged frames; run_down_to_map() leaves out repeated ones, too
+  std::vector<SampledFrame> sample;        ///< some of the frames, spread evenly
   std::optional<RoomMap> map;              ///< empty if only unwrapping was asked for
-  MapScores scores;                        ///< of the map
-  std::optional<Consistency> consistency;  ///< of a map that was not interrupted
+  MapScores scores;                        ///< scores of the map
+  std::optional<Consistency> consistency;  ///< empty without a map or if the run was interrupted
   bool interrupted = false;
 };
 
@@ -70,7 +73,7 @@ struct MethodResult {
 struct MethodRun {
   UnwrapMethod method = UnwrapMethod::joint;
   PipelineOptions options;  ///< `options.unwrap.method` is replaced by `method`
-  int sample_frames = 0;    ///< size of MethodResult::sample
+  int sample_frames = 0;    ///< wanted size of MethodResult::sample
   /// Called before each batch of frames with the number of frames done. False ends the run. May be
   /// empty.
   std::function<bool(int frames_done)> keep_going;

@@ -12,25 +12,26 @@
 
 namespace tofmap {
 
-/// The ground truth of a recording, as far as it can be read. Damaged parts are left out and
-/// remembered, since no command needs the truth. May be used from several threads.
+/// The ground truth of a recording, as far as it can be read. Damaged parts are left out and named
+/// in remarks(), since commands work without truth. Thread-safe.
 class RecordedTruth {
  public:
-  /// Reads the poses now, and ranges when they are asked for. The recording must outlive this.
+  /// Reads the true poses. True ranges are read when they are requested. The recording must outlive
+  /// this.
   explicit RecordedTruth(const SequenceReader& recording);
 
-  /// The lines of groundtruth.txt that hold a pose. Empty if there is no such file.
+  /// The poses in the valid lines of groundtruth.txt. Empty if there is no such file.
   const Trajectory& poses() const { return poses_; }
 
-  /// Whether any frame has an image of true ranges, damaged or not.
+  /// Whether any frame has an image of true ranges, even a damaged one.
   bool has_ranges() const;
 
   /// The true radial ranges of a frame, metres, NaN where unknown. Empty if the frame has no image
   /// of true ranges, or a damaged one.
   std::optional<ImageF> range_m(int frame) const;
 
-  /// What was found to be damaged so far: at most one sentence on poses and one on ranges, each
-  /// with file and line of the first damage.
+  /// Messages about the damage found so far: at most one about poses and one about ranges. Each
+  /// names the first damaged line or file.
   std::vector<std::string> remarks() const;
 
  private:

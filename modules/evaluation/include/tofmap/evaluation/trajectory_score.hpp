@@ -9,30 +9,36 @@
 
 namespace tofmap {
 
-/// How far a trajectory is from the true one (metrics of the TUM RGB-D benchmark, Sturm et
-/// al., IROS 2012).
+/// The errors of a trajectory against the true one: ATE and RPE of the TUM RGB-D benchmark (Sturm
+/// et al., IROS 2012).
 struct TrajectoryScore {
-  int matched = 0;      ///< poses with a true pose within 20 ms
-  double length_m = 0;  ///< of the true path over the matched poses
-  double ate_rmse_m = 0;
-  double ate_max_m = 0;
-  /// Relative error over each metre of the true path; NaN if the path is shorter.
+  int matched = 0;        ///< number of poses with a true pose within 20 ms
+  double length_m = 0;    ///< length of the true path through the matched poses
+  double ate_rmse_m = 0;  ///< RMS distance of aligned positions from the true ones
+  double ate_max_m = 0;   ///< largest of these distances
+  /// RMS error of the relative translation over each metre of the true path. NaN if the path is
+  /// shorter.
   double rpe_rmse_m_per_m = 0;
+  /// RMS error of the relative rotation over each metre of the true path. NaN if the path is
+  /// shorter.
   double rpe_rmse_deg_per_m = 0;
-  Pose truth_from_estimate = Pose::Identity();  ///< the alignment (Horn), no scale
+  /// The rigid transform, without scale, that best aligns the positions (Umeyama 1991).
+  Pose truth_from_estimate = Pose::Identity();
 };
 
-/// Scores an estimate; nothing if fewer than three poses can be matched.
+/// Scores an estimated trajectory. Empty if fewer than three of its poses have a true pose within
+/// 20 ms.
 std::optional<TrajectoryScore> score_trajectory(const Trajectory& estimate,
                                                 const Trajectory& truth);
 
-/// How far one pose of an aligned trajectory is from the true one.
+/// The position error of one pose of an aligned trajectory.
 struct PoseError {
   double timestamp_s = 0;
-  double error_m = 0;
+  double error_m = 0;  ///< distance from the true position
 };
 
-/// The errors of all poses that have a true pose within 20 ms, after the alignment of a score.
+/// The position errors of all poses with a true pose within 20 ms, after alignment by
+/// `truth_from_estimate` (see TrajectoryScore).
 std::vector<PoseError> pose_errors(const Trajectory& estimate, const Trajectory& truth,
                                    const Pose& truth_from_estimate);
 

@@ -13,38 +13,85 @@
 
 namespace tofmap {
 
+/// Options of the filters that run after unwrapping (docs/filters.md). Each limit has an effect
+/// only if its filter is in `chain`.
 struct FilterOptions {
+  /// Names of the filters in the order in which they run, separated by white space. Allowed are the
+  /// names that filter_names() returns. No filter runs if the string is empty.
   std::string chain = "amplitude confidence phasor_mean isolated_wrap plane_edge";
+
+  /// `amplitude`: drops pixels whose weaker amplitude of both frequencies is below this, in the
+  /// units of the camera, 0 … 1e9. 0 keeps all pixels.
   double min_amplitude = 0;
+
+  /// `confidence`: drops pixels whose confidence in their wrap count is below this, 0 … 1. 0 keeps
+  /// all pixels.
   double min_confidence = 0;
+
+  /// `phasor_mean`: averages only pixels whose range noise exceeds this fraction of λ_A, 0 … 1.
   double min_phasor_noise_cycles = 0.1;
+
+  /// `phasor_mean`: largest radius of the averaging windows, 0 … 64 pixels. Values below 2 turn the
+  /// filter off.
   double max_phasor_radius_px = 16;
+
+  /// `isolated_wrap`: leaves regions alone that are larger than this fraction of the image, 0 … 1.
   double max_isolated_share = 0.01;
+
+  /// `jump_edge`: drops a pixel if the angle at its point, between the line to the optical centre
+  /// and the line to a neighbouring point, exceeds this, 90 … 180 degrees. 180 drops no pixel.
   double max_edge_angle_deg = 170;
+
+  /// `jump_edge`: ignores neighbours that are closer to the pixel's point than this many standard
+  /// deviations of the range error, 0 … 100. 0 is the filter as published.
   double min_edge_gap_sigmas = 5;
+
+  /// `step_edge`: steepest surface that is not taken for a step, as the angle of incidence of the
+  /// ray, 0 … 89.9 degrees. Larger angles drop fewer pixels.
   double max_step_incidence_deg = 80;
+
+  /// `step_edge`: standard deviations of the range error that are added to the smallest height of a
+  /// step, 0 … 100. Larger values drop fewer pixels.
   double min_step_sigmas = 3;
+
+  /// `plane_edge`: how far a pixel that is not at a step may lie off the planes around it, in
+  /// standard deviations, 0 … 100. Smaller values drop more pixels.
   double max_plane_sigmas = 3.2;
+
+  /// `plane_edge`: the limit for pixels at a step between two surfaces, in standard deviations,
+  /// 0 … 100. Smaller values drop more flying pixels, and more pixels of surfaces.
   double max_edge_sigmas = 1.5;
+
+  /// `plane_edge`: deviation in depth from a plane that is always accepted, 0 … 10 m. It is added
+  /// to the two limits above in quadrature.
   double plane_tolerance_m = 0.03;
+
+  /// `smooth`: averages a pixel only with pixels that differ from it by fewer standard deviations
+  /// than this, 0 … 100.
   double max_smooth_sigmas = 3;
+
+  /// `smooth`: difference in depth up to which pixels are always averaged, 0 … 10 m. It is added to
+  /// the limit above in quadrature.
   double smooth_tolerance_m = 0.005;
+
+  /// `outlier`: drops points whose spacing to their neighbours exceeds the median of the image by
+  /// more than this many standard deviations, 0 … 1000.
   double max_outlier_deviations = 5;
 
   static std::vector<OptionField<FilterOptions>> fields();
 };
 
-/// The default chain where ranges are the result: smoothed in the end. Maps are made of planes
-/// fitted to them, which is the better smoothing, and noise that neighbours share already would
-/// look like shape.
+/// The default chain, followed by `smooth`: for ranges that are the final result. Maps do not use
+/// it, because they fit planes to the ranges, which smooths better, and because noise that
+/// neighbouring pixels share would look like the shape of a surface.
 std::string smoothing_chain();
 
 /// What one filter of the chain did.
 struct FilterCount {
   std::string name;
-  InvalidReason reason = InvalidReason::none;
-  int removed = 0;
-  int corrected = 0;  ///< pixels that got another wrap count
+  InvalidReason reason = InvalidReason::none;  ///< of the dropped pixels; none if it drops nothing
+  int removed = 0;                             ///< number of pixels that were dropped
+  int corrected = 0;                           ///< number of pixels whose wrap count was changed
 };
 
 struct FilterResult {
@@ -55,8 +102,10 @@ struct FilterResult {
 /// The names of all filters, with `separator` between them.
 std::string filter_names(const std::string& separator);
 
-/// Applies the filters named in `options.chain`, in that order. Throws UsageError for a name
-/// that is none of filter_names().
+/// Applies the filters named in `options.chain`, in that order. Each filter sees the image that the
+/// previous filters left. A dropped pixel keeps the reason of the filter that dropped it. Throws
+/// UsageError if a name in the chain is not one of filter_names(), or if a filter finds that
+/// `image`, `frame` and `rays` differ in size.
 FilterResult apply_filters(const RangeImage& image, const DualFrequencyFrame& frame,
                            const Modulation& modulation, const PixelRays& rays,
                            const FilterOptions& options);

@@ -7,13 +7,14 @@
 
 namespace tofmap {
 
-/// Drops pixels whose amplitude, the weaker of both frequencies, is below `min_amplitude` (in the
-/// camera's own units). A frame without amplitudes keeps all. Throws UsageError if image and
-/// frame differ in size.
+/// Drops pixels whose amplitude, the weaker one of both frequencies, is below `min_amplitude`, in
+/// the units of the camera. Keeps all pixels if the frame has no amplitudes. Dropped pixels get the
+/// reason `low_amplitude`. Throws UsageError if image and frame differ in size.
 RangeImage drop_low_amplitude(const RangeImage& image, const DualFrequencyFrame& frame,
                               double min_amplitude);
 
-/// Drops pixels whose confidence is below `min_confidence`.
+/// Drops pixels whose confidence is below `min_confidence`, 0 … 1. Dropped pixels get the reason
+/// `low_confidence`.
 RangeImage drop_low_confidence(const RangeImage& image, double min_confidence);
 
 }  // namespace tofmap

@@ -11,22 +11,28 @@ namespace tofmap {
 
 /// Limits of average_phasors().
 struct PhasorMeanLimits {
-  double min_noise_cycles =
-      0.1;                    ///< pixels with less noise than that share of λ_A stay as they are
-  double max_radius_px = 16;  ///< windows grow no farther; 0: nothing is averaged
+  /// Only pixels whose range noise exceeds this fraction of λ_A are averaged, 0 … 1.
+  double min_noise_cycles = 0.1;
+  /// Largest radius of the windows, pixels. Nothing is averaged if it is below 2.
+  double max_radius_px = 16;
 };
 
-/// Ranges of pixels whose phases are so noisy that neither their wraps nor edges show in them: from
-/// phasors of both frequencies, averaged in windows that grow with the noise, along surfaces and
-/// not across edges (docs/filters.md).
+/// Averages the phasors of pixels that are so noisy that neither their wrap counts nor edges can be
+/// seen. The windows grow with the noise, along surfaces but not across edges (docs/filters.md,
+/// section phasor_mean).
 ///
-/// The range of such a pixel becomes that of the plane fitted to the phasors of its window, at the
-/// count that both frequencies and the pixel's own count and confidence make the likeliest;
-/// wrap_count is the whole wavelengths in that range, confidence the probability of that count,
-/// sigma_m the standard deviation within it, and averaged_px tells how many pixels' noise is in it.
-/// Other pixels lend their phasors and stay as they are. An image in which less than half
-/// of the pixels are that noisy stays as a whole. No pixel becomes valid or invalid. Throws
-/// UsageError if image, frame and rays differ in size.
+/// A plane is fitted to the phasors of both frequencies in the window of each noisy pixel. The
+/// pixel gets the range of that plane, with the wrap count that is most probable given the phases
+/// of the plane and the pixel's previous wrap count and confidence:
+/// - wrap_count is the number of whole λ_A in the range,
+/// - confidence is the probability of the count,
+/// - sigma_m is the standard deviation of the range if the count is right,
+/// - averaged_px is the number of pixels over whose noise the range is averaged.
+///
+/// Pixels with less noise contribute their phasors, but are not changed. The image is returned
+/// unchanged if fewer than half of its valid pixels are noisy. No pixel becomes valid or invalid.
+/// Throws UsageError if image, frame and rays differ in size; the frame is checked only if there
+/// are enough noisy pixels.
 RangeImage average_phasors(const RangeImage& image, const DualFrequencyFrame& frame,
                            const Modulation& modulation, const PixelRays& rays,
                            const PhasorMeanLimits& limits);

@@ -9,33 +9,36 @@
 
 namespace tofmap {
 
-/// Limits of drop_off_planes(), in standard deviations of the noise of pixel and plane.
+/// How far a pixel may deviate from the planes around it in drop_off_planes(). Deviations are in
+/// depth; standard deviations are those of pixel and prediction together.
 struct PlaneEdgeLimits {
-  double max_sigmas = 3.2;       ///< farther off is off, where no step is
-  double max_edge_sigmas = 1.5;  ///< the same at a step between two surfaces
-  double tolerance_m = 0.03;     ///< what is no farther off than that, in depth, is not off
+  double max_sigmas = 3.2;       ///< standard deviations, for pixels that are not at a step
+  double max_edge_sigmas = 1.5;  ///< standard deviations, for pixels at a step between surfaces
+  double tolerance_m = 0.03;     ///< always accepted; added to the other limits in quadrature
 };
 
-/// Drops pixels that lie on no surface around them: flying pixels at jump edges.
+/// Drops pixels that lie on none of the surfaces around them, that is, flying pixels at jump edges.
+/// They get the reason `jump_edge`. docs/filters.md has the equations.
 ///
-/// In each of 8 directions, the next two pixels predict this one's inverse depth, in which planes
-/// are linear however slanted: q₀ = 2 q₁ − q₂. A pixel of a surface agrees with the predictions
-/// of at least three adjacent directions, even at a corner of the surface; a flying pixel at most
-/// with those along its edge, where its neighbours fly as well. Predictions come from pixels
-/// averaged with their surroundings (averaged_over_pairs), so that noise hides no flying pixel nor
-/// makes one. Where opposite sides of the pixel are two surfaces, it must agree more closely.
+/// In each of 8 directions, the next two pixels predict the inverse depth of the pixel,
+/// q₀ = 2 q₁ − q₂: planes are linear in inverse depth, however slanted they are. A pixel of a
+/// surface agrees with the predictions of at least three adjacent directions, even at a corner of
+/// the surface. A flying pixel agrees at most with the two directions along its edge, where its
+/// neighbours are flying pixels as well. Predictions are made from averages over the pixels around
+/// (averaged_over_pairs()), so that noise neither hides nor creates a flying pixel. The limit is
+/// stricter where the pixel is between two surfaces.
 ///
-/// Both the range from both frequencies and the range from A alone must agree: the two frequencies
-/// of a mixed pixel are seldom off by the same. What a frequency is off by all over a surface
-/// changes nothing, since only differences between pixels are compared.
+/// Both the range from both frequencies and the range from A alone must agree, since the errors of
+/// the two frequencies at a mixed pixel are seldom equal. An error of a frequency that is the same
+/// all over a surface has no effect, since only differences between pixels are compared.
 ///
-/// On a strip that is two pixels wide, only the two directions along it agree. So a pixel stays,
-/// too, if that holds for one beside it as well and both are equally deep. What agrees only with
-/// pixels that are dropped is dropped in a second pass; what is as deep as two pixels that are kept
-/// is taken back at last.
+/// On a strip that is two pixels wide, only the two directions along the strip agree. So a pixel
+/// also stays if the same is true of a pixel beside it and both have the same depth. A second pass
+/// drops pixels at steps that agree only with dropped pixels. Finally, a pixel that has the same
+/// depth as two kept neighbours is restored.
 ///
-/// What is thinner than two pixels goes. To be used after unwrapping. Throws UsageError if image,
-/// frame and rays differ in size.
+/// Objects that are thinner than two pixels are lost. Apply it after unwrapping. Throws UsageError
+/// if image, frame and rays differ in size.
 RangeImage drop_off_planes(const RangeImage& image, const DualFrequencyFrame& frame,
                            const Modulation& modulation, const PixelRays& rays,
                            const PlaneEdgeLimits& limits);

@@ -12,31 +12,34 @@ namespace tofmap {
 /// A frame after fusion.
 struct FusedFrame {
   RangeImage image;
-  int views = 0;  ///< other frames that it was fused with
+  int views = 0;  ///< number of other frames that it was fused with
 };
 
-/// Fuses each frame of a recording with `FusionOptions::views` frames before and after it
-/// (fuse_views). Frames without a pose are not fused, and take no part in the fusion of others.
+/// Fuses each frame of a recording with `FusionOptions::views` frames before and after it, by
+/// fuse_views(). A frame without a pose is returned unchanged, and is not used for other frames.
 ///
 ///   fusion.add(image, pose);                                  // for each frame, in order of time
 ///   for (int i = 0; i < fusion.ready(is_last); ++i) use(fusion.fused(i));
 ///   fusion.drop(fusion.ready(is_last));
 class SlidingFusion {
  public:
-  /// `rays` must outlive this.
+  /// `rays` are those of `camera`, and must outlive the object.
   SlidingFusion(const CameraModel& camera, const PixelRays& rays, const FusionOptions& options);
 
+  /// Adds the next frame. `world_from_camera` is empty if the frame was not registered.
   void add(RangeImage image, const std::optional<Pose>& world_from_camera);
 
-  /// How many frames can be fused now: those whose later neighbours have been added, or all
-  /// `at_the_end` of the recording.
+  /// The number of frames that can be fused now: those for which all later neighbours have been
+  /// added, or all remaining frames if `at_the_end` of the recording.
   int ready(bool at_the_end) const;
 
-  /// The frame that was added `place` frames after the first one that was not dropped. May be
-  /// called from several threads.
+  /// Fuses a frame. `place` counts from the first frame that was not dropped,
+  /// 0 … ready() − 1. May be called from several threads at the same time. Throws UsageError if an
+  /// image has another size than the rays.
   FusedFrame fused(int place) const;
 
-  /// Marks the first `count` frames as done. They are kept only as long as later frames need them.
+  /// Marks the first `count` frames as done. They stay in memory only as long as later frames are
+  /// to be fused with them.
   void drop(int count);
 
  private:
@@ -48,8 +51,8 @@ class SlidingFusion {
   CameraModel camera_;
   const PixelRays& rays_;
   FusionOptions options_;
-  std::deque<Frame> frames_;  ///< at most options_.views that are done, and all that are not
-  int done_ = 0;              ///< of frames_
+  std::deque<Frame> frames_;  ///< at most options_.views done frames, and all that are not done
+  int done_ = 0;              ///< number of done frames at the front of frames_
 };
 
 }  // namespace tofmap

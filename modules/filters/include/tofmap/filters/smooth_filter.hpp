@@ -9,17 +9,19 @@ namespace tofmap {
 
 /// Limits of smooth_ranges().
 struct SmoothLimits {
-  double max_sigmas = 3;       ///< pixels that differ by more noise than that are not averaged
-  double tolerance_m = 0.005;  ///< unless they differ by less than that in depth
+  double max_sigmas = 3;       ///< largest difference of averaged pixels, standard deviations
+  double tolerance_m = 0.005;  ///< always accepted, in depth; added to max_sigmas in quadrature
 };
 
-/// Smooths ranges along their rays: each valid pixel becomes the mean of itself and of the pairs of
-/// opposite pixels of the 5 x 5 around it that agree with it, weighted by predicted noise and by
-/// confidence, and the less the farther they are off. Pairs cancel slant, so planes stay where they
-/// are, also at grazing incidence; a pair across an edge disagrees and is left out. sigma_m becomes
-/// that of the mean. Pixels that are means already (RangeImage::averaged_px) stay as they are,
-/// since their noise is that of their neighbours. No pixel becomes valid or invalid. Throws
-/// UsageError if image and rays differ in size.
+/// Smooths ranges along their rays. Each valid pixel gets the mean of its own inverse depth and of
+/// the pairs of opposite pixels, one and two pixels away in 4 directions, that agree with it.
+/// Weights follow predicted noise and confidence, and fall with the difference from the pixel.
+///
+/// The mean of a pair does not depend on the slant, so planes are not displaced, not even at
+/// grazing incidence. A pair across an edge disagrees and is left out. sigma_m becomes the standard
+/// deviation of the mean. Pixels that are averages already (RangeImage::averaged_px above 1) are
+/// not changed, since they share the noise of their neighbours. No pixel becomes valid or invalid.
+/// Throws UsageError if image and rays differ in size.
 RangeImage smooth_ranges(const RangeImage& image, const PixelRays& rays,
                          const SmoothLimits& limits);
 

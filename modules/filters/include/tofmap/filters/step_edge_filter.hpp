@@ -9,15 +9,22 @@ namespace tofmap {
 
 /// Limits of drop_steps().
 struct StepEdgeLimits {
-  double max_incidence_rad = 1.396;  ///< surfaces seen at more than this (80°) look like steps
-  double min_sigmas = 3;             ///< steps below that, in the noise of both pixels, are none
+  /// Angle of incidence of the steepest surface that is not taken for a step. The default is 80°.
+  double max_incidence_rad = 1.396;
+  /// Standard deviations of the range errors of both pixels that a step must exceed in addition.
+  double min_sigmas = 3;
 };
 
-/// Drops pixels between two steps: in one of 4 directions the range falls from one neighbour to the
-/// pixel, and again to the opposite neighbour, by more than a surface at `max_incidence_rad` falls
-/// from pixel to pixel at that range, and more than noise. Neighbours outside the image or invalid
-/// say nothing. Every pixel is judged by the image as it came in. To be used after unwrapping.
-/// Throws UsageError if image and rays differ in size.
+/// Drops pixels between two steps, with the reason `jump_edge`: along one of 4 directions, the
+/// range decreases from one neighbour to the pixel and again from the pixel to the opposite
+/// neighbour, both times by more than
+///
+///   T = tan α ψ min(r, r') + k √(σ² + σ'²)
+///
+/// with α = `max_incidence_rad`, the angle ψ between the rays, and k = `min_sigmas`
+/// (docs/filters.md, equation 5). Neighbours that are invalid or outside the image are ignored. The
+/// result does not depend on the order of the pixels. Apply it after unwrapping. Throws UsageError
+/// if image and rays differ in size.
 RangeImage drop_steps(const RangeImage& image, const PixelRays& rays, const StepEdgeLimits& limits);
 
 }  // namespace tofmap

@@ -12,34 +12,43 @@
 
 namespace tofmap {
 
-/// Ranges of one frame and where the camera was. The image must outlive its use.
+/// Ranges of one frame and the pose of the camera. The image must outlive the view.
 struct PosedView {
-  const RangeImage* image = nullptr;
+  const RangeImage* image = nullptr;  ///< not null
   Pose world_from_camera = Pose::Identity();
 };
 
+/// How frames are fused with their neighbours.
 struct FusionOptions {
+  /// Number of frames before and after each frame that are fused with it, 0 … 100. 0 turns fusion
+  /// off. fuse_views() ignores it, since its caller chooses the views.
   int views = 2;
+
+  /// Largest difference between ranges that are averaged, 0 … 100 standard deviations of both.
   double max_sigmas = 3;
+
+  /// Displacement of surfaces by errors of the poses that is accepted, 0 … 10 m. It is added to
+  /// max_sigmas in quadrature.
   double tolerance_m = 0.01;
 
   static std::vector<OptionField<FusionOptions>> fields();
 };
 
-/// Fuses a frame's ranges with those that other views have of the same surfaces.
+/// Fuses the ranges of a frame with those that other views have of the same surfaces. All poses
+/// share one world frame, and all images are of the same camera.
 ///
-/// For each valid pixel the surface of every other view is intersected with the pixel's ray: the
-/// point of the ray whose depth in the other camera is that of the other image there, between four
-/// pixels without a step, by two steps of the secant method. Where that range agrees with the
-/// pixel's own within `max_sigmas` of the noise of both and `tolerance_m` (of poses), it is
-/// averaged in, weighted by confidence and noise and the less the farther it is off; sigma_m
-/// becomes that of the mean.
+/// For each valid pixel, its ray is intersected with the surface of every other view: two steps of
+/// the secant method find the point of the ray whose depth in the other camera equals the depth
+/// that the other image has there, interpolated between four pixels of one surface. If the range of
+/// that point agrees with the range of the pixel within `max_sigmas` and `tolerance_m`, it is
+/// included in a weighted mean. Weights follow confidence and variance, and fall with the
+/// difference from the pixel. sigma_m becomes the standard deviation of the mean.
 ///
-/// A pixel that more views see through than agree with, at least two, is none of a surface that
-/// stays: it is dropped as `free_space_violation` (flying pixels, what moves, wrong wraps). No
-/// pixel becomes valid. `FusionOptions::views` is for the caller, who chooses the views.
+/// A pixel is dropped, with the reason `free_space_violation`, if at least two views see through
+/// it, and more views see through it than agree with it. Such pixels are flying pixels, moving
+/// objects or wrong wrap counts. No pixel becomes valid.
 ///
-/// Throws UsageError if images and camera differ in size.
+/// Throws UsageError if an image and `rays` differ in size.
 RangeImage fuse_views(const PosedView& view, std::span<const PosedView> others,
                       const CameraModel& camera, const PixelRays& rays,
                       const FusionOptions& options);

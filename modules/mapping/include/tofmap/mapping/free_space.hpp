@@ -10,13 +10,16 @@
 
 namespace tofmap {
 
-/// Leaves out points that keyframes see through: what moved on, flying pixels, wrong wraps.
+/// Removes the points of a map that violate free space, that is, points at places that keyframes
+/// see through: moving objects, flying pixels and points with a wrong wrap count.
 ///
-/// A keyframe sees through a point that lies in front of the surface it sees at the point's pixel
-/// and at the eight around it, by more than `margin_m` and three standard deviations of the
-/// surface. It agrees with one that lies within that of the surface at its pixel. A point goes if
-/// at least two keyframes see through it and more than agree with it. Where a keyframe has no
-/// surface it says nothing. The result is the same for any number of threads.
+/// A keyframe sees through a point if the point lies in front of the keyframe's surfaces at the
+/// pixel that it projects into and at the eight pixels around, each time by more than `margin_m`
+/// plus three standard deviations of the surface along its normal. The keyframe agrees with the
+/// point if the point lies within that distance of the surface at its pixel. A keyframe that has no
+/// surface at one of the nine pixels does not see through the point. A point is removed if at least
+/// two keyframes see through it, and more than agree with it. The result is the same for any number
+/// of threads.
 MapCloud without_free_space_violations(const MapCloud& map, std::span<const Keyframe> keyframes,
                                        const CameraModel& camera, double margin_m);
 

@@ -14,27 +14,29 @@
 
 namespace tofmap {
 
-/// A frame that later frames are registered against.
+/// A frame that is kept, and that later frames are registered with.
 struct Keyframe {
-  int id = 0;  ///< keyframes are numbered from 0, without gaps, in the order of time
-  int frame_index = 0;
+  int id = 0;           ///< keyframes are numbered from 0, without gaps, in the order of time
+  int frame_index = 0;  ///< index of the frame in the recording
   double timestamp_s = 0;
   Pose world_from_camera = Pose::Identity();
-  std::shared_ptr<const SurfaceCloud> cloud = {};  ///< in the camera's frame
-  double path_m = 0;                               ///< how far the camera has come
-  PlaceDescriptor place = {};                      ///< of the cloud
+  std::shared_ptr<const SurfaceCloud> cloud = {};  ///< in the camera's frame; not null
+  double path_m = 0;           ///< length of the path through all keyframes up to this one
+  PlaceDescriptor place = {};  ///< of the cloud
 };
 
-/// A keyframe as frames are registered against it; it must outlive the target.
+/// A keyframe as a target of registration. The keyframe must outlive the target.
 inline RegistrationTarget target_of(const Keyframe& keyframe) {
   return {keyframe.cloud.get(), keyframe.world_from_camera};
 }
 
-/// A keyframe with those before and after it, as targets.
+/// A keyframe and the ones directly before and after it, as targets. `keyframes` are in the order
+/// of their ids, from 0, and must outlive the targets.
 std::vector<RegistrationTarget> targets_around(const Keyframe& keyframe,
                                                std::span<const Keyframe> keyframes);
 
-/// So many of the keyframes that look most like a place, the most alike first.
+/// The `most` keyframes whose descriptors differ least from `place`, most similar first. All
+/// keyframes if there are fewer.
 std::vector<const Keyframe*> most_alike(const PlaceDescriptor& place,
                                         std::vector<const Keyframe*> keyframes, std::size_t most);
 

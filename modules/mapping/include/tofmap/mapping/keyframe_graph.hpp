@@ -13,35 +13,39 @@ class access;
 
 namespace tofmap {
 
-/// The steps at which keyframes are taken.
+/// The distance between keyframes, in translation and in rotation. Both must be positive.
 struct KeyframeSpacing {
   double step_m = 0;
   double rotation_rad = 0;
 
-  /// How many steps apart two cameras are: by distance or by turn, the larger of both.
+  /// The distance of two cameras in units of this spacing: by translation or by rotation, whichever
+  /// is larger.
   double between(const Pose& a, const Pose& b) const;
 };
 
-/// The keyframes of a run, and which of them have been registered with each other: those are where
-/// they should be relative to one another, however far the path has drifted between them.
+/// The keyframes of a run, and which of them were registered with each other. Keyframes that were
+/// registered with each other have correct relative poses, however far the path drifted between
+/// them.
 class KeyframeGraph {
  public:
-  /// Ids count from 0.
+  /// Adds a keyframe, whose id must be size().
   void add(Keyframe keyframe);
 
-  /// Both have been registered with each other, and their poses agree with that.
+  /// Records that two keyframes were registered with each other, and that their poses agree with
+  /// the result.
   void tie(int a, int b);
 
   int size() const { return static_cast<int>(keyframes_.size()); }
   const Keyframe& operator[](int id) const { return keyframes_[static_cast<std::size_t>(id)]; }
   std::span<const Keyframe> all() const { return keyframes_; }
 
-  /// Moves a keyframe.
+  /// Sets the pose of a keyframe.
   void place(int id, const Pose& world_from_camera);
 
-  /// The keyframes around a pose, at most `count`, among those that few ties lie between and `id`:
-  /// those the fewest steps away. `id` is one of them and comes last, the others in the order of
-  /// their ids.
+  /// At most `count` keyframes around a pose: keyframe `id`, and those nearest to the pose among
+  /// the keyframes that at most five registrations connect with `id`. Keyframe `id` comes last, the
+  /// others come in the order of their ids. `steps` is the unit of distance. The pointers are valid
+  /// until a keyframe is added.
   std::vector<const Keyframe*> around(int id, const Pose& pose, int count,
                                       const KeyframeSpacing& steps) const;
 
@@ -50,11 +54,11 @@ class KeyframeGraph {
   template <class Archive>
   void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
 
-  /// Ids that at most so many ties lie between and `id`, without it.
+  /// Ids of the keyframes that at most five registrations connect with `id`, without `id`.
   std::vector<int> within_reach(int id) const;
 
   std::vector<Keyframe> keyframes_;
-  std::vector<std::vector<int>> tied_;  ///< to each keyframe
+  std::vector<std::vector<int>> tied_;  ///< for each keyframe, those registered with it
 };
 
 }  // namespace tofmap

@@ -14,69 +14,88 @@
 
 namespace tofmap {
 
+/// Options of loop closure and relocalisation.
 struct LoopOptions {
+  /// Whether loops are searched for, and the path corrected by them.
   bool close = true;
+  /// Loops are searched for among keyframes that are at most this far away by their current poses,
+  /// 0.1 … 100 m.
   double radius_m = 3;
+  /// Loops are searched for among keyframes that are rotated by at most this by their current
+  /// poses, 0.01 … 3.2 rad.
   double max_rotation_rad = 1;
+  /// Smallest difference between the ids of the keyframes of a loop, 1 … 100000.
   int min_gap = 20;
+  /// Smallest share of a keyframe's points that must have a correspondence in earlier keyframes,
+  /// 0.01 … 1.
   double min_overlap = 0.35;
+  /// Smallest share of the correspondences of a loop that must fit its pose, 0 … 1.
   double min_inlier_ratio = 0.7;
+  /// Standard deviation of the drift in position as a share of the length of the path between both
+  /// keyframes of a loop, 0 … 1.
   double drift_share = 0.01;
+  /// Width of the kernel of the pose graph in standard deviations of a loop constraint, 0.5 … 100.
+  /// Loop constraints with larger errors are down-weighted.
   double kernel_width = 3;
 
   static std::vector<OptionField<LoopOptions>> fields();
 };
 
-/// Drift of directions: a metre's drift in position comes with this.
+/// Drift in rotation that comes with a drift of one metre in position.
 inline constexpr double drift_rad_per_drift_m = 0.3;
 
-/// Where a camera is expected, and how far it may have drifted along a path, metres.
+/// A prior at the expected pose whose standard deviations are those of the drift along a path of
+/// this length, and at least 0.05 m and 0.03 rad.
 MotionPrior drift_prior(const Pose& expected, double path_m, const LoopOptions& options);
 
-/// What became of the search for a loop.
+/// Result of a search for a loop.
 struct LoopCandidate {
-  int from = -1;  ///< id of the earlier keyframe; −1: there is none
-  RegistrationResult registration;
-  std::optional<PoseEdge> edge;  ///< if the loop was verified
+  int from = -1;                    ///< id of the earlier keyframe; −1 if there is no candidate
+  RegistrationResult registration;  ///< of the later keyframe with the earlier one
+  std::optional<PoseEdge> edge;     ///< loop constraint; empty if the loop was not verified
 };
 
-/// Looks for an earlier keyframe that sees what `keyframe` sees.
+/// Searches for an earlier keyframe that sees the same place as `keyframe`.
 ///
-/// Candidates are keyframes at least `min_gap` before it, whose cameras stand within `radius_m` and
-/// look within `max_rotation_rad` of the same direction. The three that overlap most are registered
-/// against together, from the pose as it is believed and with a prior as wide as drift allows:
-/// `drift_share` of the path between. If that is not verified, drift may have been larger: then the
-/// candidate that looks most like the keyframe is registered against from where it stands, and what
-/// is found counts if it is within three standard deviations of drift. The loop is there if
-/// is_verified(). Only keyframes before it in `keyframes`, which are in order of their ids, are
-/// looked at.
+/// Candidates are keyframes with an id that is smaller by at least `min_gap`, whose cameras are
+/// within `radius_m` and `max_rotation_rad` of the camera of `keyframe`. First, `keyframe` is
+/// registered with the three candidates that overlap it most, together, from its current pose with
+/// drift_prior() along the path since. If the result is not verified, the drift may have been
+/// larger: then `keyframe` is registered with the candidate that looks most similar, from the pose
+/// of that candidate, and the result is accepted if it is within three standard deviations of
+/// drift. A loop is found if is_verified(). `keyframes` are in the order of their ids, from 0, and
+/// hold all earlier keyframes; later ones are ignored.
 LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyframes,
                         const CameraModel& camera, const LoopOptions& options,
                         const RegistrationOptions& registration);
 
-/// Registers twice: first across gaps of twice the prior's standard deviation, up to a metre; then,
-/// from what that finds, as closely as frames are registered.
+/// Registers a cloud whose pose is known only roughly, in two stages: first with correspondence
+/// distances up to twice the prior's standard deviation, at most 1 m, then from the resulting pose
+/// with the given options.
 RegistrationResult register_from_afar(const SurfaceCloud& cloud,
                                       std::span<const RegistrationTarget> targets,
                                       const CameraModel& camera, const MotionPrior& prior,
                                       const RegistrationOptions& registration);
 
-/// How far from a keyframe a camera may stand and look that is recognised by it.
+/// How far a camera may be from a keyframe that recognises it: the standard deviations of the prior
+/// of register_near().
 inline constexpr double recognition_reach_m = 0.5;
 inline constexpr double recognition_reach_rad = 0.35;
 
-/// Registers a cloud from afar as if it had been taken where a keyframe was, against that one and
-/// those before and after it in `keyframes`.
+/// Registers a cloud with a keyframe and the keyframes directly before and after it, from the pose
+/// of that keyframe (register_from_afar()).
 RegistrationResult register_near(const Keyframe& keyframe, const SurfaceCloud& cloud,
                                  std::span<const Keyframe> keyframes, const CameraModel& camera,
                                  const RegistrationOptions& registration);
 
-/// Whether a registration far from where the path came from can be believed: it converged with
-/// `min_overlap` and `min_inlier_ratio`, and leaves no direction to the prior.
+/// Whether a registration that does not follow from the motion of the camera can be trusted: it
+/// converged, reaches `min_overlap` and `min_inlier_ratio`, and has no degenerate direction.
 bool is_verified(const RegistrationResult& result, const LoopOptions& options);
 
-/// The edge that a registration against `from` measures, with what registration cannot know of its
-/// own errors added to its covariance.
+/// The edge of the pose graph from a registration of keyframe `to` with keyframe `from`.
+/// `covariance` is that of the pose error, along the world's axes. The edge has it along the axes
+/// of `from`, increased by the errors that neighbouring frames share, which registration cannot
+/// measure.
 PoseEdge edge_of(const Keyframe& from, int to, const Pose& world_from_camera,
                  const Eigen::Matrix<double, 6, 6>& covariance);
 

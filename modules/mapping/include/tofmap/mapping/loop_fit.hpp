@@ -10,14 +10,15 @@
 
 namespace tofmap {
 
-/// The poses of keyframes that fit all edges between them best (optimise_pose_graph()).
+/// Optimises the poses of keyframes over all edges between them (optimise_pose_graph()).
 ///
-/// Covariances of edges tell of noise. Errors that all frames share, such as a periodic error of
-/// ranges, add up along the path far beyond them, and right loops would be outvoted. So if
-/// loops that agree with each other, at least two and most of all, are mostly outvoted, it is the
-/// path that is wrong: the fit is made anew with them alone, and with the other edges loosened
-/// until they allow for a drift of `drift_share` of the path. A wrong loop has no other to agree
-/// with.
+/// The covariances of edges only cover noise. Errors that all frames share, such as a periodic
+/// error of ranges, add up along the path to much more, so that correct loops would be rejected.
+/// Wrong loops do not agree with each other. Therefore, if more than half of the loops, and at
+/// least two, agree with each other, but most of these are rejected, the path is taken to be wrong.
+/// The poses are then optimised again with only these loops, and with larger covariances of the
+/// other edges, which allow for a drift of `drift_share` of the path. The result has the
+/// Mahalanobis distances of all edges in any case.
 PoseGraphResult fit_loops(std::span<const Keyframe> keyframes, std::span<const PoseEdge> edges,
                           const LoopOptions& options);
 

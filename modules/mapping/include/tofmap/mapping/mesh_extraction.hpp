@@ -7,14 +7,14 @@
 
 namespace tofmap {
 
-/// The surface that a map's points lie on.
+/// Extracts a triangle mesh of the surface that a map's points lie on.
 ///
-/// Distances to the points' planes are averaged at the corners of a grid, up to two voxels from the
-/// points (an implicit surface as of Hoppe et al., SIGGRAPH 1992, kept only near the points: memory
-/// follows the surface), and the surface is where they are zero (VTK's vtkContour3DLinearGrid).
-/// There is none where a cell has a corner far from all points, so holes of the map stay open, but
-/// for those a few voxels wide. Of both sides of a panel thinner than that the one that comes first
-/// in the map is taken. The result is the same for any number of threads.
+/// The signed distances to the planes of points within two voxels are averaged at the corners of a
+/// grid (an implicit surface as by Hoppe et al., SIGGRAPH 1992, stored only near points). The mesh
+/// is where the averaged distance is zero (VTK's vtkContour3DLinearGrid). A cell with a corner that
+/// is far from all points has no surface, so holes of the map stay open unless they are only a few
+/// voxels wide. Of a panel that is thinner than that, only the side that comes first in the map is
+/// meshed. The result is empty if no cell has a surface, and is the same for any number of threads.
 ///
 /// Throws UsageError if the voxels are too small for the extent of the map.
 SurfaceMesh extract_mesh(const MapCloud& map, double voxel_m);

@@ -10,29 +10,31 @@ class access;
 
 namespace tofmap {
 
-/// How far off a camera may be that is expected to go on as it went: the covariance of a Kalman
-/// filter with constant velocity, of pose and velocity together. Where surfaces say nothing of a
-/// direction for some frames, it tells how quickly what is known of that direction fades.
+/// Uncertainty of the pose of a camera that is assumed to move with constant velocity: the joint
+/// covariance of pose and velocity of a Kalman filter. It grows in directions that the surfaces do
+/// not constrain for some frames.
 ///
-/// Poses are off by twists: rotation vector about the camera's centre, radians, and translation,
+/// A pose error is a twist: rotation vector about the camera's centre, radians, then translation,
 /// metres, both along the world's axes.
 class MotionUncertainty {
  public:
   using Covariance = Eigen::Matrix<double, 6, 6>;
 
-  /// How much turn and step between two frames may change from one to the next.
+  /// The arguments are the standard deviations, per axis, of the change in frame-to-frame rotation
+  /// and translation from one frame to the next.
   MotionUncertainty(double rotation_sigma_rad, double translation_sigma_m);
 
-  /// So many frames have passed, at least one, and surfaces tell this much of the pose.
+  /// Predicts over `frames` ≥ 1 frames, then updates with the information about the pose that the
+  /// surfaces of the last of these frames give.
   void learn(int frames, const Covariance& information);
 
-  /// Of the last pose.
+  /// Covariance of the error of the last pose.
   Covariance of_pose() const { return joint_.topLeftCorner<6, 6>(); }
 
-  /// The pose is known, and the camera stands.
+  /// Sets all uncertainty to zero: the pose is known, and the camera stands still.
   void reset();
 
-  /// The world's axes have turned.
+  /// Rotates the covariance into new axes of the world.
   void turn(const Eigen::Matrix3d& new_from_old);
 
  private:
@@ -43,7 +45,7 @@ class MotionUncertainty {
   using Joint = Eigen::Matrix<double, 12, 12>;
 
   Eigen::Matrix<double, 6, 1> change_sigmas_;
-  Joint joint_ = Joint::Zero();  ///< pose first, then velocity in twists a frame
+  Joint joint_ = Joint::Zero();  ///< pose first, then velocity in twists per frame
 };
 
 }  // namespace tofmap

@@ -21,81 +21,105 @@ class access;
 
 namespace tofmap {
 
+/// Options of Odometry, and of where RoomMapper takes keyframes.
 struct OdometryOptions {
+  /// A frame becomes a keyframe if it is at least this far, or `keyframe_rotation_rad` in rotation,
+  /// from each keyframe around it, and twice as far from those of an earlier visit; 0.01 … 10 m.
   double keyframe_translation_m = 0.25;
+  /// Rotation from each keyframe around it that makes a frame a keyframe, 0.01 … 3.2 rad. See
+  /// `keyframe_translation_m`.
   double keyframe_rotation_rad = 0.21;
+  /// Number of keyframes around the camera that are considered as targets, 1 … 1000.
   int keyframes_around = 15;
+  /// Largest number of keyframes that a frame is registered with, 1 … 16: those that overlap it
+  /// most.
   int targets = 3;
+  /// Smallest share of a frame's points that a target must see, 0 … 1. The keyframe that the
+  /// previous frame belongs to may see less.
   double min_target_overlap = 0.15;
+  /// Standard deviation, per axis, of the change in frame-to-frame rotation from one frame to the
+  /// next, 0.0001 … 3.2 rad.
   double prior_rotation_sigma_rad = 0.03;
+  /// Standard deviation, per axis, of the change in frame-to-frame translation from one frame to
+  /// the next, 0.0001 … 10 m.
   double prior_translation_sigma_m = 0.03;
+  /// Largest difference between the registered and the predicted pose, in standard deviations of
+  /// the prior, 1 … 1000. A pose that differs more is rejected.
   double max_prior_mahalanobis = 8;
 
   static std::vector<OptionField<OdometryOptions>> fields();
 };
 
+/// What became of a frame.
 enum class TrackingStatus {
-  first,  ///< the first usable frame: it defines the world
-  tracked,
+  first,        ///< the first frame with a surface: its camera is the origin of the world
+  tracked,      ///< registered with the keyframes around
   no_surface,   ///< the frame has too few points with normals
-  lost,         ///< registration failed, or is not believed
-  implausible,  ///< registration ended farther from the expected pose than motion allows
-  relocalised,  ///< lost before, and found again by a keyframe
+  lost,         ///< registration failed or was rejected
+  implausible,  ///< registration ended farther from the predicted pose than motion allows
+  relocalised,  ///< registered with an earlier keyframe after tracking was lost
   repeated,     ///< the frame repeats the one before it, and was not registered
 };
 
+/// The status as text, spelled like the enumerator.
 const char* status_name(TrackingStatus status);
 
+/// How a frame was tracked.
 struct TrackingResult {
   TrackingStatus status = TrackingStatus::lost;
-  Pose world_from_camera = Pose::Identity();  ///< meaningful only if `registered`
-  bool is_keyframe = false;                   ///< it has become one (RoomMapper decides)
-  std::vector<int> targets;  ///< ids of the keyframes it was registered against, best overlap first
-  RegistrationResult registration;
-  /// Covariance of the error of world_from_camera, if the status is `tracked`: rotation vector in
-  /// radians, then translation in metres, along the axes of the world. It is that of a filter over
-  /// the frames so far (MotionUncertainty), and not registration.covariance, which takes the motion
-  /// prior of this frame for independent of the frames before it.
+  Pose world_from_camera = Pose::Identity();  ///< meaningful only if registered()
+  bool is_keyframe = false;                   ///< whether RoomMapper made the frame a keyframe
+  std::vector<int> targets;  ///< ids of the keyframes it was registered with, best overlap first
+  RegistrationResult registration;  ///< all defaults if registration was not tried
+  /// Covariance of the error of world_from_camera if the status is `tracked`, else zero: rotation
+  /// vector in radians, then translation in metres, along the axes of the world. It comes from a
+  /// filter over the frames so far (MotionUncertainty). It is not registration.covariance, which
+  /// treats the motion prior of this frame as independent of the frames before it.
   Eigen::Matrix<double, 6, 6> pose_covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
+  /// Whether the pose of the frame was found.
   bool registered() const {
     return status == TrackingStatus::first || status == TrackingStatus::tracked ||
            status == TrackingStatus::relocalised;
   }
 };
 
-/// Follows the camera: registers each frame against those keyframes around it that overlap most,
-/// starting from constant velocity, and after a gap in time from where the camera was last as well,
-/// with three times the iterations. The first frame with a surface is registered at the origin. A
-/// frame that cannot be registered changes nothing but the time since the last registered one.
+/// Tracks the camera: registers each frame with those keyframes around it that overlap it most,
+/// from the pose that constant velocity predicts. After a gap in time, the last known pose is tried
+/// as well, and registration may take three times as many iterations. The first frame with a
+/// surface gets the identity as its pose. A frame that cannot be registered only increases the time
+/// since the last registered frame.
 class Odometry {
  public:
   Odometry(const CameraModel& camera, const OdometryOptions& options,
            const RegistrationOptions& registration);
 
-  /// Frames come in the order of time. `around` are keyframes that agree with one another; the last
-  /// one is registered against in any case. They may be empty only for the first frame that is
-  /// registered.
-  /// Where `is_believed` says no of a registration, the camera counts as lost.
+  /// Finds the pose of a frame. Frames must come in the order of time. `around` are keyframes whose
+  /// relative poses are correct. The last of them is considered as a target even if it overlaps the
+  /// frame by less than `min_target_overlap`. Without keyframes, every frame after the first
+  /// registered one is lost. If `is_believed` is given and returns false for a successful
+  /// registration, the frame is lost.
   TrackingResult track(double timestamp_s, const SurfaceCloud& cloud,
                        std::span<const Keyframe* const> around,
                        const std::function<bool(const RegistrationResult&)>& is_believed = {});
 
-  /// To be called for every frame after it was tried, here or otherwise: the times between frames
-  /// tell the camera's period.
+  /// Must be called for every frame after registration was tried, whether here or elsewhere. The
+  /// frame period of the camera is estimated from the timestamps.
   void note_frame(double timestamp_s);
 
-  /// Whether the last frame that was registered is more than three periods of the camera ago:
-  /// frames that never came count, too.
+  /// Whether the last registered frame is more than 3.5 frame periods before `timestamp_s`. Dropped
+  /// frames count as well. False if no frame was registered yet.
   bool is_after_gap(double timestamp_s) const;
 
-  /// Whether a camera can have come there meanwhile.
+  /// Whether the camera can have moved to `pose` since the last registered frame: `pose` is within
+  /// four standard deviations of the predicted pose or of the last one. False if no frame was
+  /// registered yet.
   bool is_within_reach(double timestamp_s, const Pose& pose) const;
 
-  /// Goes on from a frame that was registered otherwise.
+  /// Continues from a pose that was found elsewhere, with zero velocity.
   void restart(const StampedPose& pose);
 
-  /// Moves the camera along with the keyframes that it is registered against.
+  /// Transforms the poses of the last frames when the pose graph has moved their keyframes.
   void move(const Pose& new_from_old_world);
 
  private:
@@ -117,9 +141,9 @@ class Odometry {
   std::optional<StampedPose> last_;
   std::optional<StampedPose> before_last_;
   int frames_since_registered_ = 0;
-  std::vector<double> recent_periods_s_;  ///< from frame to frame, the newest last
-  double last_timestamp_s_ = 0;           ///< of the last frame that was tried
-  MotionUncertainty uncertainty_;         ///< of the last pose that was registered
+  std::vector<double> recent_periods_s_;  ///< times between successive frames, the newest last
+  double last_timestamp_s_ = 0;           ///< of the last frame passed to note_frame()
+  MotionUncertainty uncertainty_;         ///< of the last registered pose
 };
 
 }  // namespace tofmap

@@ -9,20 +9,23 @@
 
 namespace tofmap {
 
-/// What a place looks like, in a few numbers: median ranges of the parts of an image.
+/// Short description of what a frame sees, for recognising places: the logarithms of the median
+/// ranges in 11 x 9 parts of the image.
 class PlaceDescriptor {
  public:
-  PlaceDescriptor();  ///< of nothing
+  PlaceDescriptor();  ///< no part has a range
+  /// Describes an organised cloud. A part in which less than half of the pixels have a normal gets
+  /// no range.
   explicit PlaceDescriptor(const SurfaceCloud& cloud);
 
-  /// Mean difference of the logarithms of ranges, over parts that both have; 0 is the same, and it
-  /// does not depend on the order. Infinite if they share less than half of the parts.
+  /// Mean absolute difference of the logarithms over the parts in which both have a range. 0 for
+  /// equal descriptors; symmetric. Infinite if both have a range in less than half of the parts.
   double difference(const PlaceDescriptor& other) const;
 
  private:
   static constexpr std::size_t cols = 11;
   static constexpr std::size_t rows = 9;
-  std::array<float, rows * cols> log_range_;  ///< NaN where there is no surface
+  std::array<float, rows * cols> log_range_;  ///< by row, then column; NaN without a range
 };
 
 }  // namespace tofmap

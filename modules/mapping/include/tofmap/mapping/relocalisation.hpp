@@ -12,16 +12,19 @@
 
 namespace tofmap {
 
-/// Where a camera that was lost is found again.
+/// The pose of a camera that was found without knowledge of its motion.
 struct Relocalisation {
-  int keyframe = 0;  ///< id of the one it was recognised by
-  RegistrationResult registration;
+  int keyframe = 0;                 ///< id of the keyframe that the camera was recognised by
+  RegistrationResult registration;  ///< with that keyframe and its neighbours
 };
 
-/// Finds the camera of a cloud without knowing where to look: the five keyframes that look most
-/// like it are registered against, each with those before and after it, from where they stand. Of
-/// registrations that a loop would be verified by the one that explains most of the cloud is it;
-/// nothing if there is none, or if another place explains nearly as much.
+/// Finds the pose of a cloud among keyframes without an initial pose.
+///
+/// The cloud is registered with each of the five keyframes that look most similar, from the pose of
+/// that keyframe (register_near()). Of the results that are verified as for a loop (is_verified()),
+/// the one with the largest product of overlap and inlier ratio is returned. Empty if none is
+/// verified, or if another place reaches more than 90 % of that product. `keyframes` are in the
+/// order of their ids, from 0.
 std::optional<Relocalisation> relocalise(const SurfaceCloud& cloud,
                                          std::span<const Keyframe> keyframes,
                                          const CameraModel& camera, const LoopOptions& options,

@@ -18,69 +18,77 @@ class access;
 
 namespace tofmap {
 
-/// A place that was recognised.
+/// A loop: a place that was recognised.
 struct Loop {
-  int from_frame = 0;               ///< index of the earlier frame
-  int to_frame = 0;                 ///< index of the later one
-  double error_m = 0;               ///< by how much the path was off when the loop was found
-  double mahalanobis_distance = 0;  ///< of the constraint from the final poses
-  bool is_used = false;             ///< false: it disagrees with all others, and has lost its say
+  int from_frame = 0;               ///< index of the frame of the earlier keyframe
+  int to_frame = 0;                 ///< index of the frame of the later keyframe
+  double error_m = 0;               ///< error of the path in position when the loop was found
+  double mahalanobis_distance = 0;  ///< of the loop constraint at the poses of the last fit
+  bool is_used = false;  ///< whether the last fit accepted it; false before the first fit
 };
 
-/// What a mapper needs to know of a frame.
+/// Input of RoomMapper::add_frame().
 struct NewFrame {
-  int index = 0;
+  int index = 0;  ///< of the frame in the recording
   double timestamp_s = 0;
-  std::shared_ptr<const SurfaceCloud> cloud;  ///< camera frame; not null unless `repeats`
-  bool repeats = false;                       ///< it has the phases of the frame before it
+  std::shared_ptr<const SurfaceCloud> cloud;  ///< in the camera's frame; not null unless `repeats`
+  bool repeats = false;                       ///< whether it has the phases of the frame before it
 };
 
-/// What became of a frame, and the wall-clock time that it took.
+/// What became of a frame, and the wall-clock times of the steps.
 struct AddedFrame {
   TrackingResult tracking;
-  double register_ms = 0;
-  double integrate_ms = 0;
-  double loop_ms = 0;
+  double register_ms = 0;   ///< tracking or relocalisation
+  double integrate_ms = 0;  ///< adding the surface to the map
+  double loop_ms = 0;       ///< loop search and pose graph
 };
 
-/// Follows the camera, recognises places, and keeps path and map consistent.
+/// Tracks the camera, closes loops, and keeps trajectory and map consistent.
 ///
-/// Every frame is registered by odometry against the keyframes around it, which where a place is
-/// seen again are those of the first time. It belongs to the keyframe it overlaps most, and its
-/// surface to the part of the map around that keyframe: so keyframes and map grow with what is
-/// seen, not with time. Where a keyframe sees what one long before it saw, both are tied by an
-/// edge, and the poses of all keyframes are fitted to the edges of odometry and loops. Parts and
-/// frames move with their keyframes, so nothing is integrated anew.
+/// Odometry registers each frame with the keyframes around it. At a place that is seen again, these
+/// are the keyframes of the first visit. A frame belongs to the keyframe it overlaps most, and its
+/// surface to the submap around that keyframe. Thus the number of keyframes and the size of the map
+/// grow with the surface seen, not with time. A loop constraint connects a keyframe with a much
+/// earlier one that saw the same place, and the pose graph fits the poses of all keyframes to the
+/// edges of odometry and loops. Submaps and frames move with their keyframes, so no frame is
+/// integrated again.
 ///
-/// A camera that has been lost for a few frames is looked for among all keyframes; after a second
-/// or so only there. Frames in between are not registered.
+/// When tracking has been lost for three frames, the camera is searched for among all keyframes
+/// before odometry is tried. After 15 frames, only among all keyframes. Frames that are not
+/// registered do not enter the map.
 class RoomMapper {
  public:
   RoomMapper(const CameraModel& camera, const OdometryOptions& odometry,
              const RegistrationOptions& registration, const LoopOptions& loops,
              const SurfaceMapOptions& surface);
 
-  /// Registers a frame and, if that succeeds, adds its surface to the map, and looks for a loop if
-  /// it becomes a keyframe. Frames come in the order of time.
+  /// Registers a frame. If that succeeds, adds its surface to the map and, if it becomes a
+  /// keyframe, searches for a loop. Frames must come in the order of time.
   ///
-  /// A frame that repeats the one before it says nothing new of the camera or the room: it is
-  /// neither registered nor added (status `repeated`). Otherwise copies of one image would pass
-  /// for independent observations of a point.
+  /// A frame that repeats the one before it is neither registered nor added (status `repeated`).
+  /// Otherwise copies of one image would count as independent observations of its points.
   AddedFrame add_frame(const NewFrame& frame);
 
-  /// Fits the poses to edges that were not fitted yet; to be called after the last frame.
+  /// Fits the pose graph if it has loop constraints that were not fitted yet. Must be called after
+  /// the last frame.
   void finish();
 
-  Trajectory trajectory() const;  ///< every frame that was registered, as it is believed now
+  /// Poses of all registered frames, from the current poses of their keyframes.
+  Trajectory trajectory() const;
+  /// Current poses of all keyframes.
   Trajectory keyframe_trajectory() const;
+  /// The map: all submaps in the world frame, without free-space violations if the options say so.
   MapCloud surface() const;
-  std::size_t voxel_count() const;  ///< those with too few points to be written among them
+  /// Number of voxels in all submaps, including those with too few points for surface().
+  std::size_t voxel_count() const;
+  /// All verified loops so far, in the order in which they were found.
   const std::vector<Loop>& loops() const { return loops_; }
 
-  /// Puts all that was found out aside, to go on from there later: a mapper that was made with the
-  /// same options and loads it gives the same results to the bit. Only the build that wrote it can
-  /// read it. Reading throws std::exception if it is damaged.
+  /// Writes the whole state. A mapper that was constructed with the same arguments and loads the
+  /// state gives the same results to the bit. Only the build that wrote the state can read it.
   void save(std::ostream& out) const;
+  /// Replaces the state by one that save() wrote. Throws std::exception if the data is damaged; the
+  /// state of the mapper is then unspecified.
   void load(std::istream& in);
 
  private:
@@ -90,14 +98,14 @@ class RoomMapper {
 
   struct RegisteredFrame {
     double timestamp_s = 0;
-    int keyframe = 0;
+    int keyframe = 0;  ///< id of the keyframe that the frame belongs to
     Pose keyframe_from_camera = Pose::Identity();
 
     template <class Archive>
     void serialize(Archive& archive, unsigned version);
   };
 
-  /// What frames saw from near by one keyframe, its anchor, in that one's frame.
+  /// A submap: the surface seen from near one keyframe, the anchor, in the frame of the anchor.
   struct Part {
     int anchor = 0;
     SurfaceMap surface;
@@ -125,15 +133,15 @@ class RoomMapper {
   Odometry odometry_;
   KeyframeGraph keyframes_;
   std::vector<Part> parts_;
-  std::vector<int> part_of_;  ///< index of the part that a keyframe's frames go to
+  std::vector<int> part_of_;  ///< for each keyframe, the index of the submap of its frames
   std::vector<RegisteredFrame> frames_;
   std::vector<PoseEdge> edges_;
   std::vector<Loop> loops_;  ///< in the order of their edges
   int unfitted_loops_ = 0;
-  int last_fit_ = 0;     ///< keyframe
-  int current_ = 0;      ///< keyframe that frames belong to
-  int lost_frames_ = 0;  ///< since the last that was registered
-  int searched_ = 0;     ///< keyframes for which loops were looked for
+  int last_fit_ = 0;     ///< id of the newest keyframe in the last fit
+  int current_ = 0;      ///< id of the keyframe that the latest frame belongs to
+  int lost_frames_ = 0;  ///< number of frames since the last registered one
+  int searched_ = 0;     ///< number of keyframes for which loops were searched
 };
 
 }  // namespace tofmap

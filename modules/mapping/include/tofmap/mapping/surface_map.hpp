@@ -17,38 +17,45 @@ class access;
 
 namespace tofmap {
 
+/// Options of SurfaceMap, and of the map that RoomMapper makes of it.
 struct SurfaceMapOptions {
+  /// Edge length of a voxel, 0.002 … 10 m. Each voxel becomes at most one map point.
   double voxel_m = 0.04;
+  /// Smallest number of observations of a voxel that becomes a map point, 1 … 100000.
   int min_observations = 3;
+  /// Largest standard deviation along the normal of a point that enters the map, 0.001 … 100 m.
   double max_sigma_m = 0.1;
+  /// Whether points that keyframes see through are removed from the map: moving objects, flying
+  /// pixels, points with a wrong wrap count (without_free_space_violations()).
   bool drop_free_space_violations = true;
 
   static std::vector<OptionField<SurfaceMapOptions>> fields();
 };
 
-/// The surface seen so far, one averaged point per voxel of a hash grid: memory follows the
-/// volume seen, not the number of frames.
+/// The surface seen so far: one averaged point per voxel of a hash grid. Memory grows with the
+/// surface seen, not with the number of frames.
 ///
-/// Each voxel keeps the mean of its points and normals, weighted by confidence and the inverse
-/// variance of the points along their normals. The result depends on the order of frames only by
-/// rounding, and on the number of threads not at all.
+/// Each voxel keeps the mean of its points and normals, weighted by confidence and by the inverse
+/// variance of the points along their normals. The order of frames changes the result only by
+/// rounding errors; the number of threads does not change it.
 class SurfaceMap {
  public:
   explicit SurfaceMap(const SurfaceMapOptions& options);
 
-  /// Adds the points with normals of a cloud in the camera's frame. Points whose predicted
-  /// standard deviation along the normal exceeds max_sigma_m are left out.
+  /// Adds the points of a cloud that have a normal. The cloud is in the frame of its camera. Points
+  /// whose predicted standard deviation along the normal exceeds max_sigma_m are not added. Throws
+  /// UsageError if a point is too far out for voxels of this size.
   void integrate(const SurfaceCloud& cloud, const Pose& world_from_camera);
 
-  /// Adds what another map of the same voxels holds, which is in a frame of its own. Its points
-  /// keep their weight and their observations.
+  /// Adds the voxels of a submap with the same options, each as one point with the weight and the
+  /// observations of the voxel. Throws UsageError as integrate() does.
   void add(const SurfaceMap& part, const Pose& world_from_part);
 
-  /// Voxels seen so far.
+  /// Number of voxels seen so far.
   std::size_t size() const { return voxels_.size(); }
 
-  /// The voxels with at least min_observations, ordered by their place in the grid. Their
-  /// confidence is the mean of their points' confidences.
+  /// Points of the voxels with at least min_observations, in the order of x, then y, then z of the
+  /// voxel. The confidence of a map point is the mean over its observations.
   MapCloud extract() const;
 
  private:

@@ -14,80 +14,101 @@
 
 namespace tofmap {
 
+/// Options of register_clouds().
 struct CloudRegistrationOptions {
+  /// Edge length of the voxels of the coarsest level, where features are matched, 0 … 1000 m. 0
+  /// chooses it so that about 5000 points per cloud remain. Finer levels have half and a quarter of
+  /// it.
   double voxel_m = 0;
+  /// How poses are refined: the name of a CloudMethod, as cloud_method() takes it.
   std::string method = "generalised";
+  /// Smallest share of one of two clouds that must be near the other, 0 … 1.
   double min_overlap = 0.15;
+  /// Smallest share of the near points that must lie on the surface of the other cloud, 0 … 1, for
+  /// complete overlap. The limit rises by up to 0.15 as the overlap decreases.
   double min_inlier_ratio = 0.6;
+  /// Smallest share of the observations that must constrain each direction of motion, 0 … 1. Pairs
+  /// below it are degenerate.
   double min_direction_share = 0.004;
+  /// Width of the kernel of the pose graph in standard deviations of a pair, 0.5 … 100. Pairs that
+  /// contradict others are down-weighted, and rejected if their error is more than √3 times that.
   double kernel_width = 3;
+  /// Whether a cloud that is in another unit of length than the others is scaled to theirs and
+  /// registered. If not, it is left out with a remark.
   bool convert_units = false;
 
   static std::vector<OptionField<CloudRegistrationOptions>> fields();
 };
 
+/// Whether two clouds could be registered with each other, and if not, the first test that failed.
 enum class PairVerdict {
-  registered,
-  few_matches,   ///< no pose that several features agree on
-  low_overlap,   ///< too small a share of either cloud lies near the other
-  low_inliers,   ///< what lies near does not lie on the surface
-  contradicted,  ///< one's sensor looked through the surfaces of the other
-  degenerate,    ///< surfaces leave a direction free, as those of one wall
+  registered,    ///< the pair passed all tests
+  few_matches,   ///< fewer than 15 feature matches agree on a pose
+  low_overlap,   ///< less than `min_overlap` of either cloud is near the other
+  low_inliers,   ///< too few of the near points lie on the surface of the other cloud
+  contradicted,  ///< free-space violations: one sensor saw through the surfaces of the other cloud
+  degenerate,    ///< the surfaces leave a direction of motion unconstrained, as a single wall does
   ambiguous,     ///< another pose is nearly as good
-  disagrees,     ///< other pairs contradict it
+  disagrees,     ///< the pair contradicts the other pairs
 };
 
+/// The verdict as text, spelled like the enumerator.
 const char* verdict_name(PairVerdict verdict);
 
-/// What became of the attempt to lay one cloud onto another.
+/// Result of registering one cloud with another.
 struct CloudPair {
-  int source = 0;
-  int target = 0;
+  int source = 0;  ///< index of a cloud
+  int target = 0;  ///< index of the other cloud
   PairVerdict verdict = PairVerdict::few_matches;
-  Pose target_from_source = Pose::Identity();  ///< between the files' frames, metres
+  Pose target_from_source = Pose::Identity();  ///< between the frames of both clouds, metres
+  /// CloudIcpResult::covariance of `target_from_source`.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  int matches = 0;  ///< features that look alike
-  int support = 0;  ///< those of them that agree on the pose
-  CloudFit fit;     ///< of the cloud that overlaps more
-  double free_space_violation =
-      0;                       ///< share that contradicts what the other's sensor looked through
-  double runner_up = 0;        ///< quality of the next best pose over that of this one
-  double direction_share = 0;  ///< of the direction that is constrained least
-  double mahalanobis_distance = 0;  ///< of the pair from the poses that all pairs together give
+  int matches = 0;                  ///< number of feature matches
+  int support = 0;                  ///< number of matches that agree on the pose
+  CloudFit fit;                     ///< of whichever cloud overlaps the other more
+  double free_space_violation = 0;  ///< larger share of free-space violations of either cloud
+  double runner_up = 0;             ///< quality of the second best pose divided by that of this one
+  double direction_share = 0;       ///< share of the direction that is constrained least
+  double mahalanobis_distance = 0;  ///< of the pair at the poses of the fit over all pairs
 };
 
-/// Where a cloud lies.
+/// The pose of one cloud in the common frame.
 struct RegisteredCloud {
   bool is_registered = false;
   Pose common_from_cloud = Pose::Identity();  ///< meaningful only if registered
-  double unit_m = 1;         ///< length of the cloud's unit, metres: its points are scaled by that
-  std::string remark;        ///< why it is not registered, or what is odd about it; empty: nothing
-  double inlier_ratio = 0;   ///< of the pair with most inliers
-  double rmse_m = 0;         ///< of that pair
-  std::vector<int> tied_to;  ///< clouds that it was registered with
+  double unit_m = 1;         ///< unit of length of the cloud, metres; its points are scaled by it
+  std::string remark;        ///< why it is not registered, or what is unusual; empty if nothing is
+  double inlier_ratio = 0;   ///< largest one of its registered pairs
+  double rmse_m = 0;         ///< CloudFit::rmse_m of that pair
+  std::vector<int> tied_to;  ///< indices of the clouds that it was registered with
 };
 
+/// Result of register_clouds().
 struct CloudRegistration {
-  double voxel_m = 0;
+  double voxel_m = 0;                   ///< edge length of the voxels of the coarsest level
   std::vector<RegisteredCloud> clouds;  ///< in the order given
-  std::vector<CloudPair> pairs;         ///< all that were tried, ordered by source, then target
-  bool interrupted = false;
+  std::vector<CloudPair> pairs;         ///< all pairs that were tried, by source, then target
+  bool interrupted = false;             ///< whether `keep_going` ended the run
 
+  /// Number of registered clouds.
   int registered() const;
 };
 
-/// Places clouds of one scene in a common frame, which is that of the first one registered: no
-/// order, no start poses.
+/// Registers clouds of one scene in a common frame, that of the first registered cloud. Needs
+/// neither initial poses nor an order of the clouds.
 ///
-/// Every two clouds are aligned by features and refined from coarse to fine; pairs that pass their
-/// tests are edges of a graph, whose largest connected part is fitted as a whole (robustly: pairs
-/// that others contradict lose their say). Clouds outside of it are not registered. A cloud whose
-/// size differs from the others' by about the ratio of two units of length is tried with that unit,
-/// and the remark says so; it is registered only with `convert_units`.
+/// Each pair of clouds is aligned by features (guess_alignments()) and refined by ICP from coarse
+/// to fine (align_clouds()). Pairs that pass the tests of PairVerdict are edges of a pose graph
+/// (optimise_pose_graph()), in which pairs that contradict others are down-weighted. Clouds outside
+/// the largest connected part of the graph are not registered. A cloud whose size differs from that
+/// of the others by about the ratio of two units of length is tried with that unit; the remark of
+/// the cloud names the unit if the cloud then fits, but the cloud is registered only with
+/// `convert_units`.
 ///
-/// `keep_going` is shown the pairs done and to do; false ends the run. The result is the same for
-/// any number of threads. `names` are what remarks call the clouds. Throws UsageError for fewer
-/// than two clouds.
+/// `keep_going` is called with the numbers of pairs done and of all pairs; if it returns false, the
+/// run ends. `names` are the names of the clouds in remarks. The result is the same for any number
+/// of threads. Throws UsageError for fewer than two clouds, if the numbers of clouds and names
+/// differ, or if `voxel_m` is too small for the clouds.
 CloudRegistration register_clouds(std::span<const PointSet> clouds,
                                   std::span<const std::string> names,
                                   const CloudRegistrationOptions& options,

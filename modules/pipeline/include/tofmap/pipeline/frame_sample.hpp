@@ -22,47 +22,49 @@ struct SampledFrame {
   RangeImage filtered;
 };
 
-/// Keeps some frames of a run in memory, spread evenly over it, for pages, pictures and consistency
-/// measures: so no frame is read or unwrapped a second time for them.
+/// Keeps some frames of a run in memory, spread evenly over it, for report pages, pictures and
+/// consistency measures, so that no frame is read or unwrapped a second time for them.
 class FrameSample {
  public:
-  /// Keeps the frames at spread_indices(*total, wanted). If the length of the run is unknown, keeps
-  /// every n-th frame, where n grows with the run: at least `wanted` frames if as many come, and
-  /// fewer than twice as many. Of large images it keeps fewer, so that 384 MB hold them, but at
-  /// least one.
+  /// `total` is the number of frames of the run. If it is known, the sample keeps the frames at
+  /// spread_indices(*total, wanted). If it is empty (unknown), the sample keeps every n-th frame,
+  /// where n grows with the run: at least `wanted` frames if the run is that long, and fewer than
+  /// twice as many. Fewer large images are kept, so that the sample fits into 384 MB, but at least
+  /// one.
   FrameSample(const CameraModel& camera, int wanted, std::optional<int> total);
 
-  /// Whether add() would keep the frame of this index. Only if the length of the run is known.
+  /// Whether add() would keep the frame of this index. False if the length of the run is unknown.
   bool wants(int index) const;
 
-  /// Keeps the frame if its turn has come. Frames come in any order if the length is known, else in
-  /// ascending order.
+  /// Keeps the frame if it belongs to the sample, and ignores it otherwise. Frames may be added in
+  /// any order if the length of the run is known, otherwise in ascending order of their indices.
   void add(const DualFrequencyFrame& recorded, const PreparedFrame& prepared);
 
-  /// Of the frames before `end` that are to be kept, the indices of those that were not added.
-  /// Empty if the length of the run is unknown.
+  /// Indices below `end` that belong to the sample, but whose frames were not added. Empty if the
+  /// length of the run is unknown.
   std::vector<int> missing(int end) const;
 
   /// Keeps `count` of the frames, spread evenly, and frees the memory of the others.
   void thin_out(int count);
 
-  /// In ascending order of their indices.
+  /// The frames kept so far, in ascending order of their indices.
   const std::vector<SampledFrame>& frames() const { return frames_; }
 
  private:
   bool is_its_turn(int index);
   void drop_every_second();
 
-  std::vector<int> wanted_indices_;  ///< if the length is known
+  std::vector<int> wanted_indices_;  ///< empty if the length is unknown
   bool has_known_length_;
-  std::size_t most_;      ///< frames, before every second one is dropped
-  std::size_t step_ = 1;  ///< every so many frames one is kept
-  std::size_t passed_ = 0;
+  std::size_t most_;        ///< number of frames at which every second one is dropped
+  std::size_t step_ = 1;    ///< keeps every step_-th frame if the length is unknown
+  std::size_t passed_ = 0;  ///< frames offered to add() so far if the length is unknown
   std::vector<SampledFrame> frames_;
 };
 
-/// The measures of consistency of a map, from at most consistency_frames() of the sampled frames.
-/// `map` is finished: poses are taken from its trajectory.
+/// The consistency measures of a map, computed from at most consistency_frames() of the sampled
+/// frames. `map` must be finished: the poses come from its trajectory, and a frame without a pose
+/// counts as not registered.
 Consistency consistency_of(const RoomMap& map, const FrameSample& sample, const SensorModel& sensor,
                            UnwrapMethod method);
 

@@ -10,20 +10,22 @@
 
 namespace tofmap {
 
-/// A frame of a recording together with its measured errors.
+/// A frame of a recording together with its measured noise and errors.
 struct MeasuredSource {
   SourcedFrame sourced;
   std::optional<TimedMeasurement> measured;  ///< empty if the frame is damaged
 };
 
-/// Reads a recording in batches: reads the images of a batch in parallel, then measures the frames
-/// in order. The first frames are read twice, so that the camera's errors are known from the first
-/// frame on (FrameMeasurer::look_ahead).
+/// Reads a recording in batches. The images of a batch are read in parallel, and then its frames
+/// are measured in order. The first frames are read twice, so that the camera's errors are already
+/// estimated when the first frame is measured (FrameMeasurer::look_ahead).
 class MeasuredRecording {
  public:
+  /// Keeps a reference to `source`. Throws UsageError if the options are not allowed.
   MeasuredRecording(const SequenceReader& source, const UnwrapOptions& options);
 
-  /// The frames begin … end − 1. Each call continues where the one before it ended.
+  /// Reads and measures the frames `begin` … `end` − 1. Calls must follow each other without gaps:
+  /// `begin` is 0 in the first call, and the `end` of the previous call in all others.
   std::vector<MeasuredSource> read(int begin, int end);
 
  private:

@@ -20,75 +20,84 @@
 
 namespace tofmap {
 
-/// The options of all stages, from phases to map.
+/// The options of all stages, from phases to the map. In files and on the command line, each group
+/// has the name of its field here, for instance `unwrap.method`.
 struct PipelineOptions {
-  UnwrapOptions unwrap;
-  FilterOptions filters;
-  CloudOptions cloud;
-  RegistrationOptions registration;
-  OdometryOptions odometry;
-  LoopOptions loops;
-  SurfaceMapOptions map;
+  UnwrapOptions unwrap;              ///< phases to ranges
+  FilterOptions filters;             ///< which ranges are dropped or corrected
+  CloudOptions cloud;                ///< ranges to points with normals
+  RegistrationOptions registration;  ///< ICP of a frame against keyframes
+  OdometryOptions odometry;          ///< camera tracking and choice of keyframes
+  LoopOptions loops;                 ///< loop closure
+  SurfaceMapOptions map;             ///< voxels of the map
 };
 
-/// Adds every stage's options to a table, under the stage's name.
+/// Adds the options of every stage to a table, each group under the name of its field in
+/// PipelineOptions.
 void bind_options(OptionTable& table, PipelineOptions& options);
 
-/// Wall-clock time of each stage, milliseconds.
+/// Wall-clock time that each stage took for one frame, milliseconds.
 struct StageTimes {
-  double unwrap_ms = 0;
-  double filter_ms = 0;
-  double cloud_ms = 0;
-  double register_ms = 0;
-  double map_ms = 0;
-  double loop_ms = 0;
+  double unwrap_ms = 0;    ///< measuring noise and errors, and unwrapping
+  double filter_ms = 0;    ///< filters
+  double cloud_ms = 0;     ///< points and normals
+  double register_ms = 0;  ///< registration with keyframes
+  double map_ms = 0;       ///< integration into the map
+  double loop_ms = 0;      ///< search for loops, and the pose graph
 
   double total_ms() const {
     return unwrap_ms + filter_ms + cloud_ms + register_ms + map_ms + loop_ms;
   }
 };
 
-/// A frame as far as it can be processed without the frames before it.
+/// A frame that has been unwrapped, filtered and turned into a cloud, but not registered yet.
 struct PreparedFrame {
   int index = 0;
   double timestamp_s = 0;
-  DualFrequencyFrame returns;  ///< what was unwrapped: MeasuredFrame::returns
+  DualFrequencyFrame returns;  ///< the phases that were unwrapped: MeasuredFrame::returns
   UnwrapResult unwrapped;
   FilterResult filtered;
-  std::shared_ptr<const SurfaceCloud> cloud;
-  StageTimes times;
+  std::shared_ptr<const SurfaceCloud> cloud;  ///< camera frame; null from prepare_ranges()
+  StageTimes times;                           ///< of the stages up to the cloud; the others are 0
 };
 
-/// A frame and its errors, as one FrameMeasurer measures all frames in their order.
+/// A measured frame and the time that measuring it took.
 struct TimedMeasurement {
   MeasuredFrame frame;
-  double milliseconds = 0;
+  double milliseconds = 0;  ///< wall-clock time
 };
+
+/// Measures the next frame. One measurer must be given all frames of a recording in order. Throws
+/// UsageError if the frame's images differ in size.
 TimedMeasurement measure_frame(const DualFrequencyFrame& frame, FrameMeasurer& measurer);
 
-/// Phases to surface. Depends on no other frame, so frames that were measured can be prepared side
-/// by side, each thread with an unwrapper of its own.
+/// Unwraps and filters a measured frame, and fits its surface. The result depends on no other
+/// frame, so that measured frames can be prepared in parallel if each thread has its own unwrapper.
 PreparedFrame prepare_frame(TimedMeasurement measured, Unwrapper& unwrapper,
                             const SensorModel& sensor, const PixelRays& rays,
                             const PipelineOptions& options);
 
-/// The same as far as ranges go: `cloud` is null.
+/// Unwraps and filters a measured frame as prepare_frame() does, but makes no cloud: `cloud` is
+/// null.
 PreparedFrame prepare_ranges(TimedMeasurement measured, Unwrapper& unwrapper,
                              const SensorModel& sensor, const PixelRays& rays,
                              const PipelineOptions& options);
 
-/// What became of one frame.
+/// The result of processing one frame.
 struct FrameRecord {
   int index = 0;
   double timestamp_s = 0;
-  std::string damage;    ///< not empty: the frame could not be read, and nothing else holds
-  bool repeats = false;  ///< it has the phases of the frame before it, and only `index` and
-                         ///< `timestamp_s` hold: it was not unwrapped
-  int iterations = 0;
-  int curl_violations = 0;
-  double phase_noise_cycles = 0;
-  int valid_pixels = 0;  ///< after unwrapping
-  int kept_pixels = 0;   ///< after filtering
+  /// Why the frame could not be read; empty if it could. If it is not empty, only `damage`, `index`
+  /// and `timestamp_s` have a meaning.
+  std::string damage;
+  /// The frame has the same phases as the frame before it, and was therefore not unwrapped. Then
+  /// only `index`, `timestamp_s` and the status in `tracking` have a meaning.
+  bool repeats = false;
+  int iterations = 0;             ///< UnwrapResult::iterations
+  int curl_violations = 0;        ///< UnwrapResult::curl_violations
+  double phase_noise_cycles = 0;  ///< UnwrapResult::phase_noise_cycles
+  int valid_pixels = 0;           ///< valid pixels after unwrapping
+  int kept_pixels = 0;            ///< valid pixels after filtering
   std::vector<FilterCount> filters;
   TrackingResult tracking;
   StageTimes times;
@@ -97,63 +106,72 @@ struct FrameRecord {
   bool is_prepared() const { return damage.empty() && !repeats; }
 };
 
-/// A room as the camera saw it. The world is the frame of the first registered camera.
+/// A map of a room, with the records of all frames. World coordinates are those of the first
+/// registered camera.
 struct RoomMap {
-  Trajectory trajectory;  ///< every frame that was registered
-  Trajectory keyframes;
-  MapCloud surface;
-  std::vector<Loop> loops;          ///< places recognised
-  std::vector<FrameRecord> frames;  ///< all, in order
-  ErrorSurvey errors;               ///< of the camera, by the frames since the run was taken up
-  bool interrupted = false;
+  Trajectory trajectory;            ///< world_from_camera of every registered frame
+  Trajectory keyframes;             ///< world_from_camera of the keyframes
+  MapCloud surface;                 ///< in world coordinates
+  std::vector<Loop> loops;          ///< all loops that were found, used or not
+  std::vector<FrameRecord> frames;  ///< all frames, in order
+  ErrorSurvey errors;               ///< MapRun::errors at the end of the run
+  bool interrupted = false;         ///< a hook ended the run early
 
-  int damaged() const;
-  int repeated() const;
-  int degenerate() const;  ///< frames with a direction of motion that no surface constrained
+  int damaged() const;     ///< number of frames that could not be read
+  int repeated() const;    ///< number of frames that repeat the frame before them
+  int degenerate() const;  ///< number of frames with a degenerate direction of motion
 };
 
-/// What the frames and the surface of a map tell about it; accuracy and consistency are unknown.
+/// The evidence that the frames and the surface of a map give for its verdict. The accuracy is
+/// left empty, and the fields about overlap and warnings keep their defaults.
 MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options);
 
-/// Throws InputError that names the first damage if more than half of the frames are damaged.
+/// Throws InputError if more than half of the frames are damaged. The message quotes
+/// `first_damage`.
 void refuse_mostly_damaged(int damaged, int total, const std::string& first_damage);
 void refuse_mostly_damaged(const RoomMap& map);
 
-/// What a caller may hang into a run; any may be empty.
+/// Functions that a run calls. Each of them may be empty. An exception that a hook throws ends the
+/// run and is passed on.
 struct MapHooks {
-  /// Asked before each batch of frames with the number done so far; false ends the run early.
+  /// Called before each batch of frames with the number of frames done so far. The run ends early
+  /// if it returns false.
   std::function<bool(int frames_done)> keep_going;
-  /// Called in order with every frame that was unwrapped, before it is registered.
+  /// Called with every frame that was unwrapped, in order, before it is registered.
   std::function<void(const DualFrequencyFrame& recorded, const PreparedFrame&)> on_frame;
 };
 
-/// A map on its way, which can be put aside and taken up again.
+/// A run that maps a room from frames. It can be interrupted, saved, and resumed later.
 class MapRun {
  public:
+  /// Throws UsageError if the options for unwrapping are not allowed.
   MapRun(const SensorModel& sensor, const PipelineOptions& options);
 
-  /// Takes frames from the source until its end, or until a hook ends it. Frames that are damaged
-  /// or cannot be registered are skipped, and said so in their record. Frames are prepared in
-  /// parallel and registered in order; the result is the same for any number of threads.
+  /// Processes frames from the source until the source ends or a hook ends the run. Frames that
+  /// are damaged or cannot be registered are skipped; their records say why. Frames are prepared
+  /// in parallel and registered in order. The result is the same for any number of threads.
   void advance(FrameSource& source, const MapHooks& hooks = {});
 
-  /// Frames that were taken so far, in order.
+  /// The records of all frames processed so far, in order.
   const std::vector<FrameRecord>& frames() const { return frames_; }
+
+  /// Whether a hook ended the last call of advance().
   bool is_interrupted() const { return is_interrupted_; }
 
-  /// The errors of the camera, by the frames since the run was taken up.
+  /// The camera's errors, surveyed over the frames since the run was started or resumed.
   ErrorSurvey errors() const { return errors_.survey(); }
 
   /// The map so far.
   const RoomMapper& mapper() const { return mapper_; }
 
-  /// All that is needed to go on; a run of the same sensor and options that loads it comes to the
-  /// same result, to the bit. Only the build that wrote it can read it. Reading throws
-  /// std::exception if it is damaged.
+  /// Saves what is needed to resume the run. A run with the same sensor and options that loads it
+  /// continues to the same map, to the bit; errors() starts again from nothing. Only the build that
+  /// wrote the data can read them. load() throws std::exception if they are damaged.
   void save(std::ostream& out) const;
   void load(std::istream& in);
 
-  /// The map of the frames so far. The run is over with that.
+  /// The map of the frames processed so far. The run ends with this call: advance() and save() must
+  /// not be called afterwards.
   RoomMap finish();
 
  private:
@@ -166,14 +184,14 @@ class MapRun {
   RoomMapper mapper_;
   FrameMeasurer measurer_;
   ErrorTally errors_;
-  std::vector<SourcedFrame> ahead_;    ///< looked at ahead, and still to be mapped
-  std::vector<Unwrapper> unwrappers_;  ///< one a thread
+  std::vector<SourcedFrame> ahead_;    ///< frames measured ahead that are still to be mapped
+  std::vector<Unwrapper> unwrappers_;  ///< one per thread
   std::vector<FrameRecord> frames_;
-  DualFrequencyFrame last_;  ///< that could be read; empty before
+  DualFrequencyFrame last_;  ///< the last frame that could be read and repeats none; empty at first
   bool is_interrupted_ = false;
 };
 
-/// Frames in, a map out: the whole job.
+/// Maps all frames of a source: a MapRun from start to finish.
 RoomMap map_room(FrameSource& source, const PipelineOptions& options, const MapHooks& hooks = {});
 
 }  // namespace tofmap

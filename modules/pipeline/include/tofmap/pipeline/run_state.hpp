@@ -9,15 +9,18 @@
 
 namespace tofmap {
 
-/// Writes what an interrupted run needs to go on later into the folder, as `state.bin`. Throws
-/// InputError if the file cannot be written whole.
+/// Writes the state of an interrupted run into `folder` as `state.bin`, so that resume_run() can
+/// continue it later. `source` is the recording that the run reads, `options` are the run's
+/// options; both are stored to recognise them. Throws InputError if the file cannot be written
+/// whole.
 void write_run_state(const std::filesystem::path& folder, const MapRun& run,
                      const SequenceReader& source, PipelineOptions options);
 
-/// Resumes the interrupted run of a result folder: fills `run`, and moves the recording to the next
-/// frame. Does nothing if the folder does not exist, as before the first run. Throws InputError if
-/// the folder holds no interrupted run or that of another recording, and UsageError if that run had
-/// other options. Both say what to do.
+/// Resumes the interrupted run of a result folder: fills `run`, and moves `source` to the first
+/// frame that is not processed yet. Does nothing if the folder does not exist. Throws InputError if
+/// the folder holds no interrupted run, if its state is damaged or from another build, or if the
+/// run is of another recording. Throws UsageError if the run had another camera or other options.
+/// The messages say what to do.
 void resume_run(const std::filesystem::path& folder, MapRun& run, SequenceReader& source,
                 PipelineOptions options);
 

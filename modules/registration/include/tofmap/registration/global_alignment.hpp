@@ -10,35 +10,40 @@
 
 namespace tofmap {
 
-/// What the surroundings of a point look like: fast point feature histograms (Rusu, Blodow, Beetz,
-/// ICRA 2009), which do not depend on the frame.
+/// Fast point feature histogram: describes the surface around a point, independently of the frame
+/// of the cloud (Rusu, Blodow, Beetz, ICRA 2009).
 using PointFeature = std::array<float, 33>;
 
-/// One feature a point, from neighbours within five voxels (PCL).
+/// One feature per point, computed by PCL from the neighbours within five voxels. All zeros for a
+/// point without neighbours.
 std::vector<PointFeature> point_features(const OrientedCloud& cloud);
 
-/// Points of two clouds that look alike.
+/// A point of the source and a point of the target with similar features.
 struct FeatureMatch {
-  int source = 0;
-  int target = 0;
+  int source = 0;  ///< index in the source cloud
+  int target = 0;  ///< index in the target cloud
 };
 
-/// Pairs of points each of which looks most like the other; at most 3000, evenly drawn.
+/// Mutual nearest neighbours in feature space: pairs in which each feature is the most similar one
+/// to the other. If there are more than 3000, 3000 of them at even intervals. Empty if either cloud
+/// is empty.
 std::vector<FeatureMatch> match_features(const std::vector<PointFeature>& source,
                                          const std::vector<PointFeature>& target);
 
-/// A way to lay the source onto the target.
+/// A hypothesis about the pose of the source relative to the target.
 struct AlignmentGuess {
   Pose target_from_source = Pose::Identity();
-  int support = 0;  ///< matches that agree
+  int support = 0;  ///< number of matches that agree with the pose within 1.5 voxels
 };
 
-/// Poses that many matches agree on, the best supported first, ten at most; none if there is none.
+/// Finds up to ten poses that many matches agree on, in descending order of support, without an
+/// initial pose. Empty if no pose is supported by at least five matches.
 ///
-/// Two matches can both be right only if their points are as far apart, and their normals at the
-/// same angles, in both clouds. Right ones, unlike chance, also share many others that each of them
-/// goes with: from those that do, poses are estimated (Chen, Sun, Yang, Tao, "SC²-PCR", CVPR 2022).
-/// Nothing is drawn at random. Lengths agree within one and a half voxels.
+/// Two matches are compatible if the distance between their points is the same in both clouds
+/// within 1.5 voxels, and so are the angles of their normals. Correct matches are compatible with
+/// many of the same other matches, wrong ones are not: each pose is estimated from a match and the
+/// matches that have most such matches in common with it (Chen, Sun, Yang, Tao, "SC²-PCR", CVPR
+/// 2022). The search is deterministic; nothing is sampled at random.
 std::vector<AlignmentGuess> guess_alignments(const OrientedCloud& source,
                                              const OrientedCloud& target,
                                              const std::vector<FeatureMatch>& matches);

@@ -11,17 +11,20 @@
 
 namespace tofmap {
 
-/// Finds nearest points exactly (FLANN's kd-tree). May be asked by several threads at once.
+/// Exact search for the nearest point (FLANN's kd-tree). nearest() may be called from several
+/// threads at once.
 class PointSearch {
  public:
+  /// Builds the tree from a copy of the points. `points_m` must not be empty.
   explicit PointSearch(const std::vector<Eigen::Vector3f>& points_m);
 
   struct Neighbour {
-    std::size_t index = 0;
+    std::size_t index = 0;  ///< in `points_m`
     float squared_gap_m2 = 0;
   };
 
-  /// The nearest point within `max_distance_m`; nothing if there is none. The place must be finite.
+  /// The nearest point to `place_m`. Empty if no point is within `max_distance_m`. `place_m` must
+  /// be finite.
   std::optional<Neighbour> nearest(const Eigen::Vector3f& place_m, double max_distance_m) const;
 
  private:
@@ -29,22 +32,22 @@ class PointSearch {
   std::shared_ptr<const Tree> tree_;
 };
 
-/// Points on surfaces, in a frame of their own, with unit normals and a search tree.
+/// Points on surfaces with unit normals and a search tree, all in the frame of the cloud.
 struct OrientedCloud {
   std::vector<Eigen::Vector3f> points_m;
-  std::vector<Eigen::Vector3f> normals;  ///< of each point, towards where it was seen from
-  double voxel_m = 0;                    ///< their typical spacing
-  PointSearch search;
+  std::vector<Eigen::Vector3f> normals;  ///< of each point, towards the viewpoint
+  double voxel_m = 0;                    ///< typical spacing of the points
+  PointSearch search;                    ///< over `points_m`
 
   std::size_t size() const { return points_m.size(); }
 };
 
-/// No surface can be told from fewer points.
+/// Smallest number of points that orient() makes a cloud of.
 constexpr std::size_t least_oriented_points = 50;
 
-/// Normals by the covariance of each point's 20 nearest neighbours (PCL), turned to `viewpoint_m`.
-/// Points without a plane around them are left out; nothing if fewer than `least_oriented_points`
-/// are left.
+/// Estimates a normal for each point from the covariance of its 20 nearest neighbours (PCL) and
+/// orients it towards `viewpoint_m`. Points without a finite normal are dropped. Empty if fewer
+/// than `least_oriented_points` remain.
 std::optional<OrientedCloud> orient(std::span<const Eigen::Vector3d> points_m, double voxel_m,
                                     const Eigen::Vector3d& viewpoint_m);
 

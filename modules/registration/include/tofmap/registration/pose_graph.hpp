@@ -9,45 +9,51 @@
 
 namespace tofmap {
 
-/// A measured motion between two poses of a graph.
+/// A measured relative pose between two poses of a graph.
 struct PoseEdge {
-  int from = 0;
-  int to = 0;
+  int from = 0;                          ///< index of a pose
+  int to = 0;                            ///< index of another pose
   Pose from_from_to = Pose::Identity();  ///< the pose of `to` in the frame of `from`
-  /// Of the measurement's error: rotation vector, radians, and translation, metres, both along the
-  /// axes of `from`. Must be positive definite.
+  /// Covariance of the measurement error: rotation vector, radians, then translation, metres, both
+  /// along the axes of `from`. Must be positive definite.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Identity();
-  bool may_be_wrong = false;  ///< a loop: few large errors must not bend the graph
+  /// True for a loop constraint, which may connect different places. Such edges go through a robust
+  /// kernel, so that a wrong one does not distort the graph.
+  bool may_be_wrong = false;
 };
 
-/// Adds errors of these standard deviations, the same along all axes, to those of an edge.
+/// Adds an independent error with these standard deviations, the same along all axes, to the
+/// covariance of an edge.
 void widen(PoseEdge& edge, double rotation_sigma_rad, double translation_sigma_m);
 
+/// Optimised poses and how well the edges fit them.
 struct PoseGraphResult {
-  std::vector<Pose> poses;
-  bool converged = false;
-  int iterations = 0;
-  /// Of each edge: its error in standard deviations, √(eᵀ Σ⁻¹ e), at the end.
+  std::vector<Pose> poses;  ///< in the order of the initial poses
+  bool converged = false;   ///< whether the solver converged in its last pass
+  int iterations = 0;       ///< of all passes together
+  /// Mahalanobis distance √(eᵀ Σ⁻¹ e) of each edge at the optimised poses.
   std::vector<double> edge_mahalanobis;
 };
 
-/// The poses that fit all edges best, the first one held: nonlinear least squares over rotations
-/// and translations (Ceres, Levenberg-Marquardt).
+/// Finds the poses that fit all edges best, with the first pose held fixed, by nonlinear least
+/// squares over rotations and translations (Ceres, Levenberg-Marquardt).
 ///
-/// Edges that may be wrong go through a Geman-McClure kernel whose width shrinks to
-/// `kernel_width` standard deviations from pass to pass (graduated non-convexity, Yang et al.,
-/// RA-L 5(2), 2020): so right loops are not shut out by the drift that they are to mend, and wrong
-/// ones lose their say. The result does not depend on the number of threads.
+/// Edges that may be wrong go through a Geman-McClure kernel whose width is halved from pass to
+/// pass until it is `kernel_width` standard deviations (graduated non-convexity, Yang et al., RA-L
+/// 5(2), 2020). Thus correct loops are not rejected because of the drift that they correct, and
+/// wrong ones are down-weighted. The result does not depend on the number of threads.
 ///
-/// Throws UsageError if an edge names a pose that is not there, or the same one twice.
+/// Throws UsageError if an edge refers to a pose that does not exist, or connects a pose with
+/// itself.
 PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const PoseEdge> edges,
                                     double kernel_width);
 
-/// The error of an edge between these poses in standard deviations, √(eᵀ Σ⁻¹ e).
+/// The Mahalanobis distance √(eᵀ Σ⁻¹ e) of an edge, where e is the error of the measured relative
+/// pose at these poses.
 double mahalanobis_distance(const PoseEdge& edge, const std::vector<Pose>& poses);
 
-/// Whether an edge that may be wrong has hardly a say left with these deviations: a sixteenth of
-/// that of an edge without error, or less.
+/// Whether the kernel rejects an edge at this Mahalanobis distance: its weight is less than a
+/// sixteenth of the weight of an edge without error.
 bool is_outvoted(double deviations, double kernel_width);
 
 }  // namespace tofmap

@@ -13,97 +13,126 @@
 
 namespace tofmap {
 
-/// An organised cloud with normals whose pose is known. The cloud must outlive its use.
+/// An organised cloud with normals whose pose is known. The cloud must outlive the target.
 struct RegistrationTarget {
-  const SurfaceCloud* cloud = nullptr;  ///< in the frame of the camera that took it
+  const SurfaceCloud* cloud = nullptr;  ///< in the frame of the camera that took it; not null
   Pose world_from_camera = Pose::Identity();
 };
 
-/// What motion alone lets expect: where the camera should be, and how far it may be off.
+/// The pose that a motion model predicts, and its uncertainty, the same along all axes.
 struct MotionPrior {
   Pose world_from_camera = Pose::Identity();
-  double rotation_sigma_rad = 0;   ///< must be positive
-  double translation_sigma_m = 0;  ///< must be positive
+  double rotation_sigma_rad = 0;   ///< standard deviation per axis; must be positive
+  double translation_sigma_m = 0;  ///< standard deviation per axis; must be positive
 };
 
-/// How many standard deviations of the prior the pose is off, the worse of turn and step.
+/// Difference between a pose and the predicted one, divided by the prior's standard deviation: the
+/// larger value of rotation and translation.
 double deviation(const MotionPrior& prior, const Pose& world_from_camera);
 
+/// Options of register_to_targets().
 struct RegistrationOptions {
+  /// How frames are registered: "projective", or "pcl_icp" or "pcl_gicp" for comparison with PCL.
   std::string method = "projective";
+  /// Registers every n-th pixel of a frame in both axes, 1 … 16.
   int source_stride_px = 2;
+  /// Largest number of Gauss-Newton iterations, 1 … 200, of the coarse and of the fine stage each.
   int max_iterations = 20;
+  /// Largest correspondence distance, 0.01 … 5 m. Points farther apart are not paired.
   double max_correspondence_distance_m = 0.4;
+  /// Largest angle between the normals of a correspondence, 0.01 … 1.57 rad.
   double max_normal_angle_rad = 0.8;
+  /// Width of the Geman-McClure kernel in robust standard deviations of the residuals, 0.5 … 100. A
+  /// smaller width down-weights outliers more strongly.
   double kernel_width = 3;
+  /// Standard deviation of the error of a point that averaging does not reduce, 0 … 1 m. Its
+  /// square is added to the predicted variance of each correspondence.
   double systematic_sigma_m = 0.003;
+  /// Number of correspondences that count as one independent observation, 1 … 1000. A larger number
+  /// increases the covariance and the weight of the prior.
   double correlated_observations = 12;
+  /// Smallest number of correspondences of a registered frame, 6 … 1000000.
   int min_correspondences = 200;
+  /// Smallest share of a frame's points that must have a correspondence, 0 … 1.
   double min_overlap = 0.15;
+  /// Smallest share of the correspondences that must fit the pose, 0 … 1.
   double min_inlier_ratio = 0.5;
 
   static std::vector<OptionField<RegistrationOptions>> fields();
 };
 
+/// How a registration ended.
 enum class RegistrationStatus {
-  converged,        ///< the last step was below the tolerance
-  iteration_limit,  ///< still moving at max_iterations; the pose may be used with care
-  few_correspondences,
-  low_overlap,  ///< too small a share of the source fell onto the targets
-  low_inliers,  ///< too many correspondences disagree with the pose
+  converged,            ///< the last increment was below the tolerance
+  iteration_limit,      ///< still moving at max_iterations; the pose may be used with care
+  few_correspondences,  ///< fewer than min_correspondences, or no source points or targets
+  low_overlap,          ///< less than min_overlap of the source has a correspondence
+  low_inliers,          ///< less than min_inlier_ratio of the correspondences fit the pose
 };
 
-/// Whether the pose may be used.
+/// Whether the pose may be used: true for `converged` and `iteration_limit`.
 bool succeeded(RegistrationStatus status);
+/// The status as text, spelled like the enumerator.
 const char* status_name(RegistrationStatus status);
 
+/// The pose that register_to_targets() found, and how well it fits.
 struct RegistrationResult {
   RegistrationStatus status = RegistrationStatus::few_correspondences;
-  Pose world_from_camera = Pose::Identity();
-  int iterations = 0;  ///< with all points
-  int correspondences = 0;
+  Pose world_from_camera = Pose::Identity();  ///< to be used only if the registration succeeded()
+  int iterations = 0;                         ///< of the fine stage, which uses all points
+  int correspondences = 0;                    ///< in the last iteration
   double overlap = 0;         ///< share of the source's points with a correspondence
-  double inlier_ratio = 0;    ///< share of correspondences the kernel keeps at half weight or more
-  double rmse_m = 0;          ///< point-to-plane, over those inliers
-  double residual_scale = 0;  ///< robust standard deviation of residuals over predicted noise
+  double inlier_ratio = 0;    ///< share of correspondences whose kernel weight is at least one half
+  double rmse_m = 0;          ///< RMS distance from point to plane over those inliers, metres
+  double residual_scale = 0;  ///< robust ratio of residuals to predicted noise, at least 1
 
-  /// Of the twist (rotation vector about the camera's centre, radians; translation, metres)
-  /// in world axes, prior included.
+  /// Covariance of the pose error as a twist: rotation vector about the camera's centre, radians,
+  /// then translation, metres, both along the world's axes. Includes the prior.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
-  /// Of the same twist, without the prior: the inverse of what its covariance would be. Nothing in
-  /// degenerate directions.
+  /// Information (inverse covariance) about the same twist from the surfaces alone, without the
+  /// prior. Zero along degenerate directions.
   Eigen::Matrix<double, 6, 6> surface_information = Eigen::Matrix<double, 6, 6>::Zero();
 
-  /// How many of the six directions of motion the surfaces say less of than the prior does: they
-  /// are left to it.
+  /// Number of degenerate directions of motion, of six: those in which the surfaces give less
+  /// information than the prior, after noise-induced information was subtracted. The pose follows
+  /// the prior along these.
   int degenerate_directions = 0;
-  /// Shares of the observations that constrain each direction, ascending: 0 (free) … 1, rotations
-  /// measured at the source's typical range.
+  /// Share of the observations that constrain each direction of motion, in ascending order, from 0
+  /// (unconstrained) to 1. Rotations are measured as the motion of points at the median range of
+  /// the source.
   Eigen::Matrix<double, 6, 1> direction_shares = Eigen::Matrix<double, 6, 1>::Zero();
 };
 
-/// Finds the pose of an organised cloud by projecting it into clouds of known pose and
-/// minimising distances from points to the planes they fall on (Chen and Medioni 1991, with
-/// the projective search of Blais and Levine 1995).
+/// Finds the pose of an organised cloud by projecting its points into clouds of known pose and
+/// minimising the distances from the points to the planes that they fall on (Chen and Medioni 1991,
+/// with the projective search of Blais and Levine 1995). `camera` is the camera that took the
+/// source and all targets.
 ///
-/// Gauss-Newton in double precision about the camera's centre, with a quarter of the points at
-/// first. Each correspondence is
-/// weighted by the inverse of its predicted variance (noise of both points along the normal,
-/// plus `systematic_sigma_m`) and by a Geman-McClure kernel whose width is kernel_width times
-/// the robust scale of the residuals. The prior has its say in every direction of motion by its
-/// standard deviations, and decides alone on those of which the surfaces say less. `camera` took
-/// source and targets. The result is the same for any number of threads.
+/// Gauss-Newton in double precision about the camera's centre: a coarse stage with a quarter of the
+/// points, then a fine stage with all of them. Each correspondence is weighted by the inverse of
+/// its predicted variance (noise of both points along the normal, plus the square of
+/// `systematic_sigma_m`), by the confidence of both points, and by a Geman-McClure kernel whose
+/// width is `kernel_width` times the robust scale of the residuals. The prior contributes to every
+/// direction of motion by its standard deviations. In degenerate directions, where the surfaces
+/// give less information than the prior, it alone determines the pose. The result is the same for
+/// any number of threads.
 ///
-/// With the methods `pcl_icp` and `pcl_gicp` the pose is what PCL's algorithms make of the same
-/// points from the same start, for comparison; all else is measured at that pose.
+/// With the methods `pcl_icp` and `pcl_gicp`, PCL finds the pose from the same points and the same
+/// initial pose, for comparison. The status is `converged` if PCL reports convergence and the
+/// overlap and the inlier ratio are large enough. All other values of the result are measured at
+/// PCL's pose.
+///
+/// Throws UsageError if a standard deviation of the prior is not positive. The status of the result
+/// tells whether registration succeeded.
 RegistrationResult register_to_targets(const SurfaceCloud& source,
                                        std::span<const RegistrationTarget> targets,
                                        const CameraModel& camera, const MotionPrior& prior,
                                        const RegistrationOptions& options);
 
-/// Share of the source's points that fall onto a target's surface at a given pose: a cheap
-/// measure of how much both see of the same.
+/// Share of the source's points that have a correspondence in a target at a given pose, measured at
+/// every eighth pixel in both axes: a cheap estimate of how much of the source the target sees. 0
+/// if the source has no points.
 double overlap_share(const SurfaceCloud& source, const Pose& world_from_source,
                      const RegistrationTarget& target, const CameraModel& camera,
                      const RegistrationOptions& options);

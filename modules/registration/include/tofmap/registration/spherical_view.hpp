@@ -13,18 +13,20 @@
 
 namespace tofmap {
 
-/// A cloud as it is seen from a place: the nearest range in each direction, by bins of a degree and
-/// a half in azimuth and elevation.
+/// Range image of a cloud seen from a point in all directions: the nearest range in each bin of 1.5
+/// degrees of azimuth (about the z axis) and elevation.
 class SphericalView {
  public:
+  /// `points_m` and the viewpoint `from_m` are in the same frame.
   SphericalView(std::span<const Eigen::Vector3f> points_m, const Eigen::Vector3d& from_m);
 
   const Eigen::Vector3d& from_m() const { return from_m_; }
 
-  /// Nearest range where a point is seen; nothing if nothing is seen there.
+  /// Nearest range in the bin that a point falls into. Empty if the cloud has no point in that bin.
   std::optional<double> range_m(const Eigen::Vector3d& point_m) const;
 
-  /// As `range_m`, but the nearest of that bin and those around it.
+  /// Nearest range in the bin that a point falls into and in the eight bins around it. Empty if the
+  /// cloud has no point in the central bin.
   std::optional<double> nearest_range_around_m(const Eigen::Vector3d& point_m) const;
 
  private:
@@ -39,16 +41,18 @@ class SphericalView {
   float at(const Bin& bin) const;
 
   Eigen::Vector3d from_m_;
-  std::vector<float> nearest_m_;  ///< infinite where nothing is seen
+  std::vector<float> nearest_m_;  ///< by elevation, then azimuth; infinite in empty bins
 };
 
-/// Whether all points could have been seen from there: hardly any direction holds points at
-/// different ranges.
+/// Whether the cloud could have been seen from a point: less than 10 % of its points are occluded
+/// from there, that is, more than 1.2 times as far away as the nearest point of their bin.
 bool may_be_viewpoint(std::span<const Eigen::Vector3f> points_m, const Eigen::Vector3d& place_m);
 
-/// Share of the points, of those where the view holds a surface at all, that stand in front of it,
-/// by more than `slack_m` and a fiftieth of the range: the view has looked through them, so they
-/// are not there. 0 if no point is where the view looks or behind it.
+/// Share of free-space violations: of the points of a cloud that lie on or in front of the surface
+/// that a view sees, the share in front of it, which the view sees through. A point is in front if
+/// it is nearer than the surface in its bin and in the bins around by more than `slack_m` plus 2 %
+/// of its range, and on the surface if it differs by no more than that from the surface in its bin.
+/// Points behind the surface and points in empty bins are not counted. 0 if no point is counted.
 double free_space_violation_share(const SphericalView& view, const OrientedCloud& cloud,
                                   const Pose& view_from_cloud, double slack_m);
 

@@ -8,42 +8,46 @@
 
 namespace tofmap {
 
-/// Where the camera should pass, and in which direction it should look there (any length).
+/// A place that the camera path leads past, and the viewing direction there. World frame, z up.
 struct Waypoint {
   Eigen::Vector3d position_m;
-  Eigen::Vector3d direction;
+  Eigen::Vector3d direction;  ///< of any length, not vertical
 };
 
-/// Optical frame at `position`, looking along `direction`, with the image upright (world z up).
-/// The direction must not be vertical.
+/// The pose of a camera at `position`, metres, whose optical axis points along `direction` and
+/// whose image is upright (world z is up). The direction must not be vertical.
 Pose look_along(const Eigen::Vector3d& position, const Eigen::Vector3d& direction);
 
+/// A waypoint at `position` that looks at `target`, metres.
 Waypoint look_at(const Eigen::Vector3d& position, const Eigen::Vector3d& target);
 
-/// How far the camera may move and turn from one frame to the next.
+/// The largest motion of the camera from one frame to the next.
 struct MotionLimits {
   double max_translation_m = 0.07;
   double max_rotation_rad = 0.0524;
 };
 
-/// A smooth camera path: uniform cubic B-splines through position and direction, which are
-/// twice continuously differentiable and stay within the hull of the way points (they round off
-/// corners, and never swing out). An open path starts and ends at its outer way points.
+/// A smooth camera path: uniform cubic B-splines of position and direction, with the waypoints as
+/// control points. They are twice continuously differentiable and stay within the convex hull of
+/// the waypoints: the path cuts corners, but never overshoots. An open path starts and ends at its
+/// outer waypoints.
 class CameraPath {
  public:
+  /// An empty path. It has no poses.
   CameraPath() = default;
 
-  /// Throws UsageError with fewer than two way points (three for a closed path).
+  /// Throws UsageError if there are fewer than two waypoints, or fewer than three for a closed
+  /// path.
   CameraPath(std::vector<Waypoint> waypoints, bool closed);
 
   bool empty() const { return waypoints_.empty(); }
   bool closed() const { return closed_; }
 
-  /// How far the spline parameter runs.
+  /// The largest value of the spline parameter.
   double end() const;
 
-  /// The pose at the spline parameter u, 0 … end(); clamped on an open path, periodic on a
-  /// closed one.
+  /// The pose at the spline parameter u, 0 … end(). Other values are clamped on an open path and
+  /// wrapped around on a closed path.
   Pose pose_at(double u) const;
 
  private:
@@ -53,22 +57,27 @@ class CameraPath {
   bool closed_ = false;
 };
 
-/// Where the camera is when it takes the images A and B of each frame; the timestamps are A's.
+/// The poses of the camera when it takes the images A and B of each frame. The timestamps of both
+/// are those of A.
 struct CameraMotion {
   Trajectory at_a;
   Trajectory at_b;
 };
 
-/// Runs along the path as fast as the limits allow, in steps of even effort: the root of the
-/// squares of a step's translation and turn, each as a share of its limit. `frames` = 0: as
-/// many as the whole path needs, but at least `min_frames`. More frames than the path needs
-/// make the camera slower; with fewer it stops before the end. B follows A by `b_delay_share` of
-/// a frame; the last B of an open path lies beyond its end by as much of the last step.
+/// Moves a camera along a path. All steps between frames have the same size, which is the root of
+/// the sum of (translation / max_translation_m)² and (rotation / max_rotation_rad)², at most 0.95.
+///
+/// If `frames` is 0, there are as many frames as the whole path needs, but at least `min_frames`.
+/// With more frames than the path needs the camera moves more slowly; with fewer frames it stops
+/// before the end of the path. B is taken `b_delay_share` of a frame period after A. The last B of
+/// an open path lies beyond the end of the path, by the same fraction of the last step.
 CameraMotion plan_motion(const CameraPath& path, const MotionLimits& limits, int frames,
                          int min_frames, double frame_rate_hz, double b_delay_share);
 
-/// Follows recorded poses, a frame each (`frames` = 0: all); B's pose lies between A's and the
-/// next, beyond the last one by the last step. Throws UsageError if there are no poses.
+/// Replays recorded poses, one per frame: the first `frames` of them, or all if `frames` is 0. The
+/// pose of B is interpolated between the pose of A and the next pose, at the fraction
+/// `b_delay_share`; after the last pose, the last step is extrapolated. Throws UsageError if
+/// `poses` is empty.
 CameraMotion replay_motion(const Trajectory& poses, int frames, double b_delay_share);
 
 }  // namespace tofmap

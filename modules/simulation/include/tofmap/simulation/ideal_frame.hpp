@@ -11,29 +11,31 @@ namespace tofmap {
 
 struct SimulatorOptions;
 
+/// A complex signal for each pixel: the amplitude is its modulus, the phase its argument.
 using ImageC = Image<std::complex<double>>;
 
-/// What the simulated camera would measure without errors of ranges, noise, loss of weak signals,
-/// and quantisation: the complex signal of each pixel (docs/simulator.md, equation 6), NaN where no
-/// ray meets a surface. A weak signal is kept, however weak it is.
+/// The complex signals that the simulated camera would measure without range errors, noise and
+/// quantisation (docs/simulator.md, equation 6). NaN where no ray of the pixel meets a surface.
+/// Weak signals are kept, even those that a sensor would lose.
 struct IdealFrame {
   int index = 0;
-  double timestamp_s = 0;
+  double timestamp_s = 0;  ///< of A
   ImageC signal_a;
   ImageC signal_b;
-  Pose world_from_camera;  ///< when A was taken
-  ImageF range_truth_m;    ///< along the ray of the pixel's centre; NaN where nothing is hit
+  Pose world_from_camera;  ///< when A is taken
+  ImageF range_truth_m;    ///< along the ray of the pixel's centre; NaN if it meets no surface
 };
 
-/// The frame that the sensor makes of ideal signals, by those options that do not need the scene:
-/// systematic errors, ambient light, noise of `range_noise_m` and `dark_level`, and `phase_bits`
-/// (docs/simulator.md, equations 2 to 4 and 8 to 14). `seed` and `errors_seed` draw noise and
-/// errors.
+/// The frame that the sensor measures from ideal signals. It uses the options that do not need the
+/// scene: systematic errors, ambient light, noise (`range_noise_m` and `dark_level`) and
+/// `phase_bits` (docs/simulator.md, equations 2 to 4 and 8 to 14). `seed` determines the noise, and
+/// `errors_seed` the systematic errors.
 ///
-/// Casting rays takes far longer than this, so that one ideal frame can be measured with many
-/// errors. With the options of the simulator that made `ideal`, the result has the same bits as
-/// Simulator::simulate(ideal.index). The image size and the frequencies must be that simulator's;
-/// throws UsageError if the images have another size than `sensor`, or options do not fit together.
+/// Since ray casting takes far longer than this function, one ideal frame can be measured with many
+/// different errors. With the options of the simulator that made `ideal`, the result is identical
+/// to Simulator::simulate(ideal.index), bit by bit. Image size and frequencies must be those of
+/// that simulator. Throws UsageError if the images have another size than the camera of `sensor`,
+/// or if options contradict each other.
 DualFrequencyFrame measured_frame(const IdealFrame& ideal, const SensorModel& sensor,
                                   const SimulatorOptions& options);
 

@@ -11,28 +11,32 @@
 
 namespace tofmap {
 
-/// Where a ray meets the surface first.
+/// The first point at which a ray meets the surface.
 struct RayHit {
-  double range_m = 0;
-  double cos_incidence = 0;  ///< between the ray and the surface's normal, 0 … 1
-  double reflectance = 0;
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the surface, unit, to either side
+  double range_m = 0;        ///< from the origin of the ray
+  double cos_incidence = 0;  ///< cosine of the angle between ray and surface normal, 0 … 1
+  double reflectance = 0;    ///< 0 … 1
+  /// Unit normal of the surface, world frame. It may point to either side.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 };
 
-/// A mesh prepared for exact ray casting (Embree). Queries may come from several threads.
+/// A mesh prepared for exact ray casting (Embree). Queries may come from several threads at the
+/// same time.
 class RayScene {
  public:
-  /// Throws UsageError if the mesh has no triangle.
+  /// Copies the mesh. Throws UsageError if it has no triangle.
   explicit RayScene(const TriangleMesh& mesh);
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
   ~RayScene();
 
-  /// The first hit within `max_range_m` along the unit vector `direction`, world frame.
+  /// The first hit of a ray within `max_range_m`. Origin, in metres, and unit vector `direction`
+  /// are in the world frame. Empty if the ray meets no surface.
   std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                              double max_range_m) const;
 
-  /// Range to the nearest point of the surface in any direction, at most `limit_m`.
+  /// The distance from `point`, in metres and in the world frame, to the nearest point of the
+  /// surface in any direction; `limit_m` if that is farther away.
   double clearance_m(const Eigen::Vector3d& point, double limit_m) const;
 
  private:

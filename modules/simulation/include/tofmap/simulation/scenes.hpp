@@ -11,27 +11,29 @@
 
 namespace tofmap {
 
-/// A place to record, and the way through it.
+/// A surface to record, and a camera path through it. World frame, z up.
 struct Scene {
   std::string name;
   TriangleMesh surface = {};
   CameraPath path = {};
-  int min_frames = 0;
-  double max_range_m = 0;  ///< no surface is farther from a camera on the path
+  int min_frames = 0;      ///< smallest number of frames of a recording of the whole path
+  double max_range_m = 0;  ///< rays from the path end here if the simulator has no other limit
 };
 
-/// The built-in scenes, in the order of docs/simulator.md.
+/// The names of the built-in scenes.
 const std::vector<std::string>& scene_names();
 
-/// A built-in scene; the seed draws the room of `random`, and means nothing to the others. Throws
-/// UsageError that lists the names if there is none of that name.
+/// A built-in scene (docs/simulator.md). `seed` determines the room of the scene `random`, and is
+/// ignored for other scenes. Throws UsageError, which lists the names, if there is no scene of that
+/// name.
 Scene make_scene(const std::string& name, int seed = 1);
 
 /// A mesh from a file, with a path that is found by ray casting: a loop at eye height through the
-/// largest free space inside; if there is none (the mesh is an object), an orbit around it.
+/// largest connected free space inside the mesh, or an orbit around the mesh if it has no free
+/// space inside. Throws InputError if the mesh cannot be read (read_mesh()).
 Scene make_mesh_scene(const std::filesystem::path& file);
 
-/// A built-in scene, or a mesh where the text names a PLY or OBJ file.
+/// make_mesh_scene() if the name ends in .ply or .obj, otherwise make_scene().
 Scene find_scene(const std::string& name_or_file, int seed = 1);
 
 }  // namespace tofmap

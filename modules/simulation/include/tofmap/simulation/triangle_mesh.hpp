@@ -12,54 +12,58 @@
 
 namespace tofmap {
 
-/// A surface that the simulated camera looks at: world frame, z up, metres. Both sides of a
-/// triangle reflect. Reflectance is given per vertex, 0 … 1, and is interpolated.
+/// A surface that the simulated camera looks at. World frame, z up, metres. Both sides of a
+/// triangle reflect.
 struct TriangleMesh {
   std::vector<Eigen::Vector3f> vertices;
-  std::vector<float> reflectance;  ///< one per vertex
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<float> reflectance;  ///< of each vertex, 0 … 1; interpolated over triangles
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of vertices
 };
 
+/// The axis-aligned bounding box of all vertices. Empty if there are none.
 Eigen::AlignedBox3d bounds(const TriangleMesh& mesh);
 
-/// A rectangle or parallelogram with the corners c, c + a, c + a + b, c + b.
+/// Adds a parallelogram with the corners c, c + a, c + a + b, c + b, metres.
 void add_quad(TriangleMesh& mesh, const Eigen::Vector3d& c, const Eigen::Vector3d& a,
               const Eigen::Vector3d& b, double reflectance);
 
-/// An axis-parallel box between two opposite corners.
+/// Adds an axis-aligned box between two opposite corners, metres.
 void add_box(TriangleMesh& mesh, const Eigen::Vector3d& min, const Eigen::Vector3d& max,
              double reflectance);
 
-/// The same, turned by `yaw_rad` about the vertical through its middle.
+/// Adds the box of add_box(), rotated by `yaw_rad` about the vertical axis through its centre.
 void add_turned_box(TriangleMesh& mesh, const Eigen::Vector3d& min, const Eigen::Vector3d& max,
                     double yaw_rad, double reflectance);
 
-/// An upright cylinder with closed ends.
+/// Adds an upright cylinder (a prism of 24 sides) with closed ends. `base` is the centre of its
+/// lower end, metres.
 void add_cylinder(TriangleMesh& mesh, const Eigen::Vector3d& base, double radius_m, double height_m,
                   double reflectance);
 
-/// A hole in a wall: `from_m` … `to_m` along it, `bottom_m` … `top_m` above its foot.
+/// A rectangular hole in a wall.
 struct WallOpening {
-  double from_m = 0;
-  double to_m = 0;
-  double bottom_m = 0;
-  double top_m = 0;
+  double from_m = 0;    ///< along the wall, from its first foot point
+  double to_m = 0;      ///< along the wall, from its first foot point
+  double bottom_m = 0;  ///< above the foot of the wall
+  double top_m = 0;     ///< above the foot of the wall
 };
 
-/// An upright wall from the foot points `from` to `to`, `thickness_m` thick to the left of that
-/// direction. Openings are given in their order along the wall and do not overlap.
+/// Adds an upright wall between the foot points `from` and `to`, metres. The wall extends
+/// `thickness_m` to the left of that direction. Openings must be sorted along the wall and must not
+/// overlap.
 void add_wall(TriangleMesh& mesh, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
               double height_m, double thickness_m, const std::vector<WallOpening>& openings,
               double reflectance);
 
-/// Reads a PLY or OBJ mesh (by the file's ending; PLY with vertex colours: their mean is
-/// the reflectance times 255; without colours the reflectance is 0.5). Polygons (convex) are cut
-/// into triangles. Throws InputError that names the file if it is missing or damaged, of another
-/// kind, holds no triangle, or spans over a kilometre (then it is hardly in metres).
+/// Reads a mesh in metres, z up, from a file whose name ends in .ply or .obj. The reflectance is
+/// the mean of the vertex colours of a PLY file over 255, or 0.5 if there are none. Polygons must
+/// be convex; they are split into triangles. Throws InputError, which names the file, if the file
+/// is missing, damaged or of another kind, has no triangle, or extends over more than a kilometre
+/// (its unit is hardly the metre).
 TriangleMesh read_mesh(const std::filesystem::path& file);
 
-/// Writes binary PLY with the reflectance as gray vertex colours. Throws InputError that names the
-/// file if it cannot be written whole.
+/// Writes a binary PLY file with the reflectance times 255 as gray vertex colours. Throws
+/// InputError, which names the file, if it cannot be written completely.
 void write_mesh_ply(const std::filesystem::path& file, const TriangleMesh& mesh);
 
 }  // namespace tofmap

@@ -14,35 +14,49 @@
 
 namespace tofmap {
 
-/// Finds how many wavelengths to add to the phase of A in every pixel, for the frames of one camera
-/// (Droeschel, Holz, Behnke: Multi-frequency Phase Unwrapping for Time-of-Flight Cameras, 2010;
-/// docs/unwrapping.md).
+/// Finds the wrap count of A in every pixel of the frames of one camera (Droeschel, Holz, Behnke:
+/// Multi-frequency Phase Unwrapping for Time-of-Flight Cameras, IROS 2010; docs/unwrapping.md).
 ///
-/// range_m is radial: (phase_a + n) λ_A, or for `joint` what both frequencies say together. Pixels
-/// without a return at either frequency are invalid (no_return) and take no part, for every
-/// method, so that methods compare. `joint` makes those invalid (ambiguous) that have two equally
-/// likely counts which the pair of frequencies cannot tell apart. Pixels whose amplitude reaches
-/// the sensor's saturation_amplitude are as without a return, but with a reason of their own
-/// (saturated). sigma_m is what the phase noise, estimated from each frame, makes of the range.
-/// confidence is the probability that the count is right. That of `joint` is calibrated
-/// (docs/unwrapping.md has the measurement); those of the other methods order pixels.
-/// `joint` and `jump` estimate the camera's systematic errors over the frames so far, so that these
-/// come in their order; the same frames and options give the same bits. To unwrap frames side by
-/// side let one FrameMeasurer measure all, and an Unwrapper a thread unwrap what it returns. The
-/// object keeps its buffers, so that frames of one size cost few allocations. One thread at a time.
+/// The planes of the resulting RangeImage have the size of the frame:
+///   range_m     radial: (phase_a + n) λ_A, with the wrap count n. For `joint`, by default, the
+///               weighted mean of the ranges of both frequencies (fuse_ranges).
+///   sigma_m     standard deviation of range_m by phase noise, which is estimated for each frame.
+///   confidence  the probability that the wrap count is right. The confidence of `joint` is
+///               calibrated (docs/unwrapping.md has the measurement); that of other methods only
+///               ranks the pixels of a frame.
+///
+/// Invalid pixels:
+///   no_return   no return at A or at B. These pixels take no part in any method, so that the
+///               methods can be compared.
+///   saturated   the amplitude at A or B reaches the sensor's saturation_amplitude. These pixels
+///               are otherwise treated like those without a return.
+///   ambiguous   of `joint` alone: the runner-up is at least a tenth as probable as the chosen wrap
+///               count, and the pair of frequencies cannot tell the two apart.
+///
+/// `joint` and `jump` estimate the camera's systematic errors from all frames so far, so frames
+/// must be passed in the order of their recording. The same frames and options give the same bits.
+/// To unwrap frames in parallel, measure all of them with one FrameMeasurer, in order, and pass
+/// the measured frames to one Unwrapper per thread.
+///
+/// The object keeps its buffers, so frames of the same size need few allocations. It must not be
+/// used by two threads at once.
 class Unwrapper {
  public:
-  /// Throws UsageError if options are not allowed.
+  /// Throws UsageError if the range limit needs more than 255 wrap counts (unwrap_limits). Does not
+  /// check the other options; OptionTable checks their ranges when they are set.
   Unwrapper(const SensorModel& sensor, const UnwrapOptions& options);
 
-  /// Looks at the first frames of a recording, so that the camera is known from the first one on.
-  /// Call it before any other; the frames are unwrapped afterwards.
+  /// Learns the camera's systematic errors from the first frames of a recording, so that they are
+  /// known when the first frame is unwrapped. Call this before any other function, then pass the
+  /// same frames to unwrap().
   void look_ahead(std::span<const DualFrequencyFrame> frames) { measurer_.look_ahead(frames); }
 
-  /// The next frame of the camera. Throws UsageError if its images differ in size.
+  /// Measures and unwraps the next frame of the camera. Throws UsageError if the frame's images
+  /// differ in size.
   UnwrapResult unwrap(const DualFrequencyFrame& frame);
 
-  /// A frame that was measured for the same sensor and options; depends on no other.
+  /// Unwraps a frame that a FrameMeasurer of the same sensor and options has measured. The result
+  /// does not depend on frames that were unwrapped before.
   UnwrapResult unwrap(const MeasuredFrame& measured);
 
  private:
@@ -54,7 +68,8 @@ class Unwrapper {
   JumpEstimator jump_estimator_;
 };
 
-/// One frame by itself.
+/// Unwraps a single frame, without knowledge from other frames. Throws UsageError if the range
+/// limit needs more than 255 wrap counts, or if the frame's images differ in size.
 UnwrapResult unwrap(const DualFrequencyFrame& frame, const SensorModel& sensor,
                     const UnwrapOptions& options);
 

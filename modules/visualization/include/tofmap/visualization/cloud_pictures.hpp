@@ -10,20 +10,24 @@
 
 namespace tofmap {
 
-/// The cloud of one frame without (top) and with unwrapping (bottom), from behind the camera's
-/// left shoulder (left) and from above (right), as in figures 11 and 12 of the paper. Points whose
-/// wrap count is not 0 are red: where they were wrapped to, and where they belong.
-/// Throws DrawingError if nothing can be drawn on this machine.
+/// A picture of the cloud of one frame, without unwrapping (top row) and with unwrapping (bottom
+/// row), seen from the left behind the camera (left) and from above (right), as in figures 11 and
+/// 12 of the paper. Points with a wrap count above 0 are red in both rows. `wrapped_m` holds ranges
+/// in metres and has the size of `unwrapped`. Throws DrawingError if this machine cannot draw.
 Picture cloud_picture(const RangeImage& unwrapped, const ImageF& wrapped_m, const PixelRays& rays);
 
-/// The points of ranges, each in the colour of its pixel, with the camera.
+/// The points of a range image in the camera frame, with an outline of the camera. `range_m` holds
+/// radial ranges in metres; NaN pixels are left out. `color` returns the colour of the point of a
+/// pixel.
 Drawing frame_drawing(const ImageF& range_m, const PixelRays& rays,
                       const std::function<Rgb(Eigen::Index row, Eigen::Index col)>& color);
 
-/// The points of ranges that belong to an unwrapped image, as in `cloud_picture`, with the camera.
+/// The points of a range image that belongs to an unwrapped image, coloured as in cloud_picture().
+/// Pixels without a wrap count are left out.
 Drawing frame_drawing(const RangeImage& unwrapped, const ImageF& range_m, const PixelRays& rays);
 
-/// Viewpoints that hold nearly all points of an image of ranges, in the camera's frame.
+/// Viewpoints in the camera frame, from the left behind the camera and from above, that show nearly
+/// all points of a range image.
 Viewpoint frame_viewpoint_left(const ImageF& range_m, const PixelRays& rays);
 Viewpoint frame_viewpoint_above(const ImageF& range_m, const PixelRays& rays);
 

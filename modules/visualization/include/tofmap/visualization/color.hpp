@@ -8,6 +8,7 @@
 
 namespace tofmap {
 
+/// A colour in sRGB, 8 bits per channel.
 struct Rgb {
   std::uint8_t red = 0;
   std::uint8_t green = 0;
@@ -20,31 +21,32 @@ namespace colors {
 inline constexpr Rgb white{255, 255, 255};
 inline constexpr Rgb black{0, 0, 0};
 inline constexpr Rgb invalid{190, 190, 190};  ///< a pixel without a value
-inline constexpr Rgb corrected{214, 39, 40};  ///< red: a point that unwrapping moved
-inline constexpr Rgb path{230, 90, 0};        ///< where the camera went
+inline constexpr Rgb corrected{214, 39, 40};  ///< a point that unwrapping moved (red)
+inline constexpr Rgb path{230, 90, 0};        ///< the path of the camera
 }  // namespace colors
 
-/// Colours in an order. Lightness changes evenly along it, so the order is seen in grey, too, and
-/// by those who do not tell red from green.
+/// Sequences of colours for a scale. Lightness changes evenly along each, so that the order is
+/// visible in grey and to colour-blind readers, too.
 enum class ColorRamp {
-  quantity,  ///< from dark blue over green to light yellow
-  error,     ///< from light grey over orange to dark red: what is wrong stands out
+  quantity,  ///< from dark blue through green to light yellow
+  error,     ///< from light grey through orange to dark red, so that large errors stand out
 };
 
-/// Colours of a quantity between two limits.
+/// Maps the values of a quantity between two limits to colours.
 class ColorScale {
  public:
-  /// `label` names quantity and unit, for the legend. Throws UsageError unless low < high.
+  /// `label` is the quantity with its unit, for the legend. Throws UsageError unless low < high.
   ColorScale(double low, double high, std::string label, ColorRamp ramp = ColorRamp::quantity);
 
-  /// Values beyond the limits get the colour of the limit; NaN is `colors::invalid`.
+  /// The colour of a value. Values outside the limits get the colour of the nearest limit, NaN gets
+  /// `colors::invalid`.
   Rgb operator()(double value) const;
 
   double low() const { return low_; }
   double high() const { return high_; }
   const std::string& label() const { return label_; }
 
-  /// Round values between the limits, about `count` of them, for a legend.
+  /// About `count` round values between the limits, for a legend.
   std::vector<double> ticks(int count) const;
 
  private:
@@ -54,12 +56,12 @@ class ColorScale {
   ColorRamp ramp_;
 };
 
-/// The colour of a wrap count: neighbouring counts differ clearly, for all kinds of eyes; they
-/// repeat after 8.
+/// The colour of a wrap count ≥ 0. The colours of successive wrap counts differ clearly, also for
+/// colour-blind readers, and repeat after 8.
 Rgb wrap_count_color(int count);
 
-/// The colour of a jump node's probabilities, as in figure 7 of the paper: blue for
-/// configuration −1, green for 0, red for +1, mixed by their shares. NaN is invalid.
+/// The colour of the probabilities of a jump node, as in figure 7 of the paper: a mixture of blue
+/// for configuration −1, green for 0 and red for +1. `colors::invalid` if one of them is NaN.
 Rgb jump_color(float minus, float none, float plus);
 
 }  // namespace tofmap

@@ -12,46 +12,50 @@
 
 namespace tofmap {
 
-/// Wrapped and unwrapped ranges (radial, metres, NaN invalid) side by side, on one colour scale
-/// from 0 to the farthest, with a legend in metres.
+/// A picture of wrapped and unwrapped ranges side by side, with a common colour scale from 0 to the
+/// largest range and a legend in metres. Ranges are radial, in metres; NaN is invalid.
 Picture range_picture(const ImageF& wrapped_m, const ImageF& unwrapped_m);
 
-/// The wrap counts of an image, with a legend of the counts that occur.
+/// A picture of the wrap counts of an image, with a legend of the wrap counts that occur.
 Picture wrap_count_picture(const ImageU8& wrap_count);
 
-/// How sure the wrap counts are, on a scale from 0 to 1, with a legend.
+/// A picture of the confidence of the wrap counts, 0 to 1, with a legend.
 Picture confidence_picture(const RangeImage& unwrapped);
 
-/// What one method makes of a frame.
+/// The ranges that one method gives for a frame.
 struct MethodRanges {
   std::string title;
-  ImageF range_m;  ///< radial, NaN invalid
+  ImageF range_m;  ///< radial, metres; NaN is invalid
 };
 
-/// One frame by several methods: their ranges in a row on one colour scale, and below them how many
-/// wraps each pixel is off, if the true ranges (NaN unknown) are there; these come first then. 0 x
-/// 0: they are not.
+/// A picture that compares the ranges of several methods for one frame: side by side, with a common
+/// colour scale. `truth_m` holds the true ranges (metres, NaN where unknown) and is 0 x 0 if there
+/// are none. If there are, the picture begins with them, and below the ranges of each method shows
+/// which pixels are wrong by one wrap or more.
 Picture method_picture(const std::vector<MethodRanges>& methods, const ImageF& truth_m,
                        double wavelength_m);
 
-/// Ranges before filters, and what they removed.
+/// Ranges before filters, and the pixels that filters removed.
 struct FilteredRanges {
   std::string title;
-  ImageF range_m;  ///< before, radial, NaN invalid
-  ImageU8 reason;  ///< after: InvalidReason as a number
+  ImageF range_m;  ///< before filters; radial, metres; NaN is invalid
+  ImageU8 reason;  ///< after filters: the number of the InvalidReason
 };
 
-/// Filtered images side by side on one colour scale; removed pixels have the colour of the reason,
-/// which is in the legend if it occurs.
+/// A picture of filtered images side by side, with a common colour scale. Removed pixels have the
+/// colour of their reason. A legend lists the reasons that occur.
 Picture filter_picture(const std::vector<FilteredRanges>& images);
 
-/// The probabilities of jump nodes, as in figure 7 of the paper: a row a stage, the nodes in x
-/// direction left and those in y direction right. Planes are of configurations −1, 0, +1.
+/// The probabilities of all jump nodes at one stage. The three images hold the probabilities of the
+/// configurations −1, 0 and +1.
 struct JumpStage {
   std::string title;
-  const std::array<ImageF, 3>* x = nullptr;
-  const std::array<ImageF, 3>* y = nullptr;
+  const std::array<ImageF, 3>* x = nullptr;  ///< nodes between horizontal neighbours, not null
+  const std::array<ImageF, 3>* y = nullptr;  ///< nodes between vertical neighbours, not null
 };
+
+/// A picture of the probabilities of jump nodes, as in figure 7 of the paper, with one row per
+/// stage: nodes in x direction on the left, nodes in y direction on the right.
 Picture jump_picture(const std::vector<JumpStage>& stages);
 
 }  // namespace tofmap

@@ -11,25 +11,26 @@
 
 namespace tofmap {
 
-/// One frame on its way from what was measured to what goes into the map.
+/// One frame at all stages, from measured phases to filtered ranges. All images have the same size.
 struct StagedFrame {
   std::string title;
-  ImageF amplitude;  ///< 0 x 0: there is none
-  ImageF wrapped_m;  ///< ranges as measured, NaN without a return
-  RangeImage unwrapped;
-  RangeImage filtered;  ///< with the reasons why pixels are gone
-  ImageF truth_m;       ///< 0 x 0: not known
+  ImageF amplitude;      ///< 0 x 0 if the recording has no amplitudes
+  ImageF wrapped_m;      ///< wrapped ranges, metres; NaN without a return
+  RangeImage unwrapped;  ///< ranges before filters
+  RangeImage filtered;   ///< ranges after filters, with the reasons of removed pixels
+  ImageF truth_m;        ///< true ranges, metres; 0 x 0 if they are unknown
 };
 
-/// Frames for a page's strip, and the legends of all of them.
+/// The frames of a strip on a page, and their common legends.
 struct FrameStrip {
   std::vector<StripFrame> frames;
   std::vector<PageFigure> legends;
 };
 
-/// Amplitude, wrapped range, wrap count, confidence, unwrapped range, removed pixels by reason and,
-/// where the truth is known, wraps that are wrong. A pixel of the camera is one of the picture, and
-/// all frames share their scales. Throws UsageError if the images of a frame differ in size.
+/// Draws each frame as a row of pictures: amplitude, wrapped range, wrap count, confidence,
+/// unwrapped range, removed pixels by reason and, if the truth is known, wrong wraps. Pictures have
+/// the size of the camera image, and all frames have the same colour scales. Throws UsageError if
+/// the images of a frame differ in size.
 FrameStrip frame_strip(const std::vector<StagedFrame>& frames, double wavelength_m);
 
 }  // namespace tofmap

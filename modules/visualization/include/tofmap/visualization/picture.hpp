@@ -10,11 +10,11 @@
 
 namespace tofmap {
 
-/// An RGB image to look at, row by row from the top left.
+/// An RGB image for display.
 struct Picture {
   int width_px = 0;
   int height_px = 0;
-  std::vector<Rgb> pixels;
+  std::vector<Rgb> pixels;  ///< row by row from the top, each row from the left
 
   Picture() = default;
   Picture(int width, int height, Rgb fill = colors::white);
@@ -23,40 +23,48 @@ struct Picture {
   const Rgb& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * width_px + x]; }
 };
 
-/// Every pixel as a square of `factor` pixels.
+/// A picture in which each pixel is a square of `factor` x `factor` pixels.
 Picture magnified(const Picture& picture, int factor);
 
-/// Copies `part` into `onto` with its top left corner at (x, y); what leaves it is cut off.
+/// Copies `part` into `onto`, with its top left corner at (x, y). Pixels outside of `onto` are cut
+/// off.
 void paste(Picture& onto, const Picture& part, int x, int y);
 
-/// Fills a rectangle; what leaves the picture is cut off.
+/// Fills a rectangle whose top left corner is at (x, y). Pixels outside of `onto` are cut off.
 void fill(Picture& onto, int x, int y, int width, int height, Rgb color);
 
-/// Pictures side by side, aligned at their tops, and one above the other, aligned at their left.
+/// Pictures side by side, aligned at the top.
 Picture beside(const std::vector<Picture>& pictures, int gap_px);
+
+/// Pictures one above the other, aligned on the left.
 Picture stacked(const std::vector<Picture>& pictures, int gap_px);
 
-/// The picture under a line of text, and with a margin around it.
+/// A picture with a line of text above it.
 Picture titled(const Picture& picture, const std::string& title);
+
+/// A picture with a white margin around it.
 Picture with_margin(const Picture& picture, int margin_px);
 
-/// Black text on white, as large as it needs.
+/// Black text on white, in a picture of the size of the text. Empty if it cannot be drawn.
 Picture text_picture(const std::string& text, int size_px);
 
-/// The legend of a scale, upright, `height_px` high, with ticks and the label.
+/// A vertical legend of a colour scale, `height_px` high, with ticks and the label.
 Picture color_bar(const ColorScale& scale, int height_px);
 
-/// A box of each colour with its name, one below the other.
+/// A colour and its meaning in a legend.
 struct LegendEntry {
   Rgb color;
   std::string name;
 };
+
+/// A legend with one line per entry: a box of the colour, and the name.
 Picture color_key(const std::vector<LegendEntry>& entries);
 
 /// The bytes of a PNG file.
 std::string encoded_png(const Picture& picture);
 
-/// Writes PNG. Throws InputError that names the file if it cannot be written whole.
+/// Writes a PNG file. Throws InputError, with the path, if it cannot be written; no partial file is
+/// left.
 void write_picture(const std::filesystem::path& file, const Picture& picture);
 
 }  // namespace tofmap

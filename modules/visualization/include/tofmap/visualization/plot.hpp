@@ -9,29 +9,28 @@
 
 namespace tofmap {
 
-/// A line of a plot. Where y is NaN it has a gap.
+/// A line of a plot.
 struct PlotLine {
-  std::string name;
-  std::vector<double> x;
-  std::vector<double> y;
+  std::string name;       ///< for the legend
+  std::vector<double> x;  ///< same size as y
+  std::vector<double> y;  ///< the line has gaps where y is NaN
 };
 
-/// Lines over one axis; both start at zero and end at the limits, or where the lines do if these
-/// are 0. Labels name quantity and unit. A logarithmic y axis holds all that is positive, and what
-/// is not is a gap.
+/// A plot of lines. Linear axes start at 0.
 struct Plot {
   std::string title;
-  std::string x_label;
-  std::string y_label;
+  std::string x_label;  ///< quantity and unit
+  std::string y_label;  ///< quantity and unit
   std::vector<PlotLine> lines;
-  double x_limit = 0;
-  double y_limit = 0;
+  double x_limit = 0;  ///< end of the x axis; 0: a tenth beyond the largest value
+  double y_limit = 0;  ///< end of the y axis; 0: a tenth beyond the largest value
+  /// Makes the y axis logarithmic, over whole decades. Lines have gaps where y is not positive.
   bool has_log_y = false;
 };
 
-/// Draws a plot, with a legend; lines differ in colour (also for eyes that do not tell red from
-/// green), in dashes and, if they have few points, in marks. Throws UsageError if a line has not as
-/// many x as y, and DrawingError as draw() does.
+/// Draws a plot with a legend. Lines differ in colour (also for colour-blind readers), in dashes
+/// and, if they have few points, in markers. Throws UsageError if the x and y of a line differ in
+/// number, DrawingError if this machine cannot draw.
 Picture plot_picture(const Plot& plot, int width_px, int height_px);
 
 }  // namespace tofmap

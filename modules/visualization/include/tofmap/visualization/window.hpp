@@ -10,39 +10,42 @@
 
 namespace tofmap {
 
-/// A window with a drawing in it, which the mouse turns (left button), shifts (middle) and zooms
-/// (wheel or right); q or Escape closes it. It does nothing by itself: call handle_events() several
-/// times a second, or run(). VTK wants all of its work, pictures included, on one thread.
+/// A window that shows a drawing. The mouse rotates (left button), pans (middle button) and zooms
+/// (wheel or right button) the view; q or Escape closes the window. The caller must call
+/// handle_events() several times a second, or run(). All windows and pictures must be made and used
+/// by the same thread, which VTK requires.
 class Window {
  public:
-  /// Throws DrawingError if there is no display.
+  /// Opens the window. Throws DrawingError if there is no display.
   explicit Window(const std::string& title, int width_px = 1280, int height_px = 800);
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
   ~Window();
 
-  /// Replaces what is to be seen. The view stays as it is.
+  /// Replaces the drawing. The viewpoint stays as it is.
   void show(const Drawing& drawing);
+
+  /// Moves the view to a viewpoint.
 
   void look_from(const Viewpoint& viewpoint);
 
-  /// Whether the user has turned, shifted or zoomed since the last look_from().
+  /// Whether the user has rotated, panned or zoomed since the last look_from().
   bool was_turned() const;
 
-  /// Replaces the lines of text in the upper and the lower left corner.
+  /// Replaces the text in the upper left and in the lower left corner.
   void set_text(const std::string& upper, const std::string& lower);
 
-  /// Replaces the picture in the upper right corner; an empty one takes it away.
+  /// Replaces the picture in the upper right corner. An empty picture removes it.
   void set_legend(const Picture& legend);
 
-  /// Has a function called for keys other than those that close; names are those of X ("c",
-  /// "Right", "space").
+  /// Sets the function that is called for each key except q and Escape. Keys have their names in X:
+  /// "c", "Right", "space".
   void on_key(std::function<void(const std::string& key)> handler);
 
-  /// Draws what is new and does what the user asked for meanwhile; false once it is closed.
+  /// Draws changes and handles mouse and keys. Returns false once the window is closed.
   bool handle_events();
 
-  /// Handles events until it is closed.
+  /// Handles events until the window is closed.
   void run();
 
  private:

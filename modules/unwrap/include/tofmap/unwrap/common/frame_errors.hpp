@@ -9,52 +9,65 @@
 
 namespace tofmap {
 
-/// What is known of the systematic errors in which the two frequencies of a camera differ:
+/// The systematic errors of a camera as far as they differ between its two frequencies. The model
+/// is
 ///
 ///   μ = o + Σ_k (a_k cos 2πkφ_A + b_k sin 2πkφ_A + c_k cos 2πkφ_B + d_k sin 2πkφ_B)
 ///       + e log10(amplitude_A / reference_amplitude),                         k = 1 … harmonics
 ///
-/// is what A's range exceeds B's by, metres, at the right wrap count and without motion
-/// (docs/unwrapping.md, equation 18).
+/// where μ is the difference, in metres, between A's range and B's at the right wrap counts if the
+/// camera does not move (docs/unwrapping.md, equation 18). All members are zero or neutral for
+/// methods that do not estimate these errors.
 struct CameraErrors {
   static constexpr int harmonics = 4;
   static constexpr int coefficients = 2 + 4 * harmonics;
 
-  /// o, a_1, b_1, c_1, d_1, a_2 …, e; metres.
+  /// The coefficients of μ in the order o, a_1, b_1, c_1, d_1, a_2 … d_4, e; metres.
   std::array<double, coefficients> coefficient_m{};
+  /// Median amplitude at A in the first frame; 1 without amplitudes.
   double reference_amplitude = 1;
-  double amplitude_gain = 1;  ///< of B against A
-  double periodic_rms_m = 0;  ///< of the periodic part, at the phases that were seen
-  double systematic_m = 0;    ///< standard deviation of what μ leaves; averaging does not lower it
-  int frames = 0;             ///< that took part; 0: nothing is known
-  int late_frames = 0;        ///< in a row up to the last: B came later than right after A
+  /// Median ratio of B's amplitude to A's.
+  double amplitude_gain = 1;
+  /// Standard deviation of the periodic part of μ over the phases of the frames so far.
+  double periodic_rms_m = 0;
+  /// Standard deviation of the difference between the frequencies that neither μ nor noise
+  /// explains. Averaging over pixels does not reduce it.
+  double systematic_m = 0;
+  /// The number of frames that the model was learned from; 0: nothing is known.
+  int frames = 0;
+  /// How many of the latest frames, without interruption, had B exposed later than directly after
+  /// A (up to one frame period).
+  int late_frames = 0;
 
+  /// o: the constant part of the difference.
   double offset_m() const { return coefficient_m.front(); }
+  /// e: the change of the difference per decade of amplitude.
   double per_decade_m() const { return coefficient_m.back(); }
 };
 
-/// Standard deviation of a range's systematic error, as far as the other frequency tells: both err
-/// alike much and independently, and the mean of both errs no more.
+/// Standard deviation of the systematic error of one range, metres. It follows from systematic_m,
+/// that of the difference between two ranges, on the assumption that the errors at A and B are
+/// independent and equally large. The fused range of both frequencies gets the same value.
 inline double range_systematic_m(const CameraErrors& camera) {
   return camera.systematic_m / std::numbers::sqrt2;
 }
 
-/// How the camera moved between the exposures of A and B: to `translation_m`, and by the rotation
-/// vector `rotation_rad`, in the camera frame of A.
+/// The camera's motion between the exposures of A and B: the position `translation_m` of the camera
+/// at B's exposure and its rotation as a rotation vector, both in the camera frame of A.
 struct ExposureMotion {
   Eigen::Vector3d translation_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d rotation_rad = Eigen::Vector3d::Zero();
 };
 
-/// What is known of the errors of one frame beyond its noise.
+/// The errors of one frame besides its noise.
 struct FrameErrors {
-  CameraErrors camera;  ///< as this frame shows it, on top of the frames before
-  ExposureMotion motion;
-  double flow_px = 0;  ///< by how far the motion shifts the image from A to B: most of it by less
-  bool used_last_b = false;  ///< the B of the frame before was nearer in time, and took part
-  double support =
-      0;  ///< share of the pixels that took part whose residual and amplitude are as predicted
-  int pixels = 0;  ///< that took part in the estimate; 0: too few, and only `camera` is known
+  CameraErrors camera;       ///< estimated from this frame and all frames before
+  ExposureMotion motion;     ///< zero if it could not be estimated
+  double flow_px = 0;        ///< shift of the image from A to B by the motion: 90th percentile
+  bool used_last_b = false;  ///< whether the B of the frame before was used as well
+  double support = 0;        ///< share of the samples whose residual and amplitude are as predicted
+  int pixels = 0;            ///< samples that the estimate is based on; 0: too few for an estimate,
+                             ///< then only `camera` is known, from the frames before
 };
 
 }  // namespace tofmap

@@ -9,18 +9,26 @@
 
 namespace tofmap {
 
-/// One range a pixel from both frequencies, with its standard deviation; metres, NaN where the
-/// count is invalid.
+/// Ranges from both frequencies and the standard deviation of their noise; metres, of the frame's
+/// size, NaN where the wrap count is invalid.
 struct FusedRanges {
   ImageF range_m;
   ImageF sigma_m;
 };
 
-/// The ranges of both frequencies in one: their mean, weighted by the inverse variances, which has
-/// less noise than either. It is A's alone where noise may carry B across a wrap boundary, where B
-/// did not see what A sees, and where the two differ by more than residual_agreement_sigmas of
-/// noise and `residual_sigma_m`: a pixel of two surfaces, or a wrong count. B is matched to A: what
-/// the camera's errors and motion make of the residual is gone from its phases.
+/// Fuses the ranges of both frequencies into their mean, weighted by inverse variances, which has
+/// less noise than either range.
+///
+/// The result is A's range alone
+/// - where the noise is so large that it may carry B across a wrap boundary, or B did not see A's
+///   surface (MatchedExposure::unseen_sigma_cycles);
+/// - where the residual exceeds residual_agreement_sigmas standard deviations of noise and
+///   `residual_sigma_m` together: a mixed pixel, or a wrong wrap count;
+/// - where noise makes the mean negative.
+///
+/// B must be matched to A (MatchedExposure): systematic errors and motion are already removed from
+/// its phases. `counts` are the wrap counts of A, `sigma` is the noise of both phases, and
+/// `residual_sigma_m` is the standard deviation of the residual besides noise.
 FusedRanges fuse_ranges(const DualFrequencyFrame& frame, const ImageU8& counts,
                         const UnwrapLimits& limits, const PhaseSigma& sigma,
                         double residual_sigma_m);

@@ -12,87 +12,101 @@
 
 namespace tofmap {
 
-/// What bounds the wrap counts of a frame: count_a is the number of counts n_A = 0 … count_a − 1.
+/// The wrap counts that a frame can have.
 struct UnwrapLimits {
-  double wavelength_a_m = 0;
-  double wavelength_b_m = 0;
-  double max_range_m = 0;
-  int count_a = 0;
+  double wavelength_a_m = 0;  ///< λ_A
+  double wavelength_b_m = 0;  ///< λ_B
+  double max_range_m = 0;     ///< longest range in the scene
+  int count_a = 0;            ///< wrap counts of A are 0 … count_a − 1
 
   double wavelength_ratio() const { return wavelength_a_m / wavelength_b_m; }
 };
 
-/// Limits for ranges up to `max_range_m`; 0 means the sensor's, and if that is 0 too, what the
-/// pair can tell apart at a noise of 0.05 cycles (29 and 31 MHz: 72.4 m).
-/// Throws UsageError if that takes more than 255 counts, which wrap images cannot hold.
+/// The limits for ranges up to `max_range_m`. If it is 0, the sensor's max_range_m is used; if that
+/// is 0 as well, the range up to which the pair of frequencies is unambiguous at a noise of 0.05
+/// cycles (29 and 31 MHz: 72.4 m), but at most 255 wavelengths of A.
+/// Throws UsageError if the ranges need more than 255 wrap counts, which 8-bit images cannot hold.
 UnwrapLimits unwrap_limits(const SensorModel& sensor, double max_range_m);
 
-/// The residual: range at A minus the nearest range that B allows, metres, for one pixel and one
-/// count n_A; at most λ_B / 2 in size, and near zero for the true count.
-/// B's count is not bounded by itself: near both ends of the range noise may carry B across
-/// a wrap boundary that A has not crossed.
+/// The inter-frequency residual of one pixel for wrap count n_A: the range at A minus the nearest
+/// range that B's phase allows; metres, −λ_B / 2 … λ_B / 2. It is near zero for the true wrap
+/// count; NaN if a phase is NaN. B's wrap count is not limited: near both ends of the range limits,
+/// noise may carry B across a wrap boundary that A has not crossed.
 float count_residual_m(const UnwrapLimits& limits, float phase_a, float phase_b, int n_a);
 
-/// The phase of A up to which a count's range is within the limits, cycles; negative for a count
-/// that is none.
+/// The largest phase of A, in cycles, at which the range for wrap count n_A is within the limits
+/// (see count_within_limits); −1 if n_A is not in 0 … count_a − 1.
 float farthest_phase_cycles(const UnwrapLimits& limits, int n_a);
 
-/// residual_step_m (tofmap/core/frequency_residual.hpp) among the counts within the limits.
+/// The smallest change of the residual by another wrap count within the limits, metres; the
+/// function of this name in tofmap/core/frequency_residual.hpp has the definition.
 double residual_step_m(const UnwrapLimits& limits);
 
-/// True if the count puts A's range within 0 … max_range_m. A twentieth of a wavelength is
-/// tolerated above for noise at the limit; count 0 is always within.
+/// True if the wrap count n_A ≥ 0 gives a range at A of at most max_range_m plus λ_A / 20, a
+/// tolerance for noise at the limit. Always true for n_A = 0.
 bool count_within_limits(const UnwrapLimits& limits, float phase_a, int n_a);
 
-/// False if the residual of both counts is the same to a twentieth of a cycle of B: whole combined
-/// ranges lie between them.
+/// Whether the pair of frequencies can tell two wrap counts apart: false if their residuals differ
+/// by at most 0.05 cycles of B, because the difference of their ranges is a multiple of the
+/// combined range.
 bool can_tell_apart(const UnwrapLimits& limits, int n_a, int other_n_a);
 
-/// Equation 2 for any number of wraps: per pixel the n_A of the nearest pair, i.e. the least
-/// |residual residual|; invalid_wrap_count where either phase is NaN. Equal residuals: the smaller.
-/// For two counts it is a threshold at |λ_A − λ_B| / 2; the paper's own is threshold_counts.
+/// Equation 2 of Droeschel et al. 2010, extended to any number of wraps: the wrap count with the
+/// smallest absolute residual in each pixel, within the limits; of equal ones the smallest wrap
+/// count. invalid_wrap_count where either phase is NaN. For two wrap counts this is a threshold at
+/// |λ_A − λ_B| / 2. threshold_counts() is the equation as the paper prints it.
 ImageU8 nearest_pair_counts(const DualFrequencyFrame& frame, const UnwrapLimits& limits);
 
-/// R̂ of equation 2: phase_a + n_A, cycles; NaN where the count is invalid.
+/// R̂ of equation 2: phase_a + n_A, cycles; NaN where the wrap count is invalid.
 ImageF reconstruct_cycles(const ImageF& phase_a, const ImageU8& counts);
 
-/// A pixel, numbered row by row, whose count is that of something else plus an offset.
+/// A pixel whose wrap count is known relative to that of its region.
 struct CountedPixel {
-  int pixel;
-  int offset;
+  int pixel;   ///< index of the pixel, row by row
+  int offset;  ///< wrap count of the pixel minus that of the region
 };
 
-/// How badly a count fits the residual of each pixel, in nats: half the squared residual over its
-/// variance, bounded so that flying pixels and multipath cannot outvote a surface. Outside the
-/// limits, and without a return, every count costs the bound.
+/// How badly each wrap count fits the residual of each pixel, in nats: ρ² / 2σ², with the residual
+/// ρ and its standard deviation σ (equation 10 of docs/unwrapping.md). The cost is bounded, so that
+/// flying pixels and multipath cannot outvote a surface. Wrap counts outside the limits, and all
+/// wrap counts of pixels without a return, have the cost `bound`.
 class ResidualCost {
  public:
   ResidualCost() = default;
-  /// `residual_sigma_m` is what the residual has besides the noise of both phases.
+
+  /// `sigma` is the noise of both phases, `residual_sigma_m` the standard deviation of the residual
+  /// besides noise.
   ResidualCost(const DualFrequencyFrame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
                double residual_sigma_m = 0);
 
-  /// The cost of n_A at a pixel, numbered row by row: 0 … bound. n_A is any count.
+  /// The cost of wrap count n_A in a pixel, whose index counts row by row; 0 … bound. n_A may be
+  /// any number.
   float operator()(Eigen::Index pixel, int n_a) const;
 
-  /// Adds costs of counts −1 … size() − 2: of all that are within the limits, and at least one more
-  /// at both ends. The count of each pixel is n_A + offset, where −size() ≤ offset ≤ size().
+  /// For each wrap count n = −1 … size() − 2 of a region, adds the costs of its pixels to
+  /// `costs[n + 1]`; the wrap count of a pixel is n + offset. `costs` has size() elements; each
+  /// offset must be within −size() … size(). The range of n contains all wrap counts within the
+  /// limits and at least one more at both ends.
   void add(std::span<const CountedPixel> pixels, std::span<float> costs) const;
+
+  /// The number of wrap counts that add() evaluates.
   std::size_t size() const { return size_; }
 
-  /// The likelihood of each pixel's count over the sum of all counts'; 0 where it is invalid.
+  /// The probability of the given wrap count of each pixel by the pixel's own residual: exp(−cost),
+  /// normalised over all wrap counts; 0 where the wrap count is invalid.
   ImageF probability(const ImageU8& counts) const;
 
-  static constexpr float bound = 4.5F;  ///< three standard deviations
+  /// The largest cost, that of a residual of three standard deviations; nats.
+  static constexpr float bound = 4.5F;
 
  private:
   int count_a_ = 0;
   std::size_t size_ = 0;
   ImageF phase_a_;
-  ImageF residual_cycles_;    ///< of count 0, in cycles of B
-  ImageF precision_;          ///< half the inverse variance of the residual, 1 / cycles²
-  std::vector<float> shift_;  ///< what counts from −1 − size() on add to the residual, cycles
-  std::vector<float> farthest_;  ///< phase up to which their range is within the limits
+  ImageF residual_cycles_;    ///< residual for wrap count 0, cycles of B
+  ImageF precision_;          ///< 1 / 2σ² of the residual, 1 / cycles²
+  std::vector<float> shift_;  ///< change of the residual by wrap counts −1 − size() …, cycles
+  std::vector<float> farthest_;  ///< farthest_phase_cycles() of the same wrap counts
 };
 
 }  // namespace tofmap

@@ -9,15 +9,25 @@
 
 namespace tofmap {
 
-/// What unwrapping says of one frame.
+/// The result of unwrapping one frame.
 struct UnwrapResult {
   RangeImage image;
-  FrameErrors errors = {};        ///< of joint and jump; nothing is known of others
-  int iterations = 0;             ///< of belief propagation; 0 for none and pixel
-  int curl_violations = 0;        ///< curl nodes that are not zero when it ended
-  std::optional<bool> converged;  ///< whether no curl is left; empty for methods without jumps
-  double phase_noise_cycles = 0;  ///< estimated; median over the pixels with a return
-  int regions = 0;                ///< anchored each by itself; 0 for none and pixel
+  /// Estimated by `joint` and `jump`; of the other methods as constructed.
+  FrameErrors errors = {};
+  /// Iterations of belief propagation, for `joint` added over all pyramid levels; 0 for `none` and
+  /// `pixel`.
+  int iterations = 0;
+  /// Loops of 2 x 2 pixels that violate the zero-curl constraint after belief propagation; 0 for
+  /// methods without phase jumps.
+  int curl_violations = 0;
+  /// Whether every loop of 2 x 2 pixels satisfies the zero-curl constraint. Empty for methods
+  /// without phase jumps.
+  std::optional<bool> converged = std::nullopt;
+  /// Estimated noise of A's phase: median over the pixels with a return.
+  double phase_noise_cycles = 0;
+  /// Regions whose absolute wrap count was found separately for each; 0 for methods without phase
+  /// jumps.
+  int regions = 0;
 };
 
 }  // namespace tofmap

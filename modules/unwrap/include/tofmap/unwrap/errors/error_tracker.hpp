@@ -19,51 +19,62 @@ struct ExposurePair;
 struct PairGeometry;
 struct SurfaceSamples;
 
-/// B as if it had been exposed together with A, by a camera whose frequencies agree: what B
-/// measured where it saw the surface that A sees in a pixel, less what FrameErrors predict of the
-/// residual. Where B did not see that surface (it lies outside B's image or behind another, or its
-/// amplitude is another surface's), sigma_b_cycles is `unseen_sigma_cycles`: nothing is known.
+/// B matched to A: the images of B as if B had been exposed at the same time as A, by a camera
+/// whose frequencies have no systematic difference. For each pixel of A, B is looked up where it
+/// saw the same surface, and the residual that FrameErrors predict is removed from its phase. All
+/// images have the size of A.
 struct MatchedExposure {
+  /// sigma_b_cycles of pixels whose surface B did not see: the surface is outside B's image or
+  /// hidden, or B's amplitude is that of another surface. B's phase says nothing there.
   static constexpr float unseen_sigma_cycles = 1e3F;
 
-  ImageF phase_b;
-  ImageF amplitude_b;  ///< empty if the frame has no amplitudes
-  ImageF sigma_b_cycles;
+  ImageF phase_b;         ///< cycles, 0 … 1; NaN where A has no return
+  ImageF amplitude_b;     ///< empty if the frame has no amplitudes
+  ImageF sigma_b_cycles;  ///< noise of phase_b
 };
 
-/// Estimates the systematic errors of a camera from its frames, one after the other.
+/// Estimates the systematic errors of a camera from its frames, one frame after the other
+/// (docs/unwrapping.md, equations 17 to 21).
 ///
-/// Each frame is compared with itself: on bright, smooth surfaces the residual between the
-/// frequencies shows how the camera moved between both exposures, and what the frequencies disagree
-/// by besides (docs/unwrapping.md, equations 17 to 21). Motion belongs to one frame. Offset,
-/// periodic errors and the error with amplitude belong to the camera, and become better known with
-/// every frame: recursive least squares, with a memory of some fifty frames. Where the camera has
-/// moved far from A's exposure to B's, the B of the frame before may be nearer, and is tried as
-/// well.
+/// On bright, smooth surfaces the inter-frequency residual of a frame shows how the camera moved
+/// between the exposures of A and B, and the systematic difference between the frequencies. The
+/// motion is estimated for each frame. The offset, the periodic errors and the error with amplitude
+/// are properties of the camera: recursive least squares estimates them with a memory of about
+/// fifty frames. If the image moves far from A to B and B is exposed late, the B of the frame
+/// before is used as well, since it may have been taken from a nearer place.
 ///
-/// Results depend on the frames so far, in their order, and on nothing else.
+/// Results depend only on the frames so far and their order.
 class ErrorTracker {
  public:
-  /// A camera without size is unknown: its motion is then taken for an offset.
+  /// If `camera` has no size or no focal length, motion cannot be estimated, and the offset absorbs
+  /// it.
   ErrorTracker(const UnwrapLimits& limits, const CameraModel& camera);
 
+  /// The errors of a frame, and its B matched to A.
   struct Tracked {
     FrameErrors errors;
     MatchedExposure b;
   };
 
-  /// The next frame. Phases are NaN at both frequencies where either has no return; `sigma` is the
-  /// noise of its phases.
+  /// Estimates the errors of the next frame, matches its B to A, and learns from the frame. Phases
+  /// must be NaN at both frequencies where either has no return; `sigma` is the noise of the
+  /// phases. From a frame with fewer than 100 samples nothing is estimated or learned: its errors
+  /// are those known of the camera.
   Tracked track(const DualFrequencyFrame& frame, const PhaseSigma& sigma);
 
+  /// The camera's errors, estimated from all frames so far.
   const CameraErrors& camera_errors() const { return camera_errors_; }
 
-  /// Forgets the last frame's B, as after a gap in time; what is known of the camera stays, and how
-  /// it moved may be how it will.
+  /// Forgets the B of the last frame, as after a gap in time. Keeps the errors of the camera, and
+  /// its last motion, which is a starting point for the motion of the next frame.
   void forget_last_frame() { last_ = {{}, {}, {}, last_.motion}; }
 
-  /// All that later frames depend on, to the bit. Reading throws std::exception if it is damaged.
+  /// Writes the complete state in binary form: after load(), later frames give the same bits as
+  /// without saving.
   void save(std::ostream& out) const;
+
+  /// Reads a state that save() wrote for the same limits and camera. Throws an std::exception if
+  /// the data is damaged.
   void load(std::istream& in);
 
   static constexpr int terms = CameraErrors::coefficients;
@@ -71,7 +82,7 @@ class ErrorTracker {
   using TermsMatrix = Eigen::Matrix<double, terms, terms>;
 
  private:
-  /// B's images of the last frame, and how the camera moved to B.
+  /// B's images of the last frame, and the camera's motion from A to B.
   struct Exposure {
     ImageF phase;
     ImageF amplitude;
@@ -90,8 +101,8 @@ class ErrorTracker {
   CameraModel camera_;
   PixelRays rays_;
   CameraErrors camera_errors_;
-  TermsMatrix information_ = TermsMatrix::Zero();  ///< of the frames so far, about the coefficients
-  Terms gradient_ = Terms::Zero();
+  TermsMatrix information_ = TermsMatrix::Zero();  ///< I of equation 21
+  Terms gradient_ = Terms::Zero();                 ///< h of equation 21
   Exposure last_;
 };
 

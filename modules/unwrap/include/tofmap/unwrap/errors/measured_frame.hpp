@@ -16,49 +16,65 @@
 
 namespace tofmap {
 
-/// A frame with what is known of its errors: what every method of unwrapping starts from.
+/// A frame and its estimated errors: the input of every method of unwrapping. All images have the
+/// size of the frame.
 struct MeasuredFrame {
-  DualFrequencyFrame returns;  ///< phases are NaN at both frequencies where either has no return;
-                               ///< B is matched to A (MatchedExposure) for `joint` and `jump`
-  ImageU8 valid;               ///< not 0 where both frequencies have one
-  ImageU8 saturated;           ///< not 0 where one of them was too strong for that
-  PhaseNoise noise;            ///< estimated
-  ImageF ambient;              ///< by which factor it differs in parts of the image; empty: nowhere
-  PhaseSigma sigma;            ///< of the noise
-  FrameErrors errors;          ///< of joint and jump; of others nothing is known
-  double residual_sigma_m = 0;  ///< of the residual between the frequencies, besides noise
+  /// The frame, with phases that are NaN at both frequencies where `valid` is 0. For `joint` and
+  /// `jump`, B is matched to A (MatchedExposure).
+  DualFrequencyFrame returns;
+  /// 1 where both frequencies have a return and none is saturated, else 0.
+  ImageU8 valid;
+  /// 1 where the amplitude of either frequency reaches the sensor's saturation_amplitude, else 0.
+  ImageU8 saturated;
+  /// Estimated noise of the phases.
+  PhaseNoise noise;
+  /// Factor by which ambient light raises the noise of each pixel; empty: 1 everywhere.
+  ImageF ambient;
+  /// Standard deviation of the phase noise of each pixel, from `noise` and `ambient`.
+  PhaseSigma sigma;
+  /// Estimated for `joint` and `jump`; for the other methods as constructed.
+  FrameErrors errors;
+  /// Standard deviation of the inter-frequency residual besides noise; 0 for methods whose
+  /// systematic errors are not estimated.
+  double residual_sigma_m = 0;
 };
 
-/// Measures the frames of one camera, in their order: noise, systematic errors, and the motion
-/// between the exposures. What it says of a frame depends on the frames before it, since the camera
-/// becomes better known; unwrapping what it returns depends on nothing else, so that frames
-/// measured one after the other can be unwrapped side by side.
+/// Estimates noise, systematic errors and the motion between exposures for the frames of one
+/// camera, which must be passed in the order of their recording: the estimate for a frame depends
+/// on the frames before it. Unwrapping a measured frame depends on no other frame, so measured
+/// frames can be unwrapped in parallel.
 class FrameMeasurer {
  public:
-  /// Throws UsageError if options are not allowed.
+  /// Throws UsageError if the range limit needs more than 255 wrap counts (unwrap_limits). Does not
+  /// check the other options; OptionTable checks their ranges when they are set.
   FrameMeasurer(const SensorModel& sensor, const UnwrapOptions& options);
 
-  /// Looks at the first frames of a recording, so that the camera is known from the first one on.
-  /// Call it before any other; frames are measured again afterwards.
+  /// Learns the camera's systematic errors from the first frames of a recording, so that they are
+  /// known when the first frame is measured. Call this before any other function, then pass the
+  /// same frames to measure().
   void look_ahead(std::span<const DualFrequencyFrame> frames);
 
-  /// Throws UsageError if the frame's images differ in size.
+  /// Measures the next frame. Throws UsageError if the frame's images differ in size.
   MeasuredFrame measure(const DualFrequencyFrame& frame);
 
-  /// How many frames are worth looking ahead.
+  /// The number of frames that look_ahead() should be given.
   static constexpr int frames_ahead = 8;
 
-  /// All that later frames depend on, to the bit. Reading throws std::exception if it is damaged.
+  /// Writes the complete state in binary form: after load(), later frames give the same bits as
+  /// without saving.
   void save(std::ostream& out) const;
+
+  /// Reads a state that save() wrote for the same sensor and options. Throws an std::exception if
+  /// the data is damaged.
   void load(std::istream& in);
 
  private:
   UnwrapLimits limits_;
   double saturation_amplitude_;
-  std::optional<ErrorTracker> tracker_;  ///< of methods that compare the frequencies
+  std::optional<ErrorTracker> tracker_;  ///< empty if systematic errors are not estimated
 };
 
-/// The median of the noise of A's phase over the pixels with a return, cycles; 0 if there are none.
+/// Median of the noise of A's phase over the pixels with a return, cycles; 0 if no pixel has one.
 double median_phase_noise_cycles(const MeasuredFrame& frame);
 
 }  // namespace tofmap

@@ -8,15 +8,19 @@
 
 namespace tofmap {
 
-/// Estimates the noise from one frame: the median absolute second difference of the wrapped
-/// phase along rows and columns, each divided by what amplitudes predict for it.
+/// Estimates the phase noise of one frame at both frequencies (docs/unwrapping.md, 'Noise').
 ///
-/// A second difference cancels planes to first order and needs no unwrapping; the median
-/// passes over edges. (The residual between A and B, the obvious other source, is bounded by
-/// half a residual step and so saturates just when the noise is large.)
-/// The result is at least the quantisation of 16-bit phases; where too few pixels have
-/// neighbours to tell (fewer than 16 triples), it is a noise of 0.01 cycles at the median
-/// amplitude.
+/// The scale of the noise is the median absolute second difference of the wrapped phase along rows
+/// and columns, each difference divided by the relative noise that the amplitudes predict for it.
+/// Second differences cancel planes to first order and need no unwrapping; the median is robust to
+/// edges. If the noise is so large that most differences wrap, only the quieter half of them is
+/// used, and if that half is too noisy as well, the mean cosine of first differences. (The
+/// inter-frequency residual cannot replace them: it is bounded, so it saturates when the noise is
+/// large.)
+///
+/// The estimate is at least the quantisation step of the phases, and that is at least the step of
+/// 16-bit phases. With fewer than 16 second differences, the estimate is a noise of 0.01 cycles at
+/// the median amplitude.
 PhaseNoise estimate_phase_noise(const DualFrequencyFrame& frame);
 
 }  // namespace tofmap

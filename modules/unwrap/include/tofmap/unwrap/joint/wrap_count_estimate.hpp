@@ -13,38 +13,46 @@
 
 namespace tofmap {
 
-/// How counts are estimated.
+/// The options of WrapCountEstimator. UnwrapOptions has their ranges.
 struct WrapCountOptions {
+  /// The assumptions about scenes.
   WrapCountPrior prior;
+  /// Iterations of belief propagation at every pyramid level; at least 1.
   int iterations = 3;
-  int scales = 3;  ///< pixels, blocks of 2 x 2, of 4 x 4 …, as far as the noise asks for it
+  /// Largest number of pyramid levels, at least 1. Level s, counted from 0, has blocks of 2^s x 2^s
+  /// pixels. Coarser levels are used only as far as the phase noise of the frame requires.
+  int scales = 3;
 };
 
-/// Phases and their noise; NaN where there is no return.
+/// A frame and the noise of its phases; both NaN where there is no return.
 struct NoisyFrame {
   DualFrequencyFrame frame;
   PhaseSigma sigma;
 };
 
-/// A frame of half the size: phasors, averaged over blocks of 2 x 2 pixels, and the noise of their
-/// phases. A block without any return is NaN. Without amplitudes all phasors weigh the same; the
-/// frame of half the size has amplitudes, which say how well phasors agree.
+/// Halves a frame in width and height, rounded up: averages the phasors of blocks of 2 x 2 pixels
+/// and propagates their noise. Pixels without a return at either frequency are left out; a block
+/// without any return has NaN phases and amplitude 0. If the frame has no amplitudes, all its
+/// phasors have length 1; the result has amplitudes in any case, the lengths of the mean phasors.
 NoisyFrame halve(const DualFrequencyFrame& frame, const PhaseSigma& sigma);
 
-/// Estimates the wrap counts of frames by belief propagation, at several scales where noise is
-/// large. Phases are NaN where there is no return; counts are invalid there. Buffers persist, so
-/// that frames of one size cost few allocations.
+/// Estimates the wrap counts of frames by belief propagation, in noisy frames at several pyramid
+/// levels from coarse to fine (docs/unwrapping.md, 'Joint: beliefs over counts'). The object keeps
+/// its buffers, so frames of the same size need few allocations.
 class WrapCountEstimator {
  public:
-  /// `residual_sigma_m` is what the residual between the frequencies has besides noise.
+  /// Estimates the wrap counts of a frame whose phases are NaN at both frequencies where either has
+  /// no return; in these pixels the wrap count is invalid_wrap_count and its probability 0. `sigma`
+  /// is the noise of the phases, `residual_sigma_m` the standard deviation of the inter-frequency
+  /// residual besides noise. `iterations` of the result is the sum over all pyramid levels.
   WrapCountBeliefs estimate(const DualFrequencyFrame& frame, const UnwrapLimits& limits,
                             const PhaseSigma& sigma, double residual_sigma_m,
                             const WrapCountOptions& options);
 
  private:
-  /// What is seen at one scale: pixels, or blocks of them.
+  /// One pyramid level.
   struct Scale {
-    NoisyFrame blocks;  ///< empty at the scale of pixels
+    NoisyFrame blocks;  ///< empty at the level of pixels
     WrapCountModel model;
     WrapCountPropagation propagation;
     WrapCountBeliefs beliefs;

@@ -14,43 +14,67 @@
 
 namespace tofmap {
 
-/// What is assumed of scenes, for the method `joint`. docs/unwrapping.md has the effect of each.
+/// The assumptions about scenes of the method `joint`. Symbols and equation numbers are those of
+/// docs/unwrapping.md.
 struct WrapCountPrior {
-  double outlier_share = 0.4;   ///< how much of the evidence of a pixel is thought to be any
-  double slope_m = 0.2;         ///< typical difference of true ranges between neighbours
-  double edge_share = 0.02;     ///< neighbours on different surfaces, at equal amplitude
-  double edge_reach_m = 25;     ///< steps from one surface to another lie within ± this
-  bool amplitude_edges = true;  ///< edges are likelier where the amplitude changes
-  bool mixed_pixels = true;  ///< pixels between bright and dark neighbours know nothing themselves
+  /// ε of equation 11: probability that a pixel's residual comes from no surface; above 0 and below
+  /// 1. A larger value gives the residual of a single pixel less weight.
+  double outlier_share = 0.4;
+  /// s of equation 12: typical difference between the true ranges of neighbouring pixels on one
+  /// surface, metres, above 0.
+  double slope_m = 0.2;
+  /// e_0 of equation 13: probability that two neighbours of equal amplitude are on different
+  /// surfaces; above 0 and below 1.
+  double edge_share = 0.02;
+  /// R of equation 14, metres, above 0: from one surface to another, the range changes by any
+  /// amount within ± R, all equally probable.
+  double edge_reach_m = 25;
+  /// Whether an edge between surfaces is more probable where the amplitude changes.
+  bool amplitude_edges = true;
+  /// Whether the unary factors of mixed pixels are made nearly uniform, so that their neighbours
+  /// decide their wrap counts. Needs amplitudes.
+  bool mixed_pixels = true;
 };
 
-/// Probabilities of the wrap counts of all pixels, as a grid of factors (docs/unwrapping.md,
-/// equations 11 to 14), stored diagonal by diagonal.
+/// The probabilities of the wrap counts of all pixels as a factor graph on the pixel grid
+/// (docs/unwrapping.md, equations 11 to 14). All values are stored diagonal by diagonal
+/// (DiagonalLayout).
 ///
-/// evidence: of each pixel for each count, from its residual; the best is 1.
-/// right, down: of each pixel and that neighbour for the two steps in count that make their ranges
-/// lie close, relative to all other steps, which count 0: `same` for no step, `next` for the other;
-/// that is one up if the number is positive, one down, of its absolute value, if it is negative.
+/// Unary factors, `evidence`: how well each wrap count of a pixel fits the pixel's residual,
+/// tempered, relative to the best wrap count, which has 1.
+///
+/// Pairwise factors, `right` and `down`: ψ(i) of a pixel p and its neighbour q for the step
+/// i = n(q) − n(p), tempered. Only two steps can bring the ranges of p and q close together: 0, and
+/// either +1 or −1. All other steps have ψ = 1, so Edges holds ψ − 1 of these two.
 class WrapCountModel {
  public:
+  /// The pairwise factors of all pixels and one of their neighbours, stored at the left or upper
+  /// pixel. 0 where either pixel has no return.
   struct Edges {
-    std::vector<float> same;
-    std::vector<float> next;
+    std::vector<float> same;  ///< ψ(0) − 1
+    std::vector<float> next;  ///< ψ(+1) − 1 if positive; the negative of ψ(−1) − 1 if negative
   };
 
-  /// Replaces the model by that of a frame, whose phases are NaN where there is no return. `sigma`
-  /// is the noise of its phases, `residual_sigma_m` what their residual has besides, as systematic
-  /// errors make it. Keeps its memory, so that frames of one size cost no allocation.
+  /// Builds the model of a frame, which replaces the previous one. Phases must be NaN where there
+  /// is no return. `sigma` is the noise of the phases, `residual_sigma_m` the standard deviation of
+  /// the inter-frequency residual besides noise. Reuses the memory of the previous model if the
+  /// frame has the same size.
   void assign(const DualFrequencyFrame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
               double residual_sigma_m, const WrapCountPrior& prior);
 
-  /// Multiplies the evidence of a pixel by a factor for each count. The best is 1 again then.
+  /// Multiplies the unary factors of a pixel by `factors`, one for each wrap count, and scales them
+  /// so that the largest is 1.
   void weigh_evidence(int row, int col, std::span<const float> factors);
 
   const DiagonalLayout& layout() const { return layout_; }
+
+  /// The number of wrap counts.
   int counts() const { return counts_; }
+
+  /// The unary factors as bfloat16 numbers, with one plane of layout() for each wrap count.
   const std::vector<std::uint16_t>& evidence() const { return evidence_; }
-  /// The evidence of one pixel for every count: for tests and for those who look closely.
+
+  /// The unary factors of one pixel for all wrap counts. Slow; for tests and inspection.
   std::vector<double> evidence_of(int row, int col) const;
 
   const Edges& right() const { return right_; }
@@ -62,10 +86,10 @@ class WrapCountModel {
 
   DiagonalLayout layout_;
   int counts_ = 0;
-  std::vector<std::uint16_t> evidence_;  ///< upper halves of floats
+  std::vector<std::uint16_t> evidence_;  ///< bfloat16
   Edges right_;
   Edges down_;
-  // What a frame says of its pixels, diagonal by diagonal.
+  // Measurements of the frame and parameters of its pixels, diagonal by diagonal.
   std::vector<float> phase_a_;
   std::vector<float> phase_b_;
   std::vector<float> amplitude_;

@@ -8,50 +8,62 @@
 
 namespace tofmap {
 
-/// Three probabilities (or messages) a jump node, as planes: index i + 1 holds configuration
-/// i = −1, 0, +1 of the paper. Configuration i between pixels p and q, q right of or below p,
-/// means n(q) − n(p) = −i: at −1 the wrap count grows by one.
+/// The probabilities of the configurations of all jump nodes. A jump node sits between two
+/// neighbouring pixels p and q, where q is right of p or below it. Configuration i = −1, 0, +1 of
+/// the paper means n(q) − n(p) = −i, so at −1 the wrap count grows by one. Index i + 1 of each
+/// array is the plane of configuration i.
 ///
-/// x holds s_x(x, y), between (x, y) and (x + 1, y): rows x (cols − 1).
-/// y holds s_y(x, y), between (x, y) and (x, y + 1): (rows − 1) x cols.
-/// A node that is absent is NaN in all three planes.
+/// If p or q has no return, the node is absent, and NaN in all three planes.
 struct JumpProbabilities {
-  std::array<ImageF, 3> x;
-  std::array<ImageF, 3> y;
+  std::array<ImageF, 3> x;  ///< s_x(x, y), between (x, y) and (x + 1, y): rows x (cols − 1)
+  std::array<ImageF, 3> y;  ///< s_y(x, y), between (x, y) and (x, y + 1): (rows − 1) x cols
 };
 
-/// Medians along one direction on both sides of every jump node (figure 6 of the paper):
-/// `neg` over the k pixels up to and with p, `pos` over the k pixels from q on. NaNs are left
-/// out, borders cut windows short; of an even number the lower of the two middle values.
-/// NaN where a window holds no number.
+/// Medians along one direction on both sides of every jump node (figure 6 of the paper). Windows
+/// are cut short at the border of the image. NaNs are left out; a window of NaNs alone gives NaN.
+/// Of an even number of values, the median is the lower one of the two in the middle.
 struct SideMedians {
-  ImageF neg;
-  ImageF pos;
+  ImageF neg;  ///< over the k pixels that end with p
+  ImageF pos;  ///< over the k pixels that begin with q
 };
+
+/// The medians along rows, for the nodes of JumpProbabilities::x; `window_px` is k, at least 1.
 SideMedians side_medians_x(const ImageF& image, int window_px);
+
+/// The medians along columns, for the nodes of JumpProbabilities::y; `window_px` is k, at least 1.
 SideMedians side_medians_y(const ImageF& image, int window_px);
 
-/// How much each term is trusted (equation 4), and how it is made.
+/// The parameters of the evidence for phase jumps.
 struct JumpTerms {
-  double sigma_cycles;         ///< σ of both terms: of true differences between neighbours
-  int window_px;               ///< k, pixels on each side of a jump in the medians
-  double trust_discontinuity;  ///< c_d
-  double trust_frequency;      ///< c_f
+  double sigma_cycles;  ///< σ of both terms: standard deviation of the true phase differences
+                        ///< between neighbouring pixels
+  int window_px;        ///< k: pixels on each side of a jump over which medians are taken
+  double trust_discontinuity;  ///< c_d of equation 4, 0 … 1
+  double trust_frequency;      ///< c_f of equation 4, 0 … 1
 };
 
-/// The evidence for each configuration of every jump node, from both terms:
-/// ((1 − c_d) + c_d f_d) ((1 − c_f) + c_f f_f), normalised; no configuration gets less than 1e-6.
+/// Computes the evidence for each configuration of every jump node, equation 4:
 ///
-/// Equation 1: f_d(i) = exp(−(φ(q) − φ(p) − i)² / 2σ²), of wrapped phases in cycles. To σ² come the
-/// variances of the noise of p and q (`noise_cycles`, a standard deviation a pixel): a noisy
-/// difference says little.
+///   P(i) ∝ ((1 − c_d) + c_d f_d(i)) ((1 − c_f) + c_f f_f(i)),
 ///
-/// Equation 3: f_f(i) = exp(−(|m_R̂^neg − m_A^neg| − |m_R̂^pos − m_A^pos| − i)² / 2σ²), with medians
-/// of the wrapped phase and of its reconstruction R̂, in cycles. Where R̂ holds several wraps the
-/// inner difference may pass ±1; it is then taken as ±1, the nearest that a configuration can say.
-/// Without R̂, an image of no pixels, there is no f_f.
+/// normalised over i = −1, 0, +1; each product is at least 1e-6.
 ///
-/// A node is absent where the phase of p or q is NaN.
+/// Discontinuity term, equation 1, with the wrapped phases φ of A in cycles:
+///
+///   f_d(i) = exp(−(φ(q) − φ(p) − i)² / 2σ²)
+///
+/// The variances of the phase noise of p and q are added to σ²; `noise_cycles` holds the standard
+/// deviation of each pixel.
+///
+/// Frequency term, equation 3, with the medians of the wrapped phase and of its reconstruction R̂,
+/// in cycles:
+///
+///   f_f(i) = exp(−(|m_R̂^neg − m_A^neg| − |m_R̂^pos − m_A^pos| − i)² / 2σ²)
+///
+/// The difference of the absolute values is limited to −1 … 1, since it may be larger if R̂ has
+/// several wraps. If `reconstruction_cycles` is empty (0 x 0), the frequency term is left out.
+///
+/// `out` is resized. A node is absent, NaN, where the phase of p or q is NaN.
 void find_jump_evidence(const ImageF& phase, const ImageF& noise_cycles,
                         const ImageF& reconstruction_cycles, const JumpTerms& terms,
                         JumpProbabilities& out);

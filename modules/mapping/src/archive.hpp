@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// How Boost.Serialization writes and reads the plain types of mapping, bit by bit: what a run
-// needs to be put aside and taken up again by the same build.
+// Serialization of the plain types of mapping by Boost.Serialization, exact to the bit. An
+// interrupted run is saved and resumed with these functions. Only the same build can read the data.
 
 #include <optional>
 
@@ -18,7 +18,7 @@ namespace boost::serialization {
 
 template <class Archive, class Number, int rows, int cols>
 void serialize(Archive& archive, Eigen::Matrix<Number, rows, cols>& matrix, unsigned) {
-  static_assert(rows > 0 && cols > 0, "of a fixed size");
+  static_assert(rows > 0 && cols > 0, "the matrix must have a fixed size");
   archive& make_array(matrix.data(), static_cast<std::size_t>(matrix.size()));
 }
 
