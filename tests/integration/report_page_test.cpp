@@ -44,8 +44,9 @@ TEST_F(ReportPage, OfAMapTellsVerdictFiguresAndOptions) {
 
 TEST_F(ReportPage, OfWrappedRangesIsNotToBeTrusted) {
   ASSERT_EQ(run("map", {"--method", "none", "--set", "report.frames=2"}).status, 0);
-  EXPECT_THAT(page(), AllOf(HasSubstr("Do not trust this result."), HasSubstr("Nothing was unwrapped"),
-                            Not(HasSubstr("the same path, ranges as measured"))));
+  EXPECT_THAT(page(),
+              AllOf(HasSubstr("Do not trust this result."), HasSubstr("Nothing was unwrapped"),
+                    Not(HasSubstr("the same path, ranges as measured"))));
   EXPECT_EQ(frames_in(page()), 2);
   const auto report = read_json(out_ / "report.json");
   EXPECT_GT(report["consistency"]["residual_misfit_percent"], 10);
