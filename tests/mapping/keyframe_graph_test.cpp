@@ -18,7 +18,7 @@ KeyframeGraph there_and_back() {
   KeyframeGraph graph;
   for (int id = 0; id <= 20; ++id) {
     graph.add({id, id, 0.1 * id, at(id <= 10 ? id : 20 - id), nullptr});
-    if (id > 0) graph.tie(id - 1, id);
+    if (id > 0) graph.connect(id - 1, id);
   }
   return graph;
 }
@@ -31,13 +31,13 @@ std::vector<int> ids(const std::vector<const Keyframe*>& keyframes) {
 
 TEST(KeyframeGraph, ReachesNoFurtherThanATrustedChain) {
   const KeyframeGraph graph = there_and_back();
-  // Number 0 is where number 20 is, but twenty ties away.
+  // Number 0 is where number 20 is, but twenty constraints away.
   EXPECT_EQ(ids(graph.around(20, at(0), 5, {1, 1})), (std::vector<int>{16, 17, 18, 19, 20}));
 }
 
 TEST(KeyframeGraph, TakesTheNearestOnceTheyAreTied) {
   KeyframeGraph graph = there_and_back();
-  graph.tie(0, 20);
+  graph.connect(0, 20);
   EXPECT_EQ(ids(graph.around(20, at(0), 5, {1, 1})), (std::vector<int>{0, 1, 18, 19, 20}));
 }
 
@@ -46,8 +46,8 @@ TEST(KeyframeGraph, MeasuresTurnsAsWell) {
   graph.add({0, 0, 0, at(0), nullptr});
   graph.add({1, 1, 0.1, test::moved_by({0, 1.5, 0}, {0, 0, 0}), nullptr});
   graph.add({2, 2, 0.2, at(1), nullptr});
-  graph.tie(0, 1);
-  graph.tie(0, 2);
+  graph.connect(0, 1);
+  graph.connect(0, 2);
   // A metre is two steps, 1.5 radians are three turns.
   EXPECT_EQ(ids(graph.around(0, at(0), 2, {0.5, 0.5})), (std::vector<int>{2, 0}));
 }

@@ -10,7 +10,7 @@ namespace {
 
 /// Largest number of registrations between two keyframes. The error of their relative pose grows
 /// with that number; over five it is still small.
-constexpr int max_ties = 5;
+constexpr int max_hops = 5;
 
 }  // namespace
 
@@ -21,13 +21,13 @@ double KeyframeSpacing::between(const Pose& a, const Pose& b) const {
 
 void KeyframeGraph::add(Keyframe keyframe) {
   keyframes_.push_back(std::move(keyframe));
-  tied_.emplace_back();
+  neighbours_.emplace_back();
 }
 
-void KeyframeGraph::tie(int a, int b) {
+void KeyframeGraph::connect(int a, int b) {
   for (const auto& [one, other] : {std::pair(a, b), std::pair(b, a)}) {
-    std::vector<int>& ties = tied_[static_cast<std::size_t>(one)];
-    if (std::ranges::find(ties, other) == ties.end()) ties.push_back(other);
+    std::vector<int>& connected = neighbours_[static_cast<std::size_t>(one)];
+    if (std::ranges::find(connected, other) == connected.end()) connected.push_back(other);
   }
 }
 
@@ -55,10 +55,10 @@ std::vector<const Keyframe*> KeyframeGraph::around(int id, const Pose& pose, int
 std::vector<int> KeyframeGraph::within_reach(int id) const {
   std::vector<int> reached{id};
   std::size_t border = 0;
-  for (int ties = 0; ties < max_ties; ++ties) {
+  for (int hops = 0; hops < max_hops; ++hops) {
     const std::size_t end = reached.size();
     for (; border < end; ++border) {
-      for (const int other : tied_[static_cast<std::size_t>(reached[border])]) {
+      for (const int other : neighbours_[static_cast<std::size_t>(reached[border])]) {
         if (std::ranges::find(reached, other) == reached.end()) reached.push_back(other);
       }
     }

@@ -73,7 +73,7 @@ namespace tofmap {
 
 template <class Archive>
 void KeyframeGraph::serialize(Archive& archive, unsigned) {
-  archive& keyframes_& tied_;
+  archive& keyframes_& neighbours_;
 }
 
 template <class Archive>
@@ -111,18 +111,18 @@ void RoomMapper::serialize(Archive& archive, unsigned) {
 void RoomMapper::save(std::ostream& out) const {
   boost::archive::binary_oarchive archive(out);
   archive << *this;
-  const std::size_t parts = parts_.size();
-  archive << parts << part_of_;
-  for (const Part& part : parts_) archive << part.anchor << part.surface;
+  const std::size_t submaps = submaps_.size();
+  archive << submaps << submap_of_;
+  for (const Submap& submap : submaps_) archive << submap.anchor << submap.surface;
 }
 
 void RoomMapper::load(std::istream& in) {
   boost::archive::binary_iarchive archive(in);
   archive >> *this;
-  std::size_t parts = 0;
-  archive >> parts >> part_of_;
-  parts_.assign(parts, {0, SurfaceMap(surface_options_)});
-  for (Part& part : parts_) archive >> part.anchor >> part.surface;
+  std::size_t submaps = 0;
+  archive >> submaps >> submap_of_;
+  submaps_.assign(submaps, {0, SurfaceMap(surface_options_)});
+  for (Submap& submap : submaps_) archive >> submap.anchor >> submap.surface;
 }
 
 void save_tracking(const std::vector<TrackingResult>& results, std::ostream& out) {

@@ -128,10 +128,11 @@ TrackingResult RoomMapper::relocalised(double timestamp_s, const SurfaceCloud& c
 
 /// Adds the surface of the latest registered frame to the submap of its keyframe.
 void RoomMapper::integrate(const SurfaceCloud& cloud) {
-  Part& part = parts_[static_cast<std::size_t>(part_of_[static_cast<std::size_t>(current_)])];
-  const Pose anchor_from_keyframe =
-      keyframes_[part.anchor].world_from_camera.inverse() * keyframes_[current_].world_from_camera;
-  part.surface.integrate(cloud, anchor_from_keyframe * frames_.back().keyframe_from_camera);
+  Submap& submap =
+      submaps_[static_cast<std::size_t>(submap_of_[static_cast<std::size_t>(current_)])];
+  const Pose anchor_from_keyframe = keyframes_[submap.anchor].world_from_camera.inverse() *
+                                    keyframes_[current_].world_from_camera;
+  submap.surface.integrate(cloud, anchor_from_keyframe * frames_.back().keyframe_from_camera);
 }
 
 /// Searches for a loop of the newest keyframe, once per keyframe, and fits the pose graph if there
@@ -177,14 +178,14 @@ Trajectory RoomMapper::keyframe_trajectory() const {
 
 std::size_t RoomMapper::voxel_count() const {
   std::size_t count = 0;
-  for (const Part& part : parts_) count += part.surface.size();
+  for (const Submap& submap : submaps_) count += submap.surface.size();
   return count;
 }
 
 MapCloud RoomMapper::surface() const {
   SurfaceMap whole(surface_options_);
-  for (const Part& part : parts_) {
-    whole.add(part.surface, keyframes_[part.anchor].world_from_camera);
+  for (const Submap& submap : submaps_) {
+    whole.add(submap.surface, keyframes_[submap.anchor].world_from_camera);
   }
   const MapCloud map = whole.extract();
   if (!surface_options_.drop_free_space_violations) return map;
@@ -208,7 +209,7 @@ void RoomMapper::add_keyframe(const NewFrame& frame, std::span<const Keyframe* c
     path_m = keyframes_[id - 1].path_m +
              (result.world_from_camera.translation() - last.translation()).norm();
   }
-  part_of_.push_back(part_for(id, result.world_from_camera, around));
+  submap_of_.push_back(submap_for(id, result.world_from_camera, around));
   keyframes_.add({id, frame.index, frame.timestamp_s, result.world_from_camera, frame.cloud, path_m,
                   PlaceDescriptor(*frame.cloud)});
   // One registration with all targets gives several edges, each with an equal share of its
@@ -219,27 +220,27 @@ void RoomMapper::add_keyframe(const NewFrame& frame, std::span<const Keyframe* c
         edge_of(keyframes_[target], id, result.world_from_camera, result.pose_covariance);
     edge.covariance *= shares;
     edges_.push_back(edge);
-    keyframes_.tie(target, id);
+    keyframes_.connect(target, id);
   }
   current_ = id;
 }
 
 /// Index of the submap whose anchor is nearest to a new keyframe. If no anchor is near, a new
 /// submap with the keyframe as its anchor.
-int RoomMapper::part_for(int id, const Pose& pose, std::span<const Keyframe* const> around) {
+int RoomMapper::submap_for(int id, const Pose& pose, std::span<const Keyframe* const> around) {
   int nearest = -1;
   double least_steps = steps_within_part;
   for (const Keyframe* keyframe : around) {
-    const int part = part_of_[static_cast<std::size_t>(keyframe->id)];
-    const int anchor = parts_[static_cast<std::size_t>(part)].anchor;
+    const int submap = submap_of_[static_cast<std::size_t>(keyframe->id)];
+    const int anchor = submaps_[static_cast<std::size_t>(submap)].anchor;
     const double steps = keyframe_spacing().between(keyframes_[anchor].world_from_camera, pose);
     if (steps >= least_steps) continue;
-    nearest = part;
+    nearest = submap;
     least_steps = steps;
   }
   if (nearest >= 0) return nearest;
-  parts_.push_back({id, SurfaceMap(surface_options_)});
-  return static_cast<int>(parts_.size()) - 1;
+  submaps_.push_back({id, SurfaceMap(surface_options_)});
+  return static_cast<int>(submaps_.size()) - 1;
 }
 
 void RoomMapper::fit() {
@@ -255,7 +256,7 @@ void RoomMapper::fit() {
     loop->mahalanobis_distance = fitted.edge_mahalanobis[i];
     loop->is_used = !is_outvoted(loop->mahalanobis_distance, loop_options_.kernel_width);
     // The relative pose of both ends is now correct, so frames may be registered with either.
-    if (loop->is_used) keyframes_.tie(edges_[i].from, edges_[i].to);
+    if (loop->is_used) keyframes_.connect(edges_[i].from, edges_[i].to);
     ++loop;
   }
   unfitted_loops_ = 0;

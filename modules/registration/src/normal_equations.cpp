@@ -138,8 +138,8 @@ Observability observability(const NormalEquations& equations, double lever_m) {
   return seen;
 }
 
-std::vector<int> open_directions(const Observability& seen, const NormalEquations& equations,
-                                 const Vector6d& prior_sigmas) {
+std::vector<int> degenerate_directions(const Observability& seen, const NormalEquations& equations,
+                                       const Vector6d& prior_sigmas) {
   std::vector<int> open;
   for (int i = 0; i < seen.directions.cols(); ++i) {
     const Vector6d twist = seen.scale.cwiseProduct(seen.directions.col(i));
@@ -151,8 +151,8 @@ std::vector<int> open_directions(const Observability& seen, const NormalEquation
   return open;
 }
 
-void leave_open(NormalEquations& equations, const Observability& seen,
-                std::span<const int> directions) {
+void remove_information(NormalEquations& equations, const Observability& seen,
+                        std::span<const int> directions) {
   Matrix6d kept = Matrix6d::Identity();
   for (const int i : directions) {
     kept -= seen.directions.col(i) * seen.directions.col(i).transpose();

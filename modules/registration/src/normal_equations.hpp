@@ -66,11 +66,15 @@ Observability observability(const NormalEquations& equations, double lever_m);
 /// The degenerate directions, as columns of `seen.directions`: those about which the surfaces give
 /// less information than a prior with these standard deviations. Twice the noise-induced
 /// information is subtracted first, as a margin, since the noise of normals is known only roughly.
-std::vector<int> open_directions(const Observability& seen, const NormalEquations& equations,
+///
+/// As in Zhang, Kaess and Singh (ICRA 2016, "On degeneracy of optimization-based state estimation
+/// problems"), eigenvectors of the information are tested one by one, and the degenerate ones are
+/// left out of the solution. There the limit is an eigenvalue to be chosen; here it is the prior.
+std::vector<int> degenerate_directions(const Observability& seen, const NormalEquations& equations,
                                  const Vector6d& prior_sigmas);
 
 /// Removes all information about these directions from the equations.
-void leave_open(NormalEquations& equations, const Observability& seen,
+void remove_information(NormalEquations& equations, const Observability& seen,
                 std::span<const int> directions);
 
 }  // namespace tofmap

@@ -69,7 +69,7 @@ struct System {
   NormalEquations equations;
   ResidualStatistics statistics;
   Observability seen;
-  int open_directions = 0;                  ///< number of degenerate directions
+  int degenerate_directions = 0;            ///< number of degenerate directions
   Matrix6d information = Matrix6d::Zero();  ///< from the surfaces, without the prior
 };
 
@@ -90,9 +90,9 @@ System build_system(const std::vector<Correspondence>& pairs, const Pose& pose, 
 
   system.seen = observability(system.equations, lever_m);
   const Vector6d sigmas = prior_sigmas(prior);
-  const std::vector<int> open = open_directions(system.seen, system.equations, sigmas);
-  leave_open(system.equations, system.seen, open);
-  system.open_directions = static_cast<int>(open.size());
+  const std::vector<int> open = degenerate_directions(system.seen, system.equations, sigmas);
+  remove_information(system.equations, system.seen, open);
+  system.degenerate_directions = static_cast<int>(open.size());
   system.information = system.equations.information;
   add_prior(system.equations, twist_between(pose, prior.world_from_camera), sigmas);
   return system;
@@ -132,7 +132,7 @@ RegistrationStatus descend(const std::vector<const SurfacePoint*>& points,
     result.rmse_m = system.statistics.rmse_m;
     result.residual_scale = system.statistics.scale;
     result.direction_shares = system.seen.shares;
-    result.degenerate_directions = system.open_directions;
+    result.degenerate_directions = system.degenerate_directions;
     has_converged = is_below_tolerance(twist, tolerances);
     ++result.iterations;
   }

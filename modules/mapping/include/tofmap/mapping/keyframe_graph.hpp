@@ -33,7 +33,7 @@ class KeyframeGraph {
 
   /// Records that two keyframes were registered with each other, and that their poses agree with
   /// the result.
-  void tie(int a, int b);
+  void connect(int a, int b);
 
   int size() const { return static_cast<int>(keyframes_.size()); }
   const Keyframe& operator[](int id) const { return keyframes_[static_cast<std::size_t>(id)]; }
@@ -58,7 +58,7 @@ class KeyframeGraph {
   std::vector<int> within_reach(int id) const;
 
   std::vector<Keyframe> keyframes_;
-  std::vector<std::vector<int>> tied_;  ///< for each keyframe, those registered with it
+  std::vector<std::vector<int>> neighbours_;  ///< for each keyframe, those registered with it
 };
 
 }  // namespace tofmap

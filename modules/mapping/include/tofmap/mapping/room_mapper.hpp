@@ -106,7 +106,7 @@ class RoomMapper {
   };
 
   /// A submap: the surface seen from near one keyframe, the anchor, in the frame of the anchor.
-  struct Part {
+  struct Submap {
     int anchor = 0;
     SurfaceMap surface;
   };
@@ -122,7 +122,7 @@ class RoomMapper {
   bool wants_keyframe(const Pose& pose, std::span<const Keyframe* const> around) const;
   void add_keyframe(const NewFrame& frame, std::span<const Keyframe* const> around,
                     const TrackingResult& result);
-  int part_for(int id, const Pose& pose, std::span<const Keyframe* const> around);
+  int submap_for(int id, const Pose& pose, std::span<const Keyframe* const> around);
   void fit();
 
   CameraModel camera_;
@@ -132,8 +132,8 @@ class RoomMapper {
   SurfaceMapOptions surface_options_;
   Odometry odometry_;
   KeyframeGraph keyframes_;
-  std::vector<Part> parts_;
-  std::vector<int> part_of_;  ///< for each keyframe, the index of the submap of its frames
+  std::vector<Submap> submaps_;
+  std::vector<int> submap_of_;  ///< for each keyframe, the index of the submap of its frames
   std::vector<RegisteredFrame> frames_;
   std::vector<PoseEdge> edges_;
   std::vector<Loop> loops_;  ///< in the order of their edges
