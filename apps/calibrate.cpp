@@ -34,35 +34,21 @@ struct CalibrateArguments {
   CommonArguments common;
 };
 
-/// Where the reference ranges come from.
-enum class Reference : std::uint8_t { truth, wall, residual };
-
-Reference reference_of(const CalibrationOptions& options, const SequenceReader& source,
-                       const RecordedTruth& truth) {
-  const std::string& wanted = options.reference;
-  if (wanted == "wall" && options.wall_file.empty()) {
+/// What to compare with, never `best_there_is`. Throws UsageError or InputError if what the options
+/// name is not there.
+CalibrationReference reference_of(const CalibrationOptions& options, const SequenceReader& source,
+                                  const RecordedTruth& truth) {
+  const CalibrationReference wanted = options.reference;
+  if (wanted == CalibrationReference::wall && options.wall_file.empty()) {
     throw UsageError("calibration.reference=wall needs calibration.wall_file");
   }
-  if (wanted == "wall" || (wanted == "auto" && !options.wall_file.empty())) return Reference::wall;
-  const bool has_truth = truth.has_ranges();
-  if (wanted == "truth" && !has_truth) {
+  if (wanted == CalibrationReference::truth && !truth.has_ranges()) {
     throw InputError(source.folder().string() +
                      ": has no range_truth; calibration.reference=residual needs none");
   }
-  if (wanted == "truth" || (wanted == "auto" && has_truth)) return Reference::truth;
-  return Reference::residual;
-}
-
-const char* name_of(Reference reference) {
-  switch (reference) {
-    case Reference::truth:
-      return "truth";
-    case Reference::wall:
-      return "wall";
-    case Reference::residual:
-      return "residual";
-  }
-  return "";
+  if (wanted != CalibrationReference::best_there_is) return wanted;
+  if (!options.wall_file.empty()) return CalibrationReference::wall;
+  return truth.has_ranges() ? CalibrationReference::truth : CalibrationReference::residual;
 }
 
 /// Throws InputError if distances are given for frames that the recording does not have.
@@ -85,21 +71,21 @@ WallDistances wall_distances(const std::filesystem::path& file, const SequenceRe
 /// The reference ranges of each frame.
 class ReferenceRanges {
  public:
-  ReferenceRanges(Reference reference, const SequenceReader& source, const RecordedTruth& truth,
-                  const ProgramOptions& options)
+  ReferenceRanges(CalibrationReference reference, const SequenceReader& source,
+                  const RecordedTruth& truth, const ProgramOptions& options)
       : reference_(reference),
         source_(source),
         truth_(truth),
         unwrapper_(source.sensor(), options.pipeline.unwrap) {
-    if (reference_ == Reference::wall) {
+    if (reference_ == CalibrationReference::wall) {
       wall_distances_m_ = wall_distances(options.calibration.wall_file, source);
     }
   }
 
   /// The reference range of each pixel, metres. Empty if the frame has no reference.
   std::optional<ImageF> of(const DualFrequencyFrame& frame) {
-    if (reference_ == Reference::truth) return truth_.range_m(frame.index);
-    if (reference_ == Reference::residual) return unwrapper_.unwrap(frame).image.range_m;
+    if (reference_ == CalibrationReference::truth) return truth_.range_m(frame.index);
+    if (reference_ == CalibrationReference::residual) return unwrapper_.unwrap(frame).image.range_m;
     const auto distance = wall_distances_m_.find(frame.index);
     if (distance == wall_distances_m_.end()) return std::nullopt;
     auto range_m = wall_range(frame, source_.sensor(), distance->second);
@@ -109,7 +95,7 @@ class ReferenceRanges {
   }
 
  private:
-  Reference reference_;
+  CalibrationReference reference_;
   const SequenceReader& source_;
   const RecordedTruth& truth_;
   Unwrapper unwrapper_;
@@ -198,21 +184,24 @@ void print_samples(const CollectedSamples& collected, const SensorModel& sensor)
   }
 }
 
-void print_fit(const PhaseErrorFit& fit, Reference reference) {
+void print_fit(const PhaseErrorFit& fit, CalibrationReference reference) {
   print_error("A", fit.error_a, fit.offset_sigma_a_m);
   print_error("B", fit.error_b, fit.offset_sigma_b_m);
-  std::printf(
-      "A measures %.1f mm %s than B (within %.1f mm)%s\n", 1000 * std::abs(fit.offset_m.value),
-      fit.offset_m.value < 0 ? "less" : "more", 1000 * fit.offset_m.sigma,
-      reference == Reference::residual ? "; this includes motion between the two exposures" : "");
+  std::printf("A measures %.1f mm %s than B (within %.1f mm)%s\n",
+              1000 * std::abs(fit.offset_m.value), fit.offset_m.value < 0 ? "less" : "more",
+              1000 * fit.offset_m.sigma,
+              reference == CalibrationReference::residual
+                  ? "; this includes motion between the two exposures"
+                  : "");
 }
 
-PhaseErrorFit fit_samples(const std::vector<RangeSample>& samples, Reference reference,
+PhaseErrorFit fit_samples(const std::vector<RangeSample>& samples, CalibrationReference reference,
                           const SequenceReader& source, const PhaseErrorFitOptions& options) {
   const Modulation& modulation = source.sensor().modulation;
   return naming(source.folder().string(), [&] {
-    return reference == Reference::residual ? fit_to_residual(samples, modulation, options)
-                                            : fit_to_references(samples, modulation, options);
+    return reference == CalibrationReference::residual
+               ? fit_to_residual(samples, modulation, options)
+               : fit_to_references(samples, modulation, options);
   });
 }
 
@@ -234,16 +223,16 @@ int run_calibrate(const CalibrateArguments& arguments) {
   const bool quiet = arguments.common.quiet;
   const SequenceReader source(arguments.sequence);
   const RecordedTruth truth(source);
-  const Reference reference = reference_of(options.calibration, source, truth);
+  const CalibrationReference reference = reference_of(options.calibration, source, truth);
   OutputFile out(arguments.out, holds_nothing_else);
   const PhaseErrorFitOptions fit_options{
-      .orders = harmonic_orders(options.calibration, reference != Reference::residual),
+      .orders = harmonic_orders(options.calibration, reference != CalibrationReference::residual),
       .max_error_m = options.calibration.max_error_m};
   ReferenceRanges ranges(reference, source, truth, options);
   const CollectedSamples collected =
       collect_samples(source, ranges, options.calibration.every_frame, quiet);
   if (is_interrupted()) return exit_status::interrupted;
-  if (reference == Reference::truth) print_remarks(truth);
+  if (reference == CalibrationReference::truth) print_remarks(truth);
   refuse_mostly_damaged(collected.damaged, collected.read, collected.first_damage);
   const PhaseErrorFit fit = fit_samples(collected.samples, reference, source, fit_options);
   if (is_interrupted()) return exit_status::interrupted;

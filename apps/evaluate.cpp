@@ -122,7 +122,7 @@ std::vector<OptionalPart> report_parts(const std::filesystem::path& result,
                                        const EvaluationPageSubject& subject, bool interrupted,
                                        bool quiet) {
   const ProgramOptions& options = subject.options;
-  const bool down_to_map = options.evaluation.down_to == "map";
+  const bool down_to_map = options.evaluation.down_to == EvaluatedStage::map;
   std::vector<OptionalPart> parts;
   if (!interrupted && (down_to_map || options.pictures.frames > 0)) {
     parts.push_back({"pictures", [=, &subject, &options] {
@@ -175,7 +175,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
   OptionTable table = arguments.common.resolve("evaluate", options);
   arguments.recording.apply(table);
   const std::vector<std::string> methods = method_names(options.evaluation);
-  const bool down_to_map = options.evaluation.down_to == "map";
+  const bool down_to_map = options.evaluation.down_to == EvaluatedStage::map;
   const bool quiet = arguments.common.quiet;
 
   const SequenceReader source = open_recording(arguments.recording.sequence, options.camera);

@@ -2,9 +2,10 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Checks the format of all files with clang-format, and with clang-tidy
-#   scripts/lint.sh --since COMMIT   what changed since a commit (default: HEAD~1, the last commit),
-#   scripts/lint.sh --all            everything: about an hour of processor time.
+# Checks the format of all files with clang-format, and sources with clang-tidy:
+#   scripts/lint.sh [--since COMMIT]   those that changed since a commit (default: the last one),
+#   scripts/lint.sh --sample N         N of those, another choice for each commit (CI does this),
+#   scripts/lint.sh --all              all sources, about an hour of processor time.
 # BUILD_DIR is a configured build folder, whose compile_commands.json is used (default: build).
 # Headers are checked with the sources that include them.
 set -euo pipefail
@@ -12,11 +13,14 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build=${BUILD_DIR:-build}
 
 since=HEAD~1
-case "${1:---since}" in
+most=0
+case "${1:-}" in
+  "") ;;
   --all) since= ;;
-  --since) since=${2:-$since} ;;
+  --since) since=${2:?} ;;
+  --sample) most=${2:?} ;;
   *)
-    echo "usage: scripts/lint.sh [--since COMMIT | --all]" >&2
+    echo "usage: scripts/lint.sh [--since COMMIT | --sample N | --all]" >&2
     exit 2
     ;;
 esac
@@ -24,11 +28,16 @@ esac
 git ls-files '*.cpp' '*.hpp' | xargs clang-format-14 --dry-run --Werror
 echo "clang-format: all files are formatted"
 
-if [[ -z $since ]]; then
+# A shallow clone has no commit before the last one: then all files count as changed.
+if [[ -z $since ]] || ! git rev-parse -q --verify "$since" >/dev/null; then
   mapfile -t sources < <(git ls-files 'modules/*.cpp' 'apps/*.cpp' 'benchmarks/*.cpp')
 else
   mapfile -t sources < <(git diff --name-only --diff-filter=d "$since" -- \
     'modules/*.cpp' 'apps/*.cpp' 'benchmarks/*.cpp')
+fi
+if ((most > 0 && ${#sources[@]} > most)); then
+  mapfile -t sources < <(printf '%s\n' "${sources[@]}" |
+    shuf -n "$most" --random-source=<(git log -1 --format=%H%H%H%H%H%H%H%H%H%H%H%H%H%H%H%H))
 fi
 if ((${#sources[@]} == 0)); then
   echo "clang-tidy: no source has changed since $since"

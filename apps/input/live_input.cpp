@@ -6,6 +6,7 @@
 #include "console/interruption.hpp"
 #include "input/recording.hpp"
 
+#include <array>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
@@ -26,10 +27,10 @@ OpenNi2Source::Settings settings_of(const ProgramOptions& options,
 }
 
 LateFrames policy(const LiveOptions& options, const OpenNi2Source& source) {
-  if (options.late_frames == "auto") {
-    return source.waits_for_reader() ? LateFrames::block : LateFrames::drop_oldest;
-  }
-  return options.late_frames == "block" ? LateFrames::block : LateFrames::drop_oldest;
+  const bool waits =
+      options.late_frames == LateFramesOption::block ||
+      (options.late_frames == LateFramesOption::by_source && source.waits_for_reader());
+  return waits ? LateFrames::block : LateFrames::drop_oldest;
 }
 
 const char* end_name(OpenNi2Source::End end) {
@@ -49,6 +50,14 @@ const char* end_name(OpenNi2Source::End end) {
 
 }  // namespace
 
+std::span<const NamedValue<LateFramesOption>> named_values(LateFramesOption) {
+  static constexpr std::array<NamedValue<LateFramesOption>, 3> values{
+      {{"auto", LateFramesOption::by_source},
+       {"drop", LateFramesOption::drop},
+       {"block", LateFramesOption::block}}};
+  return values;
+}
+
 std::vector<OptionField<LiveOptions>> LiveOptions::fields() {
   return {
       {"queue", &LiveOptions::queue, 1, 10000, "",
@@ -56,8 +65,7 @@ std::vector<OptionField<LiveOptions>> LiveOptions::fields() {
       {"late_frames", &LiveOptions::late_frames, 0, 0, "",
        "what to do with a new frame when the queue is full. drop: drop the oldest frame; block: "
        "make the device wait; auto: block if the source waits for its reader, as files do, else "
-       "drop",
-       "auto | drop | block"},
+       "drop"},
   };
 }
 

@@ -4,6 +4,7 @@
 #include "options/calibration_options.hpp"
 
 #include <algorithm>
+#include <array>
 #include <sstream>
 
 #include <tofmap/core/error.hpp>
@@ -15,14 +16,22 @@ std::vector<OptionField<CameraOptions>> CameraOptions::fields() {
            "calibration of the camera, as 'tofmap calibrate' writes it; empty: none"}};
 }
 
+std::span<const NamedValue<CalibrationReference>> named_values(CalibrationReference) {
+  static constexpr std::array<NamedValue<CalibrationReference>, 4> references{
+      {{"auto", CalibrationReference::best_there_is},
+       {"truth", CalibrationReference::truth},
+       {"wall", CalibrationReference::wall},
+       {"residual", CalibrationReference::residual}}};
+  return references;
+}
+
 std::vector<OptionField<CalibrationOptions>> CalibrationOptions::fields() {
   using O = CalibrationOptions;
   return {
       {"reference", &O::reference, 0, 0, "",
        "what to compare ranges with. truth: the true ranges of the recording; wall: a flat wall at "
        "known distances; residual: the inter-frequency residual; auto: wall if wall_file is given, "
-       "else truth if the recording has it, else residual",
-       "auto | truth | wall | residual"},
+       "else truth if the recording has it, else residual"},
       {"wall_file", &O::wall_file, 0, 0, "",
        "file with lines 'frame distance': distance of the camera from the wall along its normal, "
        "metres"},

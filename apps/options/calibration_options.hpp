@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,12 +18,19 @@ struct CameraOptions {
   static std::vector<OptionField<CameraOptions>> fields();
 };
 
+/// What `calibrate` compares ranges with.
+enum class CalibrationReference {
+  best_there_is,  ///< wall if wall_file is given, else truth if the recording has it, else residual
+  truth,          ///< the true ranges of the recording
+  wall,           ///< a flat wall at known distances
+  residual,       ///< the inter-frequency residual
+};
+std::span<const NamedValue<CalibrationReference>> named_values(CalibrationReference);
+
 /// How `calibrate` fits the errors of a camera, group `calibration`.
 struct CalibrationOptions {
-  /// The reference that ranges are compared with. "truth": the true ranges of the recording;
-  /// "wall": a flat wall at known distances; "residual": the inter-frequency residual; "auto": wall
-  /// if wall_file is given, else truth if the recording has it, else residual.
-  std::string reference = "auto";
+  /// What ranges are compared with.
+  CalibrationReference reference = CalibrationReference::best_there_is;
 
   /// File with lines "frame distance": the distance of the camera from the wall along its normal,
   /// metres. Needed for reference "wall".

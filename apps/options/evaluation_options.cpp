@@ -4,6 +4,7 @@
 #include "options/evaluation_options.hpp"
 
 #include <algorithm>
+#include <array>
 #include <sstream>
 
 #include <tofmap/core/error.hpp>
@@ -11,13 +12,19 @@
 
 namespace tofmap::app {
 
+std::span<const NamedValue<EvaluatedStage>> named_values(EvaluatedStage) {
+  static constexpr std::array<NamedValue<EvaluatedStage>, 2> stages{
+      {{"unwrapping", EvaluatedStage::unwrapping}, {"map", EvaluatedStage::map}}};
+  return stages;
+}
+
 std::vector<OptionField<EvaluationOptions>> EvaluationOptions::fields() {
   using O = EvaluationOptions;
   static const std::string methods_meaning =
       "methods to compare, separated by spaces: " + all_names<UnwrapMethod>(", ");
   return {
       {"methods", &O::methods, 0, 0, "", methods_meaning},
-      {"down_to", &O::down_to, 0, 0, "", "last stage to compare", "unwrapping | map"},
+      {"down_to", &O::down_to, 0, 0, "", "last stage to compare"},
   };
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -9,13 +10,17 @@
 
 namespace tofmap::app {
 
+/// The last stage that `evaluate` compares.
+enum class EvaluatedStage { map, unwrapping };
+std::span<const NamedValue<EvaluatedStage>> named_values(EvaluatedStage);
+
 /// What `evaluate` compares, group `evaluation`.
 struct EvaluationOptions {
   /// Names of the unwrapping methods to compare, separated by spaces.
   std::string methods = "none pixel single paper jump joint";
 
-  /// The last stage to compare: "unwrapping" or "map".
-  std::string down_to = "map";
+  /// The last stage to compare.
+  EvaluatedStage down_to = EvaluatedStage::map;
 
   static std::vector<OptionField<EvaluationOptions>> fields();
 };

@@ -6,6 +6,7 @@
 #include "options/evaluation_options.hpp"
 #include "options/report_options.hpp"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,15 +28,21 @@ struct RunOptions {
   static std::vector<OptionField<RunOptions>> fields();
 };
 
+/// What to do with a new frame of a device when the queue is full.
+enum class LateFramesOption {
+  by_source,  ///< make the source wait if it waits for its reader, as files do; else drop
+  drop,       ///< drop the oldest frame
+  block,      ///< make the device wait
+};
+std::span<const NamedValue<LateFramesOption>> named_values(LateFramesOption);
+
 /// How frames of a device wait to be processed, group `live`.
 struct LiveOptions {
   /// Number of frames that may wait to be processed, 1 … 10000.
   int queue = 8;
 
-  /// What to do with a new frame when the queue is full. "drop": drop the oldest frame; "block":
-  /// make the device wait; "auto": block if the source waits for its reader, as files do, else
-  /// drop.
-  std::string late_frames = "auto";
+  /// What to do with a new frame when the queue is full.
+  LateFramesOption late_frames = LateFramesOption::by_source;
 
   static std::vector<OptionField<LiveOptions>> fields();
 };

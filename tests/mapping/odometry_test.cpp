@@ -84,14 +84,15 @@ TEST(Odometry, FollowsASmoothMotion) {
 
 TEST(Odometry, FollowsWithPclsMethods) {
   // Points of pixels hold on to each other: point to point lags behind the camera.
-  for (const auto& [method, most_m] : {std::pair("pcl_icp", 0.15), std::pair("pcl_gicp", 0.01)}) {
+  for (const auto& [method, most_m] : {std::pair(RegistrationMethod::pcl_icp, 0.15),
+                                       std::pair(RegistrationMethod::pcl_gicp, 0.01)}) {
     RegistrationOptions options;
     options.method = method;
     FollowedCamera camera(options);
     for (int frame = 0; frame < 5; ++frame) {
       const TrackingResult result = camera.track(frame, view(frame));
-      ASSERT_TRUE(result.registered()) << method << ", frame " << frame;
-      EXPECT_LT(error_m(result, frame), most_m) << method << ", frame " << frame;
+      ASSERT_TRUE(result.registered()) << name_of(method) << ", frame " << frame;
+      EXPECT_LT(error_m(result, frame), most_m) << name_of(method) << ", frame " << frame;
     }
   }
 }

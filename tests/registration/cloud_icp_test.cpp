@@ -94,11 +94,6 @@ TEST(CloudIcp, SaysWhichDirectionsAWallLeavesFree) {
   EXPECT_GT(result.direction_shares[3], 0.05);
 }
 
-TEST(CloudIcp, TakesMethodsByName) {
-  EXPECT_EQ(cloud_method("pcl_gicp"), CloudMethod::pcl_gicp);
-  EXPECT_THROW(cloud_method("ndt"), UsageError);
-}
-
 TEST(Orient, RefusesTooFewPoints) {
   const PointSet points{{{1, 2, 3}, {2, 3, 4}}, {}};
   EXPECT_FALSE(orient(points.points, voxel_m, Eigen::Vector3d::Zero()));

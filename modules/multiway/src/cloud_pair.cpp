@@ -134,7 +134,7 @@ PairVerdict verdict_of(const CloudPair& pair, const CloudRegistrationOptions& op
 
 CloudPair align_pair(const LevelledCloud& source, const LevelledCloud& target,
                      const CloudRegistrationOptions& options) {
-  const CloudMethod method = cloud_method(options.method);
+  const CloudMethod method = options.method;
   CloudPair pair;
   const auto matches = match_features(source.features, target.features);
   pair.matches = static_cast<int>(matches.size());

@@ -235,8 +235,7 @@ std::vector<OptionField<CloudRegistrationOptions>> CloudRegistrationOptions::fie
        "edge length of the voxels of the coarsest level, where features are matched; 0 chooses it "
        "so that about 5000 points per cloud remain"},
       {"method", &O::method, 0, 0, "",
-       "how poses are refined; the methods of PCL are for comparison",
-       "generalised | point_to_plane | pcl_icp | pcl_gicp"},
+       "how poses are refined; the methods of PCL are for comparison"},
       {"min_overlap", &O::min_overlap, 0, 1, "",
        "smallest share of one of two clouds that must be near the other"},
       {"min_inlier_ratio", &O::min_inlier_ratio, 0, 1, "",

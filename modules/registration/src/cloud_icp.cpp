@@ -7,6 +7,7 @@
 #include "pcl_alignment.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -144,14 +145,13 @@ std::optional<Step> linearise(const OrientedCloud& source, const OrientedCloud& 
 
 }  // namespace
 
-CloudMethod cloud_method(const std::string& name) {
-  if (name == "generalised") return CloudMethod::generalised;
-  if (name == "point_to_plane") return CloudMethod::point_to_plane;
-  if (name == "pcl_icp") return CloudMethod::pcl_icp;
-  if (name == "pcl_gicp") return CloudMethod::pcl_gicp;
-  throw UsageError("'" + name +
-                   "' is no method to align clouds; allowed: generalised, point_to_plane, "
-                   "pcl_icp, pcl_gicp");
+std::span<const NamedValue<CloudMethod>> named_values(CloudMethod) {
+  static constexpr std::array<NamedValue<CloudMethod>, 4> methods{
+      {{"generalised", CloudMethod::generalised},
+       {"point_to_plane", CloudMethod::point_to_plane},
+       {"pcl_icp", CloudMethod::pcl_icp},
+       {"pcl_gicp", CloudMethod::pcl_gicp}}};
+  return methods;
 }
 
 CloudIcpResult align_clouds(const OrientedCloud& source, const OrientedCloud& target,

@@ -8,6 +8,7 @@
 #include "pcl_alignment.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -185,9 +186,10 @@ RegistrationStatus refine_with_pcl(const SurfaceCloud&,
     std::ranges::copy(positions(chosen, origin.inverse() * target.world_from_camera),
                       std::back_inserter(surface));
   }
-  const PclAlignment found = align_with_pcl(positions(points, Pose::Identity()), surface,
-                                            Pose::Identity(), options.max_correspondence_distance_m,
-                                            options.method == "pcl_gicp", options.max_iterations);
+  const PclAlignment found =
+      align_with_pcl(positions(points, Pose::Identity()), surface, Pose::Identity(),
+                     options.max_correspondence_distance_m,
+                     options.method == RegistrationMethod::pcl_gicp, options.max_iterations);
   result.world_from_camera = origin * found.target_from_source;
   RegistrationOptions just_measure = options;
   just_measure.max_iterations = 1;
@@ -203,12 +205,19 @@ RegistrationStatus refine_with_pcl(const SurfaceCloud&,
 
 }  // namespace
 
+std::span<const NamedValue<RegistrationMethod>> named_values(RegistrationMethod) {
+  static constexpr std::array<NamedValue<RegistrationMethod>, 3> methods{
+      {{"projective", RegistrationMethod::projective},
+       {"pcl_icp", RegistrationMethod::pcl_icp},
+       {"pcl_gicp", RegistrationMethod::pcl_gicp}}};
+  return methods;
+}
+
 std::vector<OptionField<RegistrationOptions>> RegistrationOptions::fields() {
   using O = RegistrationOptions;
   return {
       {"method", &O::method, 0, 0, "",
-       "how frames are registered; the methods of PCL are for comparison",
-       "projective | pcl_icp | pcl_gicp"},
+       "how frames are registered; the methods of PCL are for comparison"},
       {"source_stride_px", &O::source_stride_px, 1, 16, "px",
        "registers every n-th pixel of a frame in both axes"},
       {"max_iterations", &O::max_iterations, 1, 200, "",
@@ -271,7 +280,8 @@ RegistrationResult register_to_targets(const SurfaceCloud& source,
   result.world_from_camera = prior.world_from_camera;
   const auto points = select_points(source, options.source_stride_px);
   if (points.empty() || targets.empty()) return result;
-  const auto& refine_pose = options.method == "projective" ? refine : refine_with_pcl;
+  const auto& refine_pose =
+      options.method == RegistrationMethod::projective ? refine : refine_with_pcl;
   result.status = refine_pose(source, points, targets, camera, prior, options, result);
   return result;
 }

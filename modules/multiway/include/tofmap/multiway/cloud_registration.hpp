@@ -20,8 +20,8 @@ struct CloudRegistrationOptions {
   /// chooses it so that about 5000 points per cloud remain. Finer levels have half and a quarter of
   /// it.
   double voxel_m = 0;
-  /// How poses are refined: the name of a CloudMethod, as cloud_method() takes it.
-  std::string method = "generalised";
+  /// How poses are refined.
+  CloudMethod method = CloudMethod::generalised;
   /// Smallest share of one of two clouds that must be near the other, 0 … 1.
   double min_overlap = 0.15;
   /// Smallest share of the near points that must lie on the surface of the other cloud, 0 … 1, for

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
+#include <span>
 
 #include <Eigen/Core>
 
+#include <tofmap/core/named_value.hpp>
 #include <tofmap/core/trajectory.hpp>
 #include <tofmap/registration/oriented_cloud.hpp>
 
@@ -19,9 +20,8 @@ enum class CloudMethod {
   pcl_gicp,        ///< PCL's generalised ICP, for comparison
 };
 
-/// The method with this name: "generalised", "point_to_plane", "pcl_icp" or "pcl_gicp". Throws
-/// UsageError for any other name.
-CloudMethod cloud_method(const std::string& name);
+/// The names of all methods, the recommended one first.
+std::span<const NamedValue<CloudMethod>> named_values(CloudMethod);
 
 /// Options of align_clouds().
 struct CloudIcpOptions {

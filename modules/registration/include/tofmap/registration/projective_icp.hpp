@@ -30,10 +30,19 @@ struct MotionPrior {
 /// larger value of rotation and translation.
 double deviation(const MotionPrior& prior, const Pose& world_from_camera);
 
+/// How frames are registered.
+enum class RegistrationMethod {
+  projective,  ///< point-to-plane ICP with projective search, as register_to_targets() describes
+  pcl_icp,     ///< PCL's IterativeClosestPoint, for comparison
+  pcl_gicp,    ///< PCL's GeneralizedIterativeClosestPoint, for comparison
+};
+
+/// The names of all methods, the recommended one first.
+std::span<const NamedValue<RegistrationMethod>> named_values(RegistrationMethod);
+
 /// Options of register_to_targets().
 struct RegistrationOptions {
-  /// How frames are registered: "projective", or "pcl_icp" or "pcl_gicp" for comparison with PCL.
-  std::string method = "projective";
+  RegistrationMethod method = RegistrationMethod::projective;
   /// Registers every n-th pixel of a frame in both axes, 1 … 16.
   int source_stride_px = 2;
   /// Largest number of Gauss-Newton iterations, 1 … 200, of the coarse and of the fine stage each.
