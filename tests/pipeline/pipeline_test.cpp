@@ -116,7 +116,8 @@ void expect_same_bits(const RoomMap& a, const RoomMap& b) {
   }
   ASSERT_EQ(a.trajectory.size(), b.trajectory.size());
   for (std::size_t i = 0; i < a.trajectory.size(); ++i) {
-    EXPECT_EQ(a.trajectory[i].world_from_camera.matrix(), b.trajectory[i].world_from_camera.matrix())
+    EXPECT_EQ(a.trajectory[i].world_from_camera.matrix(),
+              b.trajectory[i].world_from_camera.matrix())
         << i;
   }
   expect_same_bits(a.surface, b.surface);

@@ -71,10 +71,10 @@ Observability observability(const NormalEquations& equations, double lever_m);
 /// problems"), eigenvectors of the information are tested one by one, and the degenerate ones are
 /// left out of the solution. There the limit is an eigenvalue to be chosen; here it is the prior.
 std::vector<int> degenerate_directions(const Observability& seen, const NormalEquations& equations,
-                                 const Vector6d& prior_sigmas);
+                                       const Vector6d& prior_sigmas);
 
 /// Removes all information about these directions from the equations.
 void remove_information(NormalEquations& equations, const Observability& seen,
-                std::span<const int> directions);
+                        std::span<const int> directions);
 
 }  // namespace tofmap
