@@ -12,6 +12,7 @@ build=${BUILD_DIR:-build}
 out=${OUT_DIR:-out/demo}
 
 cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DTOFMAP_BUILD_TESTS=OFF \
+  -DTOFMAP_PRECOMPILE_HEADERS=ON \
   -DCMAKE_CXX_COMPILER_LAUNCHER=ccache >/dev/null
 cmake --build "$build" --target tofmap
 tofmap="$build/apps/tofmap"
