@@ -18,7 +18,7 @@ struct MapEvidence {
   bool is_empty = false;             ///< the map has no points
   bool is_interrupted = false;       ///< the run was ended early
   bool is_unwrapped = true;          ///< false for method `none`
-  std::optional<double> accuracy_m;  ///< median error of the surface; empty without ground truth
+  std::optional<double> accuracy_m;  ///< mean error of the surface; empty without ground truth
   double voxel_m = 0;                ///< edge length of the map's voxels
   bool is_seen_twice = true;  ///< some frames overlap, so that they can contradict each other
   bool is_warned = false;     ///< there are warnings about the recording or the map
