@@ -19,9 +19,11 @@
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <tofmap/acquisition/sequence.hpp>
@@ -67,9 +69,11 @@ void say_what_is_missing(const SequenceReader& source, const RecordedTruth& trut
   }
 }
 
-std::string what_is_missing(const std::vector<std::string>& methods, std::size_t done) {
-  const std::vector<std::string> missing(methods.begin() + static_cast<std::ptrdiff_t>(done),
-                                         methods.end());
+std::string what_is_missing(const std::vector<UnwrapMethod>& methods, std::size_t done) {
+  std::vector<std::string> missing;
+  for (const UnwrapMethod method : std::span(methods).subspan(done)) {
+    missing.emplace_back(name_of(method));
+  }
   return "these methods are missing: " + joined(missing, ", ");
 }
 
@@ -90,11 +94,11 @@ struct Evaluated {
 
 /// Runs one method after the other. If a method fails, the others are run all the same. If all
 /// fail, throws the exception of the first.
-Evaluated evaluate_methods(const std::vector<std::string>& methods, const OutputFolder& out,
-                           const std::function<MethodResult(const std::string& method)>& run) {
+Evaluated evaluate_methods(const std::vector<UnwrapMethod>& methods, const OutputFolder& out,
+                           const std::function<MethodResult(UnwrapMethod)>& run) {
   Evaluated evaluated;
-  for (const std::string& method : methods) {
-    evaluated.failures.attempt("method " + method, [&] {
+  for (const UnwrapMethod method : methods) {
+    evaluated.failures.attempt("method " + std::string(name_of(method)), [&] {
       MethodResult result = run(method);
       evaluated.interrupted = result.interrupted;
       if (result.interrupted) return;
@@ -156,7 +160,7 @@ Truth truth_of(const SequenceReader& source, const RecordedTruth& recorded, bool
 
 /// The warnings for the page.
 std::vector<std::string> warnings_of(const SequenceReader& source, const Evaluated& evaluated,
-                                     const std::vector<std::string>& methods) {
+                                     const std::vector<UnwrapMethod>& methods) {
   const CameraErrors* camera = nullptr;
   if (!evaluated.results.empty() && evaluated.results.back().map) {
     camera = &evaluated.results.back().map->errors.camera;
@@ -174,7 +178,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
   ProgramOptions options;
   OptionTable table = arguments.common.resolve("evaluate", options);
   arguments.recording.apply(table);
-  const std::vector<std::string> methods = method_names(options.evaluation);
+  const std::vector<UnwrapMethod> methods = chosen_methods(options.evaluation);
   const bool down_to_map = options.evaluation.down_to == EvaluatedStage::map;
   const bool quiet = arguments.common.quiet;
 
@@ -183,9 +187,10 @@ int run_evaluate(const EvaluateArguments& arguments) {
   const RecordedTruth recorded(source);
   const Truth truth = down_to_map ? truth_of(source, recorded, quiet) : Truth{};
   if (!quiet) say_what_is_missing(source, recorded, down_to_map);
-  Evaluated evaluated = evaluate_methods(methods, out, [&](const std::string& method) {
-    Progress progress("method " + method + ", frame", source.frame_count(), quiet);
-    const MethodRun run{.method = *find_named<UnwrapMethod>(method),
+  Evaluated evaluated = evaluate_methods(methods, out, [&](UnwrapMethod method) {
+    Progress progress(fmt::format("method {}, frame", name_of(method)), source.frame_count(),
+                      quiet);
+    const MethodRun run{.method = method,
                         .options = options.pipeline,
                         .sample_frames = std::max(options.report.frames, options.pictures.frames),
                         .keep_going = [&](int done) {

@@ -43,7 +43,7 @@ const Example& example() {
 void unwrap_by(benchmark::State& state, const std::string& method) {
   const Example& e = example();
   UnwrapOptions options;
-  options.method = *find_named<UnwrapMethod>(method);
+  options.method = find_named<UnwrapMethod>(method).value();
   Unwrapper unwrapper(e.simulator.sensor(), options);
   for (auto _ : state) benchmark::DoNotOptimize(unwrapper.unwrap(e.frame));
 }

@@ -51,7 +51,7 @@ void unwrap_frames(benchmark::State& state, const std::string& method, const Siz
   omp_set_num_threads(1);
   const Example& e = example(size);
   UnwrapOptions options;
-  options.method = *find_named<UnwrapMethod>(method);
+  options.method = find_named<UnwrapMethod>(method).value();
   Unwrapper unwrapper(e.sensor, options);
   for (auto _ : state) benchmark::DoNotOptimize(unwrapper.unwrap(e.frame));
   state.SetItemsProcessed(state.iterations());

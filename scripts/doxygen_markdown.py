@@ -13,13 +13,13 @@ import re
 import sys
 
 HEADING = re.compile(r"^(#{2,6}) (.*?)[ \t]*$", re.MULTILINE)
-LINK = re.compile(r"\[([^\]]*)\]\(([^)\s]+)\)")
+LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)")
 PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
 
 
 def slug(heading):
     """The name that code hosts give to a heading."""
-    text = LINK.sub(r"\1", heading).lower()
+    text = LINK.sub(r"\2", heading).lower()
     return re.sub(r"[^\w\- ]", "", text).replace(" ", "-")
 
 
@@ -33,20 +33,24 @@ def is_page(path, root):
 
 
 def converted_link(match, page, root):
-    text, target = match.groups()
+    is_image, text, target = match.groups()
+    text = " ".join(text.split())  # Doxygen wants the text of a link on one line
+    if is_image:
+        return f"![{text}]({pathlib.Path(target).name})"
     if re.match(r"[a-z]+:", target):
         return match.group()
     file, _, anchor = target.partition("#")
     path = (page.parent / file).resolve() if file else page
     if not is_page(path, root):
-        return f"{text} (`{path.relative_to(root)}`)"
+        name = path.relative_to(root) if path.is_relative_to(root) else target
+        return f"{text} (`{name}`)"
     if anchor:
         return f"[{text}](@ref {label(path, anchor)})"
     return f"[{text}]({path})"
 
 
 def labelled_heading(match, page):
-    title = LINK.sub(r"\1", match[2])
+    title = LINK.sub(r"\2", match[2])
     return f"{match[1]} {title} {{#{label(page, slug(match[2]))}}}"
 
 

@@ -28,16 +28,35 @@ esac
 git ls-files '*.cpp' '*.hpp' | xargs clang-format-14 --dry-run --Werror
 echo "clang-format: all files are formatted"
 
-# A shallow clone has no commit before the last one: then all files count as changed.
-if [[ -z $since ]] || ! git rev-parse -q --verify "$since" >/dev/null; then
-  mapfile -t sources < <(git ls-files 'modules/*.cpp' 'apps/*.cpp' 'benchmarks/*.cpp')
+tracked() { git ls-files 'modules/*.cpp' 'apps/*.cpp' 'benchmarks/*.cpp' 'tests/*.cpp'; }
+
+# The sources that changed, and those of the module whose headers changed.
+changed() {
+  git diff --name-only --diff-filter=d "$since" -- '*.cpp' '*.hpp' | while read -r file; do
+    case $file in
+      *.cpp) echo "$file" ;;
+      modules/*.hpp) git ls-files "$(cut -d/ -f1-2 <<<"$file")/*.cpp" ;;
+      *.hpp) git ls-files "$(dirname "$file")/*.cpp" ;;
+    esac
+  done | sort -u
+}
+
+if [[ -z $since ]]; then
+  mapfile -t sources < <(tracked)
+elif git rev-parse -q --verify "$since^{commit}" >/dev/null; then
+  mapfile -t sources < <(changed)
+elif [[ $since == HEAD~1 ]]; then  # a clone of the last commit alone: all files count as changed
+  mapfile -t sources < <(tracked)
 else
-  mapfile -t sources < <(git diff --name-only --diff-filter=d "$since" -- \
-    'modules/*.cpp' 'apps/*.cpp' 'benchmarks/*.cpp')
+  echo "scripts/lint.sh: there is no commit '$since'" >&2
+  exit 2
 fi
 if ((most > 0 && ${#sources[@]} > most)); then
-  mapfile -t sources < <(printf '%s\n' "${sources[@]}" |
-    shuf -n "$most" --random-source=<(git log -1 --format=%H%H%H%H%H%H%H%H%H%H%H%H%H%H%H%H))
+  mapfile -t sources < <(printf '%s\n' "${sources[@]}" | python3 -c '
+import random, sys
+commit, most = sys.argv[1], int(sys.argv[2])
+print("\n".join(random.Random(commit).sample(sys.stdin.read().split(), most)))
+' "$(git rev-parse HEAD)" "$most")
 fi
 if ((${#sources[@]} == 0)); then
   echo "clang-tidy: no source has changed since $since"

@@ -18,6 +18,7 @@ import os
 import pathlib
 import random
 import re
+import signal
 import subprocess
 import sys
 import time
@@ -96,10 +97,16 @@ def all_mutants(source):
 
 
 def run(command, seconds, **options):
-    try:
-        return subprocess.run(command, capture_output=True, text=True, timeout=seconds, **options)
-    except subprocess.TimeoutExpired:
-        return None
+    """The finished process, or None if it had to be ended, with all that it had started."""
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          start_new_session=True, **options) as process:
+        try:
+            output, _ = process.communicate(timeout=seconds)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.communicate()
+            return None
+    return subprocess.CompletedProcess(command, process.returncode, output)
 
 
 class Suite:
@@ -110,7 +117,8 @@ class Suite:
         self.environment = {**os.environ, "OMP_NUM_THREADS": "2"}
 
     def compiles(self, target):
-        return run(["cmake", "--build", self.build, "--target", target], 3600).returncode == 0
+        done = run(["cmake", "--build", self.build, "--target", target], 3600)
+        return done is not None and done.returncode == 0
 
     def failure_in(self, module):
         """The first failing test of a module; None if all pass."""
@@ -128,8 +136,10 @@ class Suite:
                    env=self.environment)
         if done is None:
             return "no end"
-        failed = re.search(r"- (\S+) \((?:Failed|Timeout|SEGFAULT|Subprocess aborted)", done.stdout)
-        return failed.group(1) if failed else None
+        if done.returncode == 0:
+            return None
+        failed = re.search(r"^\s*\d+ - (\S+) ", done.stdout, re.MULTILINE)
+        return failed.group(1) if failed else "a test"
 
 
 def outcome(suite, module):
@@ -157,9 +167,13 @@ def prepare(build):
     subprocess.run(["cmake", "-S", source, "-B", tests, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                     "-DTOFMAP_BUILD_TESTS=ON", "-DTOFMAP_PRECOMPILE_HEADERS=ON",
                     "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"], check=True, capture_output=True)
-    if run(["cmake", "--build", tests], 7200).returncode != 0:
+    suite = Suite(tests)
+    if not suite.compiles("all"):
         sys.exit("mutation.py: the committed state does not build")
-    return source, Suite(tests)
+    failure = suite.failure_anywhere()
+    if failure:
+        sys.exit(f"mutation.py: {failure} fails without a mutant")
+    return source, suite
 
 
 def main():

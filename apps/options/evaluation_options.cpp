@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <sstream>
 
 #include <tofmap/core/error.hpp>
@@ -28,24 +29,25 @@ std::vector<OptionField<EvaluationOptions>> EvaluationOptions::fields() {
   };
 }
 
-std::vector<std::string> method_names(const EvaluationOptions& options) {
-  std::vector<std::string> names;
+std::vector<UnwrapMethod> chosen_methods(const EvaluationOptions& options) {
+  std::vector<UnwrapMethod> methods;
   std::istringstream words(options.methods);
   for (std::string name; words >> name;) {
-    if (!find_named<UnwrapMethod>(name)) {
+    const std::optional<UnwrapMethod> method = find_named<UnwrapMethod>(name);
+    if (!method) {
       throw UsageError("option evaluation.methods: '" + name +
                        "' is not a method; allowed: " + all_names<UnwrapMethod>(" "));
     }
-    if (std::ranges::find(names, name) != names.end()) {
+    if (std::ranges::find(methods, *method) != methods.end()) {
       throw UsageError("option evaluation.methods: '" + name + "' is named twice");
     }
-    names.push_back(name);
+    methods.push_back(*method);
   }
-  if (names.empty()) {
+  if (methods.empty()) {
     throw UsageError("option evaluation.methods: is empty; allowed: " +
                      all_names<UnwrapMethod>(" "));
   }
-  return names;
+  return methods;
 }
 
 }  // namespace tofmap::app

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <tofmap/core/option_table.hpp>
+#include <tofmap/unwrap/common/unwrap_options.hpp>
 
 namespace tofmap::app {
 
@@ -25,8 +26,8 @@ struct EvaluationOptions {
   static std::vector<OptionField<EvaluationOptions>> fields();
 };
 
-/// The names in `options.methods`, in the order given. Throws UsageError if a name is unknown or is
-/// given twice, or if there are none.
-std::vector<std::string> method_names(const EvaluationOptions& options);
+/// The methods that `options.methods` names, in the order given. Throws UsageError if a name is
+/// unknown or is given twice, or if there are none.
+std::vector<UnwrapMethod> chosen_methods(const EvaluationOptions& options);
 
 }  // namespace tofmap::app

@@ -44,7 +44,7 @@ Json loops_json(const RoomMap& map) {
   return loops;
 }
 
-/// The mean of a value over the frames that were unwrapped and tracked. 0 if there are none.
+/// The mean of a value over the frames that are neither damaged nor repeated. 0 if there are none.
 double mean_of(const RoomMap& map, const std::function<double(const FrameRecord&)>& value) {
   double sum = 0;
   int count = 0;

@@ -22,7 +22,7 @@ void add_filter_counts(nlohmann::ordered_json& frame, const std::vector<FilterCo
 /// One frame in the report of a map: unwrapping, filtering, tracking and times.
 nlohmann::ordered_json frame_json(const FrameRecord& record);
 
-/// Mean times of the stages over the frames that were unwrapped and tracked.
+/// Mean times of the stages over the frames that are neither damaged nor repeated.
 StageTimes mean_times(const RoomMap& map);
 
 /// Totals and means over the frames of a map.

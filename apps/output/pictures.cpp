@@ -86,14 +86,13 @@ std::string method_title(const std::string& method, const RangeImage& image,
 
 /// The ranges of a method before filters, the reasons after filters, and a title with the
 /// percentage removed.
-FilteredRanges filtered_ranges(const std::string& method, const RangeImage& before,
+FilteredRanges filtered_ranges(UnwrapMethod method, const RangeImage& before,
                                const RangeImage& after) {
   const int valid = before.count_valid();
   const double removed = valid > 0 ? 100.0 * (valid - after.count_valid()) / valid : 0;
-  char title[80];
-  std::snprintf(title, sizeof title, "%s: filters remove %.1f %%",
-                method == "none" ? "without unwrapping" : method.c_str(), removed);
-  return {title, before.range_m, after.reason};
+  const std::string_view name =
+      method == UnwrapMethod::none ? std::string_view("without unwrapping") : name_of(method);
+  return {fmt::format("{}: filters remove {:.1f} %", name, removed), before.range_m, after.reason};
 }
 
 std::string stem_of(const SampledFrame& frame) {
@@ -172,8 +171,8 @@ void write_method_pictures(const std::filesystem::path& folder,
                   method_picture(ranges, truth_m.value_or(ImageF()), wavelength_m));
     const PreparedFrame wrapped = wrapped_frame(last.recorded, sensor, rays, pipeline);
     const std::vector<FilteredRanges> filtered{
-        filtered_ranges("none", wrapped.unwrapped.image, wrapped.filtered.image),
-        filtered_ranges(results.back().name, last.unwrapped.image, last.filtered)};
+        filtered_ranges(UnwrapMethod::none, wrapped.unwrapped.image, wrapped.filtered.image),
+        filtered_ranges(results.back().method, last.unwrapped.image, last.filtered)};
     write_picture(folder / (stem_of(last) + "_filters.png"), filter_picture(filtered));
   }
 }

@@ -77,9 +77,9 @@ std::string told(const MethodResult& result) {
 
 std::string sentence_of(const EvaluationPageSubject& subject) {
   const MethodResult& with = with_unwrapping(subject);
-  std::string text =
-      (with.name == "none" ? "Without unwrapping " : "With unwrapping (" + with.name + ") ") +
-      told(with);
+  std::string text = (with.method == UnwrapMethod::none ? "Without unwrapping "
+                                                        : "With unwrapping (" + with.name + ") ") +
+                     told(with);
   if (const MethodResult* without = without_unwrapping(subject)) {
     text += "; without it, " + told(*without);
   }
@@ -121,7 +121,7 @@ std::vector<ShownMap> shown_maps(const EvaluationPageSubject& subject) {
   std::vector<ShownMap> maps;
   for (const MethodResult* result : {&with_unwrapping(subject), without_unwrapping(subject)}) {
     if (!result) continue;
-    maps.push_back(shown_map(name_of_map(result->name), *result->map, result->scores));
+    maps.push_back(shown_map(name_of_map(result->method), *result->map, result->scores));
   }
   return maps;
 }

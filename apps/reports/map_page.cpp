@@ -182,7 +182,8 @@ void add_errors(ReportPage& page, const MapPageSubject& subject, const Truth& tr
 /// The map, and the map that the same path gives without unwrapping.
 std::vector<ShownMap> shown_maps(const MapPageSubject& subject, const Truth& truth,
                                  const MapScores& scores, const MapCloud& wrapped) {
-  std::vector<ShownMap> maps{shown_map(name_of_map(method_name(subject)), subject.map, scores)};
+  std::vector<ShownMap> maps{
+      shown_map(name_of_map(subject.options.pipeline.unwrap.method), subject.map, scores)};
   if (wrapped.empty()) return maps;
   ShownMap as_measured = maps.front();
   as_measured.name =

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include <tofmap/visualization/drawing.hpp>
 #include <tofmap/visualization/map_pictures.hpp>
 
@@ -150,8 +152,9 @@ PageScene scene_of(const std::vector<ShownMap>& maps, const GravityAlignedFrame&
 
 }  // namespace
 
-std::string name_of_map(const std::string& method) {
-  return method == "none" ? "without unwrapping" : "with unwrapping (" + method + ")";
+std::string name_of_map(UnwrapMethod method) {
+  if (method == UnwrapMethod::none) return "without unwrapping";
+  return fmt::format("with unwrapping ({})", name_of(method));
 }
 
 ShownMap shown_map(const std::string& name, const RoomMap& map, const MapScores& scores) {

@@ -27,7 +27,7 @@ struct ShownMap {
 ShownMap shown_map(const std::string& name, const RoomMap& map, const MapScores& scores);
 
 /// "with unwrapping (METHOD)", or "without unwrapping" for method "none".
-std::string name_of_map(const std::string& method);
+std::string name_of_map(UnwrapMethod method);
 
 /// Adds pictures of the maps side by side from above, a picture of the camera paths, and a 3D view
 /// of the maps. All have the same scale and the gravity-aligned frame of the first map, and are

@@ -95,7 +95,7 @@ std::vector<Score> score_methods(const GridPlace& place, const IdealRuns& ideal,
     const Run run = measured_run(frames, ideal.sensor, options);
     for (std::size_t m = 0; m < methods.size(); ++m) {
       Variant variant{.name = methods[m]};
-      variant.options.method = *find_named<UnwrapMethod>(methods[m]);
+      variant.options.method = find_named<UnwrapMethod>(methods[m]).value();
       score_run(run, ideal.sensor, variant, scores[m]);
     }
   }

@@ -39,7 +39,7 @@ std::vector<Variant> methods() {
   std::vector<Variant> variants;
   for (const char* name : {"none", "pixel", "single", "paper", "jump", "joint"}) {
     variants.push_back({name, {}});
-    variants.back().options.method = *find_named<UnwrapMethod>(name);
+    variants.back().options.method = find_named<UnwrapMethod>(name).value();
   }
   return variants;
 }

@@ -26,7 +26,7 @@ void add_samples(const std::string& scene, int scene_seed, const std::string& me
   example.sensor = simulator.sensor();
   example.rays = pixel_rays(example.sensor.camera);
   UnwrapOptions options;
-  options.method = *find_named<UnwrapMethod>(method);
+  options.method = find_named<UnwrapMethod>(method).value();
   Unwrapper unwrapper(example.sensor, options);
   for (int i = 0; i < frames; ++i) {
     const int index = (2 * i + 1) * *simulator.frame_count() / (2 * frames);

@@ -156,8 +156,8 @@ TEST(FitToResidual, FindsNothingWhereThereIsNothing) {
   EXPECT_TRUE(found.error_a.harmonics.empty());
 }
 
-/// As many samples as a few frames give, where the samples of each surface err alike: at both
-/// frequencies in one way, and thirty samples to a surface, as the fit allows for.
+/// As many samples as a few frames give. All samples of a surface share one error at each
+/// frequency; there are thirty to a surface, as the fit allows for.
 std::vector<RangeSample> samples_of_surfaces(double offset_a_m, unsigned seed) {
   constexpr int surfaces = 100;
   constexpr int samples_each = 30;

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <array>
 #include <fstream>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -9,10 +11,19 @@
 #include <support/temporary_folder.hpp>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/named_value.hpp>
 #include <tofmap/core/option_table.hpp>
 
 namespace tofmap {
 namespace {
+
+enum class Pace { steady, brisk };
+
+std::span<const NamedValue<Pace>> named_values(Pace) {
+  static constexpr std::array<NamedValue<Pace>, 2> paces{
+      {{"brisk", Pace::brisk}, {"steady", Pace::steady}}};
+  return paces;
+}
 
 struct StageOptions {
   bool enabled = true;
@@ -21,6 +32,7 @@ struct StageOptions {
   double anything = -2;
   std::string kind = "fast";
   std::string note;
+  Pace pace = Pace::brisk;
 
   static std::vector<OptionField<StageOptions>> fields() {
     using O = StageOptions;
@@ -29,7 +41,8 @@ struct StageOptions {
             {"reach_m", &O::reach_m, 0, 20, "m", "how far"},
             {.name = "anything", .member = &O::anything, .unit = "", .meaning = "a number"},
             {"kind", &O::kind, 0, 0, "", "how it works", "fast | slow"},
-            {"note", &O::note, 0, 0, "", "free text"}};
+            {"note", &O::note, 0, 0, "", "free text"},
+            {"pace", &O::pace, 0, 0, "", "how fast"}};
   }
 };
 
@@ -134,6 +147,27 @@ TEST_F(Options, OfChoiceNameTheChoices) {
   expect_unset("stage.kind", "magic", {"stage.kind", "'magic'", "fast | slow"});
   expect_unset("stage.kind", "|", {"stage.kind"});
   expect_unset("stage.kind", "", {"stage.kind"});
+}
+
+TEST_F(Options, OfAnEnumerationAreGoneThroughByName) {
+  table_.set("stage.pace", "steady");
+  EXPECT_EQ(stage_.pace, Pace::steady);
+  EXPECT_NE(table_.to_yaml(false).find("  pace: steady\n"), std::string::npos);
+  EXPECT_NE(table_.to_yaml(true).find("[brisk | steady]"), std::string::npos);
+  table_.load(file("stage:\n  pace: brisk\n"));
+  EXPECT_EQ(stage_.pace, Pace::brisk);
+  expect_unset("stage.pace", "slow", {"stage.pace", "'slow'", "brisk | steady"});
+  expect_unset("stage.pace", "", {"stage.pace"});
+}
+
+TEST(NamedValue, LeadsFromValueToNameAndBack) {
+  for (const Pace pace : {Pace::steady, Pace::brisk}) {
+    EXPECT_EQ(find_named<Pace>(name_of(pace)), pace);
+  }
+  EXPECT_EQ(name_of(Pace::brisk), "brisk");
+  EXPECT_EQ(find_named<Pace>("slow"), std::nullopt);
+  EXPECT_EQ(name_of(static_cast<Pace>(7)), "");
+  EXPECT_EQ(all_names<Pace>(", "), "brisk, steady");
 }
 
 TEST_F(Options, UnknownAreRefusedWithWhatThereIs) {

@@ -50,6 +50,9 @@ TEST(KeyframeEdge, HasTheCovarianceOfTheRegistrationThatItIsFrom) {
   // What all frames err by in common is added to it.
   const PoseEdge of_nothing = edge_of(from, 1, world_from_b, Matrix6d::Zero());
   const Vector6d shared_sigmas = of_nothing.covariance.diagonal().cwiseSqrt();
+  // Half a milliradian and two millimetres, along every axis.
+  EXPECT_NEAR((shared_sigmas.head<3>() - Eigen::Vector3d::Constant(5e-4)).norm(), 0, 1e-12);
+  EXPECT_NEAR((shared_sigmas.tail<3>() - Eigen::Vector3d::Constant(2e-3)).norm(), 0, 1e-12);
 
   std::mt19937 random(11);
   std::normal_distribution<double> normal;

@@ -111,9 +111,16 @@ void expect_same_bits(const RoomMap& a, const RoomMap& b) {
     EXPECT_EQ(one.pose_covariance, other.pose_covariance) << i;
     EXPECT_EQ(one.registration.covariance, other.registration.covariance) << i;
     EXPECT_EQ(one.registration.rmse_m, other.registration.rmse_m) << i;
+    EXPECT_EQ(one.registration.iterations, other.registration.iterations) << i;
     EXPECT_EQ(one.targets, other.targets) << i;
+    EXPECT_EQ(one.status, other.status) << i;
+    EXPECT_EQ(one.is_keyframe, other.is_keyframe) << i;
     EXPECT_EQ(a.frames[i].kept_pixels, b.frames[i].kept_pixels) << i;
+    EXPECT_EQ(a.frames[i].filters.size(), b.frames[i].filters.size()) << i;
+    EXPECT_EQ(a.frames[i].phase_noise_cycles, b.frames[i].phase_noise_cycles) << i;
   }
+  EXPECT_EQ(a.keyframes.size(), b.keyframes.size());
+  EXPECT_EQ(a.loops.size(), b.loops.size());
   ASSERT_EQ(a.trajectory.size(), b.trajectory.size());
   for (std::size_t i = 0; i < a.trajectory.size(); ++i) {
     EXPECT_EQ(a.trajectory[i].world_from_camera.matrix(),

@@ -22,7 +22,7 @@ const std::filesystem::path shared_data = std::filesystem::path(TOFMAP_SHARED_DI
 double wrong_wrap_percent(const SequenceReader& recording, const std::string& method, int step) {
   std::vector<RangeScore> scores;
   UnwrapOptions options;
-  options.method = *find_named<UnwrapMethod>(method);
+  options.method = find_named<UnwrapMethod>(method).value();
   for (int i = 0; i < recording.frame_count(); i += step) {
     const RangeImage image = unwrap(*recording.read(i).frame, recording.sensor(), options).image;
     scores.push_back(score_ranges(image, recording.range_truth(i).value(),
@@ -69,7 +69,7 @@ TEST(Bookstore, IsTrackedWithUnwrappingAndLostWithout) {
   const auto error_m = [&](const std::string& method) {
     FirstFrames start(recording, 40);
     PipelineOptions options;
-    options.unwrap.method = *find_named<UnwrapMethod>(method);
+    options.unwrap.method = find_named<UnwrapMethod>(method).value();
     const RoomMap map = map_room(start, options);
     return score_trajectory(map.trajectory, recording.ground_truth()).value().ate_rmse_m;
   };

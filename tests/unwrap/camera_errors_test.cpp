@@ -93,7 +93,7 @@ Recording record(const std::string& scene_name, const SimulatorOptions& camera) 
 /// Pixels with a wrong wrap, frame by frame, by one Unwrapper.
 std::vector<double> count_wrong(const Recording& recording, const std::string& method) {
   UnwrapOptions options;
-  options.method = *find_named<UnwrapMethod>(method);
+  options.method = find_named<UnwrapMethod>(method).value();
   Unwrapper unwrapper(recording.sensor, options);
   const double half_wavelength_m = recording.sensor.modulation.wavelength_a_m() / 2;
   std::vector<double> wrong;

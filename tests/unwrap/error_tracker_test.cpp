@@ -681,7 +681,7 @@ TEST(FrameMeasurer, LeavesBAsItIsForMethodsThatDoNotCompareFrequencies) {
   const DualFrequencyFrame frame = returns_of(simulator.simulate(20));
   for (const char* method : {"none", "pixel", "single", "paper", "jump", "joint"}) {
     UnwrapOptions options;
-    options.method = *find_named<UnwrapMethod>(method);
+    options.method = find_named<UnwrapMethod>(method).value();
     const bool compares = method == std::string("jump") || method == std::string("joint");
     const MeasuredFrame measured = FrameMeasurer(simulator.sensor(), options).measure(frame);
     EXPECT_EQ(is_same(measured.returns.phase_b, frame.phase_b), !compares) << method;

@@ -217,7 +217,7 @@ TEST(Unwrapping, OfAMeasuredFrameDoesNotDependOnTheFramesBefore) {
   }
   for (const char* method : {"joint", "jump", "paper", "single"}) {
     UnwrapOptions options;
-    options.method = *find_named<UnwrapMethod>(method);
+    options.method = find_named<UnwrapMethod>(method).value();
     FrameMeasurer measurer(near.sensor, options);
     Unwrapper unwrapper(near.sensor, options);
     for (const TwoWalls* walls : {&near, &far, &small, &near, &near}) {
@@ -236,7 +236,7 @@ TEST(Unwrapping, OfTheSameFramesInTheSameOrderGivesTheSameBits) {
   const TwoWalls far = two_walls(18, 7);
   for (const char* method : {"joint", "jump", "paper", "single", "pixel", "none"}) {
     UnwrapOptions options;
-    options.method = *find_named<UnwrapMethod>(method);
+    options.method = find_named<UnwrapMethod>(method).value();
     Unwrapper one(near.sensor, options);
     Unwrapper other(near.sensor, options);
     FrameMeasurer measurer(near.sensor, options);
@@ -281,7 +281,7 @@ TEST(Unwrapping, TakesImagesOfAnyShape) {
     }
     for (const char* method : {"none", "pixel", "single", "paper", "jump", "joint"}) {
       UnwrapOptions options;
-      options.method = *find_named<UnwrapMethod>(method);
+      options.method = find_named<UnwrapMethod>(method).value();
       const RangeImage image = unwrap(walls.frame, walls.sensor, options).image;
       EXPECT_EQ(image.count_valid(), rows * cols) << method;
       const bool knows_count = method == std::string("pixel") || method == std::string("jump") ||
@@ -297,7 +297,7 @@ TEST(Unwrapping, OfAnImageWithoutAnyReturnIsEmpty) {
   walls.frame.phase_a.setConstant(NAN);
   for (const char* method : {"none", "pixel", "single", "paper", "jump", "joint"}) {
     UnwrapOptions options;
-    options.method = *find_named<UnwrapMethod>(method);
+    options.method = find_named<UnwrapMethod>(method).value();
     EXPECT_EQ(unwrap(walls.frame, walls.sensor, options).image.count_valid(), 0) << method;
   }
 }

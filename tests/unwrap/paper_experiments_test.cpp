@@ -31,7 +31,7 @@ Outcome unwrap_scene(const char* scene, const char* method, int index = 5,
   const Simulator simulator(make_scene(scene), simulation);
   const SimulatedFrame simulated = simulator.simulate(index);
   UnwrapOptions options;
-  options.method = *find_named<UnwrapMethod>(method);
+  options.method = find_named<UnwrapMethod>(method).value();
   Outcome outcome;
   outcome.result = unwrap(simulated.frame, simulator.sensor(), options);
   const double half_wavelength_m = simulator.sensor().modulation.wavelength_a_m() / 2;
@@ -99,7 +99,7 @@ TEST_P(Convergence, IsReachedInTheShareOfFramesThatTheDocumentationStates) {
   const int total = *simulator.frame_count();
   const auto share_percent = [&](const char* method) {
     UnwrapOptions options;
-    options.method = *find_named<UnwrapMethod>(method);
+    options.method = find_named<UnwrapMethod>(method).value();
     Unwrapper unwrapper(simulator.sensor(), options);
     int converged = 0;
     for (int i = 0; i < frames; ++i) {
@@ -133,7 +133,7 @@ JumpShares jump_shares(const char* method) {
   const Simulator simulator(make_scene("slope"), without_mixed_pixels());
   const SimulatedFrame simulated = simulator.simulate(5);
   UnwrapOptions options;
-  options.method = *find_named<UnwrapMethod>(method);
+  options.method = find_named<UnwrapMethod>(method).value();
   const DualFrequencyFrame& frame = simulated.frame;
   JumpEstimator estimator;
   const JumpEstimate& jumps = estimator.estimate(

@@ -13,7 +13,7 @@ namespace tofmap {
 /// A pose found by PCL.
 struct PclAlignment {
   Pose target_from_source = Pose::Identity();
-  bool converged = false;
+  bool converged = false;  ///< as PCL says, which counts its iteration limit as convergence
 };
 
 /// Runs PCL's point-to-point ICP, or generalised ICP if `generalised` is true, with PCL's default

@@ -198,9 +198,8 @@ RegistrationStatus refine_with_pcl(const SurfaceCloud&,
   const RegistrationStatus status =
       descend(points, targets, camera, prior, just_measure, 1, result);
   result.world_from_camera = pose;
-  return status == RegistrationStatus::iteration_limit && found.converged
-             ? RegistrationStatus::converged
-             : status;
+  if (!succeeded(status)) return status;
+  return found.converged ? RegistrationStatus::converged : RegistrationStatus::iteration_limit;
 }
 
 }  // namespace

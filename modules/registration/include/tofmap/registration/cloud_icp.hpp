@@ -45,8 +45,10 @@ struct CloudFit {
 /// The pose that align_clouds() found.
 struct CloudIcpResult {
   Pose target_from_source = Pose::Identity();
-  bool converged = false;  ///< false at the iteration limit or with fewer than 30 correspondences
-  int iterations = 0;      ///< 0 for PCL's methods
+  /// False at the iteration limit or with fewer than 30 correspondences. PCL's methods count their
+  /// iteration limit as convergence.
+  bool converged = false;
+  int iterations = 0;  ///< 0 for PCL's methods
   /// Covariance of the pose error as a twist: rotation vector about the centroid of the source,
   /// radians, then translation, metres, both along the target's axes. Comes from the last
   /// linearisation; for PCL's methods, from the system of generalised ICP at their pose. Zero if

@@ -128,9 +128,9 @@ struct RegistrationResult {
 /// any number of threads.
 ///
 /// With the methods `pcl_icp` and `pcl_gicp`, PCL finds the pose from the same points and the same
-/// initial pose, for comparison. The status is `converged` if PCL reports convergence and the
-/// overlap and the inlier ratio are large enough. All other values of the result are measured at
-/// PCL's pose.
+/// initial pose, for comparison. The status is `converged` if PCL reports convergence, which
+/// includes its iteration limit, and the overlap and the inlier ratio are large enough. All other
+/// values of the result are measured at PCL's pose.
 ///
 /// Throws UsageError if a standard deviation of the prior is not positive. The status of the result
 /// tells whether registration succeeded.
