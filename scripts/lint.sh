@@ -4,10 +4,11 @@
 #
 # Checks the format of all files with clang-format, and sources with clang-tidy:
 #   scripts/lint.sh [--since COMMIT]   those that changed since a commit (default: the last one),
-#   scripts/lint.sh --sample N         N of those, another choice for each commit (CI does this),
-#   scripts/lint.sh --all              all sources, about an hour of processor time.
+#   scripts/lint.sh --sample N         N of those, another choice for each commit,
+#   scripts/lint.sh --all              all sources, more than an hour of processor time,
+#   scripts/lint.sh --format           none: the format alone (CI does this).
 # BUILD_DIR is a configured build folder, whose compile_commands.json is used (default: build).
-# Headers are checked with the sources that include them.
+# Headers are checked with the sources of their module.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build=${BUILD_DIR:-build}
@@ -17,28 +18,31 @@ most=0
 case "${1:-}" in
   "") ;;
   --all) since= ;;
+  --format) since=none ;;
   --since) since=${2:?} ;;
   --sample) most=${2:?} ;;
   *)
-    echo "usage: scripts/lint.sh [--since COMMIT | --sample N | --all]" >&2
+    echo "usage: scripts/lint.sh [--since COMMIT | --sample N | --all | --format]" >&2
     exit 2
     ;;
 esac
 
 git ls-files '*.cpp' '*.hpp' | xargs clang-format-14 --dry-run --Werror
 echo "clang-format: all files are formatted"
+[[ $since != none ]] || exit 0
 
-tracked() { git ls-files 'modules/*.cpp' 'apps/*.cpp' 'benchmarks/*.cpp' 'tests/*.cpp'; }
+tracked() { git ls-files 'modules/*.cpp' 'apps/*.cpp' 'benchmarks/*.cpp'; }
 
 # The sources that changed, and those of the module whose headers changed.
 changed() {
-  git diff --name-only --diff-filter=d "$since" -- '*.cpp' '*.hpp' | while read -r file; do
-    case $file in
-      *.cpp) echo "$file" ;;
-      modules/*.hpp) git ls-files "$(cut -d/ -f1-2 <<<"$file")/*.cpp" ;;
-      *.hpp) git ls-files "$(dirname "$file")/*.cpp" ;;
-    esac
-  done | sort -u
+  git diff --name-only --diff-filter=d "$since" -- {modules,apps,benchmarks}/'*.[ch]pp' |
+    while read -r file; do
+      case $file in
+        *.cpp) echo "$file" ;;
+        modules/*.hpp) git ls-files "$(cut -d/ -f1-2 <<<"$file")/*.cpp" ;;
+        *.hpp) git ls-files "$(dirname "$file")/*.cpp" ;;
+      esac
+    done | sort -u
 }
 
 if [[ -z $since ]]; then
