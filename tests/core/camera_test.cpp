@@ -113,15 +113,38 @@ TEST(CameraValidation, RefusesWhatIsNoCamera) {
   EXPECT_NO_THROW(validate(plain_camera()));
 }
 
+TEST(CameraValidation, RefusesOneFocalLengthThatIsNoNumber) {
+  for (double CameraModel::*focal_px : {&CameraModel::fx_px, &CameraModel::fy_px}) {
+    CameraModel camera = plain_camera();
+    camera.*focal_px = std::numeric_limits<double>::infinity();
+    EXPECT_THROW(validate(camera), InputError);
+  }
+}
+
+TEST(CameraValidation, TakesAPrincipalPointWithinTwentyImagesOfTheMiddle) {
+  CameraModel camera = plain_camera();
+  const double middle_px = camera.width_px / 2.0;
+  for (const double sign : {-1.0, 1.0}) {
+    camera.cx_px = middle_px + sign * 19.9 * camera.width_px;
+    EXPECT_NO_THROW(validate(camera));
+    camera.cx_px = middle_px + sign * 20.1 * camera.width_px;
+    EXPECT_THROW(validate(camera), InputError);
+  }
+}
+
 TEST(PixelRays, AreTheRaysOfSinglePixels) {
   const CameraModel camera = distorted_camera();
   const PixelRays rays = pixel_rays(camera);
   ASSERT_EQ(rays.x.rows(), 144);
   ASSERT_EQ(rays.x.cols(), 176);
-  const Eigen::Vector3d ray = pixel_ray(camera, 150, 20);
-  EXPECT_FLOAT_EQ(rays.x(20, 150), static_cast<float>(ray.x()));
-  EXPECT_FLOAT_EQ(rays.y(20, 150), static_cast<float>(ray.y()));
-  EXPECT_FLOAT_EQ(rays.z(20, 150), static_cast<float>(ray.z()));
+  for (int v = 0; v < 144; ++v) {
+    for (int u = 0; u < 176; ++u) {
+      const Eigen::Vector3d ray = pixel_ray(camera, u, v);
+      ASSERT_FLOAT_EQ(rays.x(v, u), static_cast<float>(ray.x())) << u << ", " << v;
+      ASSERT_FLOAT_EQ(rays.y(v, u), static_cast<float>(ray.y())) << u << ", " << v;
+      ASSERT_FLOAT_EQ(rays.z(v, u), static_cast<float>(ray.z())) << u << ", " << v;
+    }
+  }
 }
 
 TEST(Depth, IsRangeTimesTheCosineOfTheRayAndComesBack) {
