@@ -22,25 +22,24 @@
 namespace tofmap::app {
 namespace {
 
-const MethodResult* find(const std::vector<MethodResult>& results, std::string_view name) {
-  const auto found = std::ranges::find(results, name, &MethodResult::name);
+const MethodResult* find(const std::vector<MethodResult>& results, UnwrapMethod method) {
+  const auto found = std::ranges::find(results, method, &MethodResult::method);
   return found == results.end() ? nullptr : &*found;
 }
 
 /// The method shown as "with unwrapping": the one that the command `map` would use or, if that was
 /// not run, the last one that unwraps.
 const MethodResult& with_unwrapping(const EvaluationPageSubject& subject) {
-  const MethodResult* found =
-      find(subject.results, name_of(subject.options.pipeline.unwrap.method));
+  const MethodResult* found = find(subject.results, subject.options.pipeline.unwrap.method);
   if (found) return *found;
-  const auto last =
-      std::ranges::find_if(subject.results.rbegin(), subject.results.rend(),
-                           [](const MethodResult& result) { return result.name != "none"; });
+  const auto last = std::ranges::find_if(
+      subject.results.rbegin(), subject.results.rend(),
+      [](const MethodResult& result) { return result.method != UnwrapMethod::none; });
   return last != subject.results.rend() ? *last : subject.results.back();
 }
 
 const MethodResult* without_unwrapping(const EvaluationPageSubject& subject) {
-  const MethodResult* found = find(subject.results, "none");
+  const MethodResult* found = find(subject.results, UnwrapMethod::none);
   return found == &with_unwrapping(subject) ? nullptr : found;
 }
 
