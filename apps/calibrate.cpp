@@ -10,17 +10,20 @@
 #include "output/output_file.hpp"
 
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <tofmap/calibration/phase_error_fit.hpp>
+#include <tofmap/calibration/recording_samples.hpp>
 #include <tofmap/calibration/wall_reference.hpp>
 #include <tofmap/core/error.hpp>
-#include <tofmap/core/image.hpp>
 #include <tofmap/core/text.hpp>
 #include <tofmap/diagnostics/residual_survey.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
@@ -51,102 +54,29 @@ CalibrationReference reference_of(const CalibrationOptions& options, const Seque
   return truth.has_ranges() ? CalibrationReference::truth : CalibrationReference::residual;
 }
 
-/// Throws InputError if distances are given for frames that the recording does not have.
-WallDistances wall_distances(const std::filesystem::path& file, const SequenceReader& source) {
-  WallDistances distances_m = read_wall_distances(file);
-  constexpr double farthest_m = 100;  // no wall fills an image from there
-  for (const auto& [frame, distance_m] : distances_m) {
-    if (distance_m <= farthest_m) continue;
-    throw InputError(file.string() +
-                     fmt::format(": has a wall at {:g} m in frame {}; are its distances metres?",
-                                 distance_m, frame));
+/// Where the reference ranges of frames come from. The arguments must outlive the result.
+ReferenceRanges reference_ranges(CalibrationReference reference, const SequenceReader& source,
+                                 const RecordedTruth& truth, const ProgramOptions& options) {
+  if (reference == CalibrationReference::truth) {
+    return [&truth](const DualFrequencyFrame& frame) { return truth.range_m(frame.index); };
   }
-  const int last = distances_m.rbegin()->first;
-  if (last < *source.frame_count()) return distances_m;
-  throw InputError(file.string() + ": has a distance for frame " + std::to_string(last) + ", but " +
-                   source.folder().string() + " has " + std::to_string(*source.frame_count()) +
-                   " frames, counted from 0");
-}
-
-/// The reference ranges of each frame.
-class ReferenceRanges {
- public:
-  ReferenceRanges(CalibrationReference reference, const SequenceReader& source,
-                  const RecordedTruth& truth, const ProgramOptions& options)
-      : reference_(reference),
-        source_(source),
-        truth_(truth),
-        unwrapper_(source.sensor(), options.pipeline.unwrap) {
-    if (reference_ == CalibrationReference::wall) {
-      wall_distances_m_ = wall_distances(options.calibration.wall_file, source);
-    }
+  if (reference == CalibrationReference::residual) {
+    const auto unwrapper = std::make_shared<Unwrapper>(source.sensor(), options.pipeline.unwrap);
+    return [unwrapper](const DualFrequencyFrame& frame) {
+      return std::make_optional(unwrapper->unwrap(frame).image.range_m);
+    };
   }
-
-  /// The reference range of each pixel, metres. Empty if the frame has no reference.
-  std::optional<ImageF> of(const DualFrequencyFrame& frame) {
-    if (reference_ == CalibrationReference::truth) return truth_.range_m(frame.index);
-    if (reference_ == CalibrationReference::residual) return unwrapper_.unwrap(frame).image.range_m;
-    const auto distance = wall_distances_m_.find(frame.index);
-    if (distance == wall_distances_m_.end()) return std::nullopt;
-    auto range_m = wall_range(frame, source_.sensor(), distance->second);
+  WallDistances distances_m = read_wall_distances(options.calibration.wall_file);
+  check_wall_distances(distances_m, options.calibration.wall_file, source);
+  return [distances_m = std::move(distances_m),
+          &source](const DualFrequencyFrame& frame) -> std::optional<ImageF> {
+    const auto distance = distances_m.find(frame.index);
+    if (distance == distances_m.end()) return std::nullopt;
+    auto range_m = wall_range(frame, source.sensor(), distance->second);
     if (!range_m)
       std::fprintf(stderr, "frame %d: left out, since no flat wall fills the image\n", frame.index);
     return range_m;
-  }
-
- private:
-  CalibrationReference reference_;
-  const SequenceReader& source_;
-  const RecordedTruth& truth_;
-  Unwrapper unwrapper_;
-  WallDistances wall_distances_m_;
-};
-
-/// Pixel samples of a recording, and how many of its frames could be used.
-struct CollectedSamples {
-  std::vector<RangeSample> samples;
-  std::size_t frames = 0;                 ///< number of frames that samples were taken from
-  std::vector<DualFrequencyFrame> first;  ///< the first few of these frames
-  int read = 0;                           ///< number of frames that were tried, damaged or not
-  int damaged = 0;                        ///< number of frames that could not be read
-  std::string first_damage;               ///< why the first of them could not be read
-  std::size_t repeated = 0;               ///< frames left out because they repeat the one before
-};
-
-/// Takes at most about two million samples, spread evenly over frames and pixels. Ends early if the
-/// user interrupts it.
-CollectedSamples collect_samples(const SequenceReader& source, ReferenceRanges& reference,
-                                 int every_frame, bool quiet) {
-  constexpr long most_samples = 2'000'000;
-  const CameraModel& camera = source.sensor().camera;
-  const int frames = *source.frame_count();
-  const long pixels = 1L * camera.width_px * camera.height_px * (1 + (frames - 1) / every_frame);
-  const int stride = static_cast<int>(1 + (pixels - 1) / most_samples);
-  CollectedSamples collected;
-  ImageF last_phase;
-  Progress progress("comparing ranges, frame", frames, quiet);
-  for (int i = 0; i < frames && !is_interrupted(); i += every_frame) {
-    progress.show(i);
-    const SourcedFrame sourced = source.read(i);
-    ++collected.read;
-    if (!sourced.frame) {
-      if (collected.first_damage.empty()) collected.first_damage = sourced.damage;
-      ++collected.damaged;
-      continue;
-    }
-    const bool is_repeated = same_values(sourced.frame->phase_a, last_phase);
-    last_phase = sourced.frame->phase_a;
-    collected.repeated += is_repeated ? 1 : 0;
-    if (is_repeated) continue;
-    const std::optional<ImageF> reference_m = reference.of(*sourced.frame);
-    if (!reference_m) continue;
-    append_range_samples(*sourced.frame, source.sensor(), *reference_m, i % stride, stride,
-                         collected.samples);
-    ++collected.frames;
-    constexpr std::size_t enough = 12;
-    if (collected.first.size() < enough) collected.first.push_back(*sourced.frame);
-  }
-  return collected;
+  };
 }
 
 void print_error(const char* name, const PhaseError& error, double offset_sigma_m) {
@@ -163,7 +93,7 @@ void print_error(const char* name, const PhaseError& error, double offset_sigma_
   std::printf("%s: %s\n", name, joined(parts, ", ").c_str());
 }
 
-void print_samples(const CollectedSamples& collected, const SensorModel& sensor) {
+void print_samples(const RecordingSamples& collected, const SensorModel& sensor) {
   std::printf("from %zu pixels of %s\n", collected.samples.size(),
               counted(collected.frames, "frame").c_str());
   if (collected.damaged > 0) {
@@ -228,9 +158,14 @@ int run_calibrate(const CalibrateArguments& arguments) {
   const PhaseErrorFitOptions fit_options{
       .orders = harmonic_orders(options.calibration, reference != CalibrationReference::residual),
       .max_error_m = options.calibration.max_error_m};
-  ReferenceRanges ranges(reference, source, truth, options);
-  const CollectedSamples collected =
-      collect_samples(source, ranges, options.calibration.every_frame, quiet);
+  const ReferenceRanges ranges = reference_ranges(reference, source, truth, options);
+  const RecordingSamples collected = [&] {
+    Progress progress("comparing ranges, frame", *source.frame_count(), quiet);
+    return collect_samples(source, ranges, options.calibration.every_frame, [&](int frame) {
+      progress.show(frame);
+      return !is_interrupted();
+    });
+  }();
   if (is_interrupted()) return exit_status::interrupted;
   if (reference == CalibrationReference::truth) print_remarks(truth);
   refuse_mostly_damaged(collected.damaged, collected.read, collected.first_damage);

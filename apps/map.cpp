@@ -237,7 +237,7 @@ FrameSample sample_for(MapInput& input, const ProgramOptions& options) {
 std::string status_line(const MapRun& run, const MapInput& input) {
   if (run.frames().empty()) return "";
   const std::string losses = input.losses();
-  return std::string(status_name(run.frames().back().tracking.status)) + ", " +
+  return std::string(name_of(run.frames().back().tracking.status)) + ", " +
          std::to_string(run.mapper().voxel_count()) + " voxels" +
          (losses.empty() ? "" : ", " + losses);
 }

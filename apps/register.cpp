@@ -131,7 +131,7 @@ ordered_json pair_json(const Input& input, const CloudPair& pair) {
   ordered_json json;
   json["source"] = input.names[static_cast<std::size_t>(pair.source)];
   json["target"] = input.names[static_cast<std::size_t>(pair.target)];
-  json["verdict"] = verdict_name(pair.verdict);
+  json["verdict"] = name_of(pair.verdict);
   json["matches"] = pair.matches;
   json["support"] = pair.support;
   json["overlap"] = pair.fit.overlap;

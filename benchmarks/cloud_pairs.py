@@ -60,7 +60,13 @@ def error_m(found, truth):
     return numpy.linalg.norm(((numpy.reshape(found, (4, 4)) - truth) @ AHEAD)[:3])
 
 
-def score(build, sequence):
+def name_of(sequence):
+    return os.path.basename(os.path.normpath(sequence))
+
+
+def registered_pairs(build, sequence):
+    """The pairs of report.json, whether the pose of each is right, and for each registered cloud
+    the error of its pose relative to the first one, metres."""
     with tempfile.TemporaryDirectory() as folder:
         poses = write_clouds(sequence, folder)
         subprocess.run([f"{build}/apps/tofmap", "register", *poses, "--out", f"{folder}/out",
@@ -69,19 +75,25 @@ def score(build, sequence):
             pairs = json.load(file)["pairs"]
         with open(f"{folder}/out/transforms.json", encoding="utf-8") as file:
             placed = [c for c in json.load(file)["clouds"] if c["transform"]]
-    right = wrong = refused = 0
+    is_right = []
     for pair in pairs:
         truth = numpy.linalg.inv(poses[pair["target"]]) @ poses[pair["source"]]
-        is_right = error_m(pair["target_from_source"], truth) < RIGHT_WITHIN_M
-        is_registered = pair["verdict"] == "registered"
-        right += is_right and is_registered
-        wrong += is_registered and not is_right
-        refused += is_right and not is_registered
+        is_right.append(error_m(pair["target_from_source"], truth) < RIGHT_WITHIN_M)
     errors = [error_m(c["transform"], numpy.linalg.inv(poses[placed[0]["path"]]) @ poses[c["path"]])
               for c in placed]
+    return pairs, is_right, errors
+
+
+def score(build, sequence):
+    pairs, is_right, errors = registered_pairs(build, sequence)
+    registered = [pair["verdict"] == "registered" for pair in pairs]
+    right = sum(r and ok for r, ok in zip(registered, is_right))
+    wrong = sum(registered) - right
+    rejected = sum(is_right) - right
+    clouds = len({pair[side] for pair in pairs for side in ("source", "target")})
     rms_mm = 1000 * numpy.sqrt(numpy.mean(numpy.square(errors))) if errors else numpy.nan
-    print(f"| {os.path.basename(os.path.normpath(sequence))} | {len(poses)} | {len(pairs)} | {right} "
-          f"| {wrong} | {refused} | {len(placed)} | {rms_mm:.0f} |", flush=True)
+    print(f"| {name_of(sequence)} | {clouds} | {len(pairs)} | {right} "
+          f"| {wrong} | {rejected} | {len(errors)} | {rms_mm:.0f} |", flush=True)
 
 
 def main():

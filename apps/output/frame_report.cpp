@@ -21,9 +21,9 @@ Json times_json(const StageTimes& times) {
 
 Json tracking_json(const TrackingResult& tracking) {
   const RegistrationResult& registration = tracking.registration;
-  return {{"status", status_name(tracking.status)},
+  return {{"status", name_of(tracking.status)},
           {"is_keyframe", tracking.is_keyframe},
-          {"registration", status_name(registration.status)},
+          {"registration", name_of(registration.status)},
           {"iterations", registration.iterations},
           {"overlap", registration.overlap},
           {"inlier_ratio", registration.inlier_ratio},
@@ -68,8 +68,9 @@ void add_filter_counts(Json& frame, const std::vector<FilterCount>& counts) {
   Json removed = Json::object();
   Json corrected = Json::object();
   for (const FilterCount& count : counts) {
-    removed[count.name] = removed.value(count.name, 0) + count.removed;
-    corrected[count.name] = corrected.value(count.name, 0) + count.corrected;
+    const std::string name(name_of(count.filter));
+    removed[name] = removed.value(name, 0) + count.removed;
+    corrected[name] = corrected.value(name, 0) + count.corrected;
   }
   frame["removed"] = std::move(removed);
   frame["corrected"] = std::move(corrected);

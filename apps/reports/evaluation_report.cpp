@@ -75,7 +75,8 @@ Json filters_json(const MethodResult& result) {
   for (const FrameRecord& frame : result.map->frames) {
     valid += frame.valid_pixels;
     kept += frame.kept_pixels;
-    for (const FilterCount& count : frame.filters) removed[count.name] += count.removed;
+    for (const FilterCount& count : frame.filters)
+      removed[std::string(name_of(count.filter))] += count.removed;
   }
   Json json = {{"removed_percent", json_number(100 * (valid - kept) / valid)}};
   for (const auto& [name, pixels] : removed)

@@ -255,12 +255,6 @@ RangeImage ranges_alone(const ImageF& range_m) {
   return image;
 }
 
-std::string chain_without(const std::string& chain, const std::string& name) {
-  const std::size_t at = chain.find(name + " ");
-  if (at == std::string::npos) throw std::logic_error(name + " is not in the chain");
-  return chain.substr(0, at) + chain.substr(at + name.size() + 1);
-}
-
 DualFrequencyFrame noisy_frame(const Sample& sample, const Noise& noise, std::mt19937_64& random) {
   DualFrequencyFrame frame;
   const Modulation& modulation = sample.sensor.modulation;
@@ -302,7 +296,9 @@ void compare(const Sample& sample, const Noise& noise, unsigned seed,
   FilterOptions options;
   options.chain = smoothing_chain();
   const RangeImage filtered = apply_filters(joint, frame, modulation, sample.rays, options).image;
-  options.chain = chain_without(options.chain, "phasor_mean");
+  if (std::erase(options.chain, Filter::phasor_mean) == 0) {
+    throw std::logic_error("phasor_mean is not in the chain");
+  }
   const RangeImage without = apply_filters(joint, frame, modulation, sample.rays, options).image;
   const ImageF blurred_m = blurred_ranges(frame, modulation, 8);
   tallies.pixel.add(unwrap(frame, sample.sensor, pixelwise).image, sample);

@@ -34,7 +34,7 @@ namespace {
 /// plane_edge.
 const std::string chain_of_unwrap = "the chain of `unwrap --filters`";
 
-Filter chain(const std::string& name, const FilterOptions& options) {
+MeasuredFilter chain(const std::string& name, const FilterOptions& options) {
   return {name, [options](const Case& example, const Sample& sample) {
             return apply_filters(sample.unwrapped, sample.simulated.frame,
                                  example.sensor.modulation, example.rays, options)
@@ -42,18 +42,19 @@ Filter chain(const std::string& name, const FilterOptions& options) {
           }};
 }
 
-std::vector<Filter> all_filters() {
-  std::vector<Filter> all;
+std::vector<MeasuredFilter> all_filters() {
+  std::vector<MeasuredFilter> all;
   FilterOptions options;
-  options.chain = "";
+  options.chain.clear();
   all.push_back(chain("none", options));
   FilterOptions as_published;
-  as_published.chain = "jump_edge";
+  as_published.chain = {Filter::jump_edge};
   as_published.min_edge_gap_sigmas = 0;
   all.push_back(chain("jump_edge, as published", as_published));
-  for (const char* name : {"jump_edge", "step_edge", "plane_edge", "outlier", "smooth"}) {
-    options.chain = name;
-    all.push_back(chain(name, options));
+  for (const Filter filter : {Filter::jump_edge, Filter::step_edge, Filter::plane_edge,
+                              Filter::outlier, Filter::smooth}) {
+    options.chain = {filter};
+    all.push_back(chain(std::string(name_of(filter)), options));
   }
   options.chain = smoothing_chain();
   all.push_back(chain(chain_of_unwrap, options));
@@ -149,7 +150,7 @@ Share wrong_wraps(const RangeImage& image, const Sample& sample, const Case& exa
 
 void print_isolated_wraps(const std::string& method, int divisor) {
   FilterOptions options;
-  options.chain = "isolated_wrap";
+  options.chain = {Filter::isolated_wrap};
   for (const Case& example : make_cases(method, divisor)) {
     Share before;
     Share after;
@@ -172,7 +173,7 @@ void print_isolated_wraps(const std::string& method, int divisor) {
 }
 
 /// The default chain, followed by fusion with `views` frames before and after.
-Filter fused(int views) {
+MeasuredFilter fused(int views) {
   return {
       "± " + std::to_string(views) + " frames", [views](const Case& run, const Sample& sample) {
         std::vector<RangeImage> images;
@@ -264,7 +265,7 @@ Arguments read_arguments(const std::vector<std::string>& words) {
 void run(const Arguments& arguments) {
   print_all_flying(arguments);
   if (arguments.only_flying) return;
-  const std::vector<Filter> filters = all_filters();
+  const std::vector<MeasuredFilter> filters = all_filters();
   std::vector<std::vector<Score>> by_filter(filters.size());
   for (const Case& example : make_cases("joint", arguments.divisor)) {
     std::vector<NamedScore> scores;

@@ -121,7 +121,7 @@ RangeImage smoothed(const Case& example, const Sample& sample, float sigma_px, f
 
 }  // namespace
 
-std::vector<Filter> pcl_filters() {
+std::vector<MeasuredFilter> pcl_filters() {
   return {{"PCL ShadowPoints, 0.1 m",
            [](const Case& c, const Sample& s) { return without_shadows(c, s, 0.1F); }},
           {"PCL StatisticalOutlierRemoval, 50, 1",

@@ -9,6 +9,6 @@ namespace tofmap::bench {
 /// PCL's filters applied to range images: ShadowPoints with normals from integral images,
 /// StatisticalOutlierRemoval, RadiusOutlierRemoval and FastBilateralFilter. Their names contain
 /// their parameters. Their times include the conversion to clouds and back.
-std::vector<Filter> pcl_filters();
+std::vector<MeasuredFilter> pcl_filters();
 
 }  // namespace tofmap::bench

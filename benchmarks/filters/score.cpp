@@ -79,7 +79,7 @@ double Score::rms_share() const { return std::sqrt(squared_after_m2 / squared_be
 
 double Score::median_share() const { return median_of(after_m) / median_of(before_m); }
 
-Score score_filter(const Filter& filter, const Case& example) {
+Score score_filter(const MeasuredFilter& filter, const Case& example) {
   Score score;
   for (const Sample& sample : example.samples) {
     const auto start = std::chrono::steady_clock::now();

@@ -13,7 +13,7 @@
 namespace tofmap::bench {
 
 /// A filter and its name.
-struct Filter {
+struct MeasuredFilter {
   std::string name;
   std::function<RangeImage(const Case&, const Sample&)> apply;
 };
@@ -65,7 +65,7 @@ struct Score {
 };
 
 /// Applies a filter to all frames of a case and scores it.
-Score score_filter(const Filter& filter, const Case& example);
+Score score_filter(const MeasuredFilter& filter, const Case& example);
 
 /// The score over the frames of several cases.
 Score joined(const std::vector<Score>& scores);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "sample_frames.hpp"
+#include "support/sample_frames.hpp"
 
 #include <filesystem>
 #include <fstream>

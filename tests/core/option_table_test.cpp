@@ -30,9 +30,9 @@ struct StageOptions {
   int count = 5;
   double reach_m = 0.1;
   double anything = -2;
-  std::string kind = "fast";
   std::string note;
   Pace pace = Pace::brisk;
+  std::vector<Pace> legs = {Pace::steady};
 
   static std::vector<OptionField<StageOptions>> fields() {
     using O = StageOptions;
@@ -40,9 +40,9 @@ struct StageOptions {
             {"count", &O::count, 1, 10, "", "how often"},
             {"reach_m", &O::reach_m, 0, 20, "m", "how far"},
             {.name = "anything", .member = &O::anything, .unit = "", .meaning = "a number"},
-            {"kind", &O::kind, 0, 0, "", "how it works", "fast | slow"},
             {"note", &O::note, 0, 0, "", "free text"},
-            {"pace", &O::pace, 0, 0, "", "how fast"}};
+            {"pace", &O::pace, 0, 0, "", "how fast"},
+            {"legs", &O::legs, 0, 0, "", "how fast, one after the other"}};
   }
 };
 
@@ -98,13 +98,13 @@ TEST_F(Options, AreSetFromTextByTheirKey) {
   table_.set("stage.enabled", "false");
   table_.set("stage.count", "7");
   table_.set("stage.reach_m", "1.25e1");
-  table_.set("stage.kind", "slow");
+  table_.set("stage.pace", "steady");
   table_.set("stage.note", "two words");
   table_.set("threads", "3");
   EXPECT_FALSE(stage_.enabled);
   EXPECT_EQ(stage_.count, 7);
   EXPECT_EQ(stage_.reach_m, 12.5);
-  EXPECT_EQ(stage_.kind, "slow");
+  EXPECT_EQ(stage_.pace, Pace::steady);
   EXPECT_EQ(stage_.note, "two words");
   EXPECT_EQ(top_.threads, 3);
 }
@@ -143,12 +143,6 @@ TEST_F(Options, OfTruthTakeTrueAndFalseAlone) {
   expect_unset("stage.enabled", "1", {"stage.enabled"});
 }
 
-TEST_F(Options, OfChoiceNameTheChoices) {
-  expect_unset("stage.kind", "magic", {"stage.kind", "'magic'", "fast | slow"});
-  expect_unset("stage.kind", "|", {"stage.kind"});
-  expect_unset("stage.kind", "", {"stage.kind"});
-}
-
 TEST_F(Options, OfAnEnumerationAreGoneThroughByName) {
   table_.set("stage.pace", "steady");
   EXPECT_EQ(stage_.pace, Pace::steady);
@@ -157,7 +151,26 @@ TEST_F(Options, OfAnEnumerationAreGoneThroughByName) {
   table_.load(file("stage:\n  pace: brisk\n"));
   EXPECT_EQ(stage_.pace, Pace::brisk);
   expect_unset("stage.pace", "slow", {"stage.pace", "'slow'", "brisk | steady"});
+  expect_unset("stage.pace", "|", {"stage.pace"});
   expect_unset("stage.pace", "", {"stage.pace"});
+}
+
+TEST_F(Options, ThatAreListsKeepOrderAndRepetition) {
+  using Legs = std::vector<Pace>;
+  table_.set("stage.legs", " brisk  steady\tbrisk ");
+  EXPECT_EQ(stage_.legs, (Legs{Pace::brisk, Pace::steady, Pace::brisk}));
+  EXPECT_NE(table_.to_yaml(false).find("  legs: brisk steady brisk\n"), std::string::npos);
+  EXPECT_NE(table_.to_yaml(true).find("[any of brisk, steady, in any order]"), std::string::npos);
+  expect_unset("stage.legs", "brisk slow", {"stage.legs", "'brisk slow'", "brisk, steady"});
+}
+
+TEST_F(Options, ThatAreEmptyListsComeBackFromYaml) {
+  table_.set("stage.legs", "");
+  EXPECT_TRUE(stage_.legs.empty());
+  const std::string yaml = table_.to_yaml(false);
+  table_.set("stage.legs", "brisk");
+  table_.load(file(yaml));
+  EXPECT_TRUE(stage_.legs.empty()) << yaml;
 }
 
 TEST(NamedValue, LeadsFromValueToNameAndBack) {
@@ -237,7 +250,8 @@ TEST_F(Options, OfAFileThatCannotBeReadAreBadInput) {
 
 TEST_F(Options, ComeBackFromTheYamlTheyAreWrittenAs) {
   for (const bool with_comments : {false, true}) {
-    stage_ = {false, 3, 0.1 + 0.2, 1e-300, "slow", "a: 'b' # \"c\""};
+    stage_ = {
+        false, 3, 0.1 + 0.2, 1e-300, "a: 'b' # \"c\"", Pace::steady, {Pace::brisk, Pace::steady}};
     const std::string text = table_.to_yaml(with_comments);
     stage_ = {};
     table_.load(file(text));
@@ -245,7 +259,8 @@ TEST_F(Options, ComeBackFromTheYamlTheyAreWrittenAs) {
     EXPECT_EQ(stage_.count, 3);
     EXPECT_EQ(stage_.reach_m, 0.1 + 0.2) << "to the last bit";
     EXPECT_EQ(stage_.anything, 1e-300);
-    EXPECT_EQ(stage_.kind, "slow");
+    EXPECT_EQ(stage_.pace, Pace::steady);
+    EXPECT_EQ(stage_.legs, (std::vector<Pace>{Pace::brisk, Pace::steady}));
     EXPECT_EQ(stage_.note, "a: 'b' # \"c\"");
   }
 }
@@ -263,7 +278,7 @@ TEST_F(Options, OfTextThatLooksLikeSomethingElseComeBack) {
 TEST_F(Options, AreExplainedInComments) {
   const std::string text = table_.to_yaml(true);
   EXPECT_NE(text.find("  # how far [0 … 20, m]\n  reach_m: 0.1\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("  # how it works [fast | slow]\n  kind: fast\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("  # how fast [brisk | steady]\n  pace: brisk\n"), std::string::npos) << text;
 }
 
 }  // namespace

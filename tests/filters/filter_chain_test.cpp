@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/option_table.hpp>
 #include <tofmap/filters/filter_chain.hpp>
 
 namespace tofmap {
@@ -25,11 +26,11 @@ TEST(FilterChain, RunsInTheOrderThatIsAskedFor) {
   image.confidence(7, 9) = 0.1F;
   FilterOptions options;
   options.min_confidence = 0.5;
-  options.chain = "jump_edge confidence";
+  options.chain = {Filter::jump_edge, Filter::confidence};
   EXPECT_EQ(filtered(image, options).counts[0].removed, 8);
-  options.chain = "confidence jump_edge";
+  options.chain = {Filter::confidence, Filter::jump_edge};
   EXPECT_EQ(filtered(image, options).counts[1].removed, 0);
-  options.chain = "";
+  options.chain.clear();
   EXPECT_EQ(filtered(image, options).image.count_valid(), 20 * 16);
 }
 
@@ -40,7 +41,7 @@ TEST(FilterChain, CountsWhatEachFilterRemoves) {
   options.min_confidence = 0.5;
   const FilterResult result = filtered(image, options);
   ASSERT_EQ(result.counts.size(), 5U);
-  EXPECT_EQ(result.counts[1].name, "confidence");
+  EXPECT_EQ(result.counts[1].filter, Filter::confidence);
   EXPECT_EQ(result.counts[1].removed, 1);
   EXPECT_EQ(result.counts[2].removed, 0);
   EXPECT_EQ(result.counts[3].removed, 0);
@@ -55,7 +56,7 @@ TEST(FilterChain, CountsWhatAFilterCorrects) {
   image.range_m(7, 9) -= static_cast<float>(test::modulation().wavelength_a_m());
   const FilterResult result =
       apply_filters(image, frame, test::modulation(), pixel_rays(camera()), {});
-  EXPECT_EQ(result.counts[3].name, "isolated_wrap");
+  EXPECT_EQ(result.counts[3].filter, Filter::isolated_wrap);
   EXPECT_EQ(result.counts[3].corrected, 1);
   EXPECT_EQ(result.counts[3].removed, 0);
   EXPECT_EQ(result.counts[4].corrected, 0);
@@ -63,14 +64,30 @@ TEST(FilterChain, CountsWhatAFilterCorrects) {
 
 TEST(FilterChain, RefusesAFilterItDoesNotHave) {
   FilterOptions options;
-  options.chain = "jump_edge magic";
-  EXPECT_THROW(filtered(plane(3), options), UsageError);
+  OptionTable table;
+  table.bind("filters", options);
+  EXPECT_THROW(table.set("filters.chain", "jump_edge magic"), UsageError);
+  EXPECT_EQ(options.chain, FilterOptions{}.chain);
+}
+
+TEST(FilterChain, IsSetByNamesThatBlanksSeparate) {
+  FilterOptions options;
+  OptionTable table;
+  table.bind("filters", options);
+  table.set("filters.chain", "  smooth\tjump_edge smooth ");
+  EXPECT_EQ(options.chain,
+            (std::vector<Filter>{Filter::smooth, Filter::jump_edge, Filter::smooth}));
+  table.set("filters.chain", "");
+  EXPECT_TRUE(options.chain.empty());
 }
 
 TEST(FilterChain, RunsEveryFilterOnAnImageWithoutARange) {
   const RangeImage nothing(16, 20);
   FilterOptions options;
-  options.chain = filter_names(" ");
+  options.chain.clear();
+  for (const NamedValue<Filter>& named : named_values(Filter{})) {
+    options.chain.push_back(named.value);
+  }
   const FilterResult result = filtered(nothing, options);
   EXPECT_EQ(result.image.count_valid(), 0);
   EXPECT_EQ(count_reason(result.image, InvalidReason::no_return), 20 * 16);

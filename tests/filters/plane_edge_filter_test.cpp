@@ -201,8 +201,7 @@ TEST(StepEdgeFilter, KeepsSlopesUpToItsAngleAndDropsSteeperOnes) {
   const auto dropped_at = [](double max_incidence_deg) {
     // Incidences from 15° to 65°, the largest in the right-most columns.
     const RangeImage image = slanted_plane(3, -40 * rad_per_deg);
-    const StepEdgeLimits limits{.max_incidence_rad = max_incidence_deg * rad_per_deg,
-                                .min_sigmas = 0};
+    const StepEdgeLimits limits{.max_incidence_deg = max_incidence_deg, .min_sigmas = 0};
     return pixels - drop_steps(image, pixel_rays(camera()), limits).count_valid();
   };
   EXPECT_EQ(dropped_at(75), 0);

@@ -71,7 +71,8 @@ TEST(MotionUncertainty, TurnsWithTheWorld) {
   information(3, 3) = 1e6;
   uncertainty.learn(1, information);
   const double along_y = uncertainty.of_pose()(4, 4);
-  uncertainty.turn(Eigen::AngleAxisd(std::acos(0.0), Eigen::Vector3d::UnitZ()).toRotationMatrix());
+  uncertainty.rotate(
+      Eigen::AngleAxisd(std::acos(0.0), Eigen::Vector3d::UnitZ()).toRotationMatrix());
   EXPECT_NEAR(uncertainty.of_pose()(3, 3), along_y, 1e-12);
   uncertainty.reset();
   EXPECT_TRUE(uncertainty.of_pose().isZero(0));

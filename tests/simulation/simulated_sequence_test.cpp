@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "acquisition/sample_frames.hpp"
 #include "sample_scenes.hpp"
+#include "support/sample_frames.hpp"
 
 #include <cmath>
 #include <fstream>

@@ -53,7 +53,7 @@ SensorModel untagged_sensor(const std::string& uri, const OpenNi2Connection& dev
     throw UsageError(uri + ": does not report its modulation frequencies; set " +
                      "device.frequency_a_hz and device.frequency_b_hz");
   }
-  const int halves = options.layout == "stacked" ? 2 : 1;
+  const int halves = options.layout == ImageLayout::stacked ? 2 : 1;
   const auto width = static_cast<int>(image.pixels.cols());
   const auto height = static_cast<int>(image.pixels.rows()) / halves;
   const double view_rad = device.horizontal_fov_rad();
@@ -69,33 +69,6 @@ SensorModel untagged_sensor(const std::string& uri, const OpenNi2Connection& dev
 }
 
 }  // namespace
-
-std::vector<OptionField<DeviceOptions>> DeviceOptions::fields() {
-  using D = DeviceOptions;
-  return {
-      {"layout", &D::layout, 0, 0, "",
-       "auto: the tag of the images decides; stacked: each image holds A above B; alternating: "
-       "images of A and B alternate",
-       "auto | stacked | alternating"},
-      {"frequency_a_hz", &D::frequency_a_hz, 0, 1e9, "Hz",
-       "modulation frequency of image A, for images without a tag; 0: ask the device"},
-      {"frequency_b_hz", &D::frequency_b_hz, 0, 1e9, "Hz",
-       "modulation frequency of image B, for images without a tag; 0: ask the device"},
-      {"depth", &D::depth, 0, 0, "",
-       "what depth images without a tag hold; z: depth along the optical axis, OpenNI2's "
-       "convention; radial: range along each pixel's ray",
-       "z | radial"},
-      {"max_range_m", &D::max_range_m, 0, 65.5, "m",
-       "largest range in the scene, for images without a tag; 0: unknown"},
-      {"first", &D::first, 0, 0, "",
-       "first image of an alternating device; auto: determined from the ranges, since none exceeds "
-       "the wavelength of its image",
-       "auto | a | b"},
-      {"period_s", &D::period_s, 0, 10, "s",
-       "time between two images of an alternating device; 0: from its frame rate"},
-      {"timeout_s", &D::timeout_s, 0.1, 3600, "s", "longest time to wait for an image"},
-  };
-}
 
 bool is_device_uri(const std::string& text) {
   return text.find("://") != std::string::npos || text.ends_with(".oni");
@@ -173,7 +146,7 @@ void OpenNi2Source::Impl::begin(const SensorModel& sensor, const RangeScale& sca
 }
 
 void OpenNi2Source::Impl::take_as_tagged(const FrameTag& tag) {
-  if (settings_.options.layout == "alternating") {
+  if (settings_.options.layout == ImageLayout::alternating) {
     throw InputError(uri_ + ": its images say that they hold both frequencies; leave out " +
                      "device.layout=alternating");
   }
@@ -183,19 +156,19 @@ void OpenNi2Source::Impl::take_as_tagged(const FrameTag& tag) {
 
 void OpenNi2Source::Impl::take_as_configured(const RawImage& image) {
   const DeviceOptions& options = settings_.options;
-  if (options.layout == "auto") {
+  if (options.layout == ImageLayout::by_tag) {
     throw UsageError(uri_ + ": its images do not say how they hold both frequencies; set " +
                      "device.layout to stacked or alternating (docs/cameras.md)");
   }
   const SensorModel sensor = untagged_sensor(uri_, device_, image, settings_);
-  begin(sensor, {image.unit_m, options.depth == "z"}, ImageKey::time);
-  if (options.layout == "stacked") return;
+  begin(sensor, {image.unit_m, options.depth == DepthKind::z}, ImageKey::time);
+  if (options.layout == ImageLayout::stacked) return;
   AlternatingPairer::Settings pairing;
   pairing.period_s = options.period_s > 0 ? options.period_s : 1.0 / device_.frame_rate_hz();
   const Modulation& modulation = sensor.modulation;
   pairing.longer = modulation.wavelength_a_m() > modulation.wavelength_b_m() ? Half::a : Half::b;
-  if (options.first == "a") pairing.first = Half::a;
-  if (options.first == "b") pairing.first = Half::b;
+  if (options.first == FirstImage::a) pairing.first = Half::a;
+  if (options.first == FirstImage::b) pairing.first = Half::b;
   alternating_.emplace(pairing);
 }
 

@@ -99,9 +99,9 @@ class HarmonicSeries {
   const Eigen::VectorXd& at(double phase_cycles, double noise_cycles = 0) {
     factors_[0] = 1;
     for (std::size_t i = 0; i < orders_.size(); ++i) {
-      const double turn = 2 * std::numbers::pi * orders_[i];
-      const double mean = std::exp(-std::pow(turn * noise_cycles, 2) / 2);
-      const double angle = turn * phase_cycles;
+      const double rad_per_cycle = 2 * std::numbers::pi * orders_[i];
+      const double mean = std::exp(-std::pow(rad_per_cycle * noise_cycles, 2) / 2);
+      const double angle = rad_per_cycle * phase_cycles;
       factors_.segment<2>(1 + 2 * static_cast<Eigen::Index>(i)) << mean * std::cos(angle),
           mean * std::sin(angle);
     }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
+#include <fmt/format.h>
 
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/input_file.hpp>
@@ -100,6 +101,25 @@ WallDistances read_wall_distances(const std::filesystem::path& file) {
   }
   if (distances.empty()) throw InputError(file.string() + ": has no line 'frame distance_m'");
   return distances;
+}
+
+void check_wall_distances(const WallDistances& distances_m, const std::filesystem::path& file,
+                          const SequenceReader& recording) {
+  constexpr double farthest_m = 100;
+  for (const auto& [frame, distance_m] : distances_m) {
+    if (distance_m <= farthest_m) continue;
+    throw InputError(file.string() +
+                     fmt::format(": has a wall at {:g} m in frame {}; are its distances metres?",
+                                 distance_m, frame));
+  }
+  if (distances_m.empty()) return;
+  const int last = distances_m.rbegin()->first;
+  const int frames = *recording.frame_count();
+  if (last < frames) return;
+  throw InputError(
+      file.string() +
+      fmt::format(": has a distance for frame {}, but {} has {} frames, counted from 0", last,
+                  recording.folder().string(), frames));
 }
 
 std::optional<ImageF> wall_range(const DualFrequencyFrame& frame, const SensorModel& sensor,

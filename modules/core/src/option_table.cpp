@@ -40,6 +40,9 @@ std::string number_text(double number) {
   return {buffer, result.ptr};
 }
 
+/// Text as a YAML scalar, in quotes where it needs them.
+std::string yaml_text(const std::string& text) { return YAML::Dump(YAML::Node(text)); }
+
 std::string range_text(double min, double max) {
   const bool from = std::isfinite(min);
   const bool to = std::isfinite(max);
@@ -49,23 +52,12 @@ std::string range_text(double min, double max) {
   return "any number";
 }
 
-/// True if the word is one of `choices`, which has the form "a | b | c".
-bool is_choice(const std::string& word, const std::string& choices) {
-  std::istringstream words(choices);
-  for (std::string choice; words >> choice;) {
-    if (choice != "|" && choice == word) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 std::string OptionTable::Entry::allowed() const {
   if (std::holds_alternative<bool*>(value)) return "true | false";
-  if (std::holds_alternative<std::string*>(value)) {
-    return choices.empty() ? "any text" : choices;
-  }
-  if (const auto* one_of = std::get_if<EnumReference>(&value)) return one_of->choices;
+  if (std::holds_alternative<std::string*>(value)) return "any text";
+  if (const auto* named = std::get_if<EnumReference>(&value)) return named->allowed;
   const bool whole = std::holds_alternative<int*>(value);
   return (whole ? "whole number, " : "") + range_text(min, max);
 }
@@ -74,8 +66,8 @@ std::string OptionTable::Entry::text() const {
   if (const auto* flag = std::get_if<bool*>(&value)) return **flag ? "true" : "false";
   if (const auto* whole = std::get_if<int*>(&value)) return std::to_string(**whole);
   if (const auto* number = std::get_if<double*>(&value)) return number_text(**number);
-  if (const auto* one_of = std::get_if<EnumReference>(&value)) return std::string(one_of->name());
-  return YAML::Dump(YAML::Node(*std::get<std::string*>(value)));
+  if (const auto* named = std::get_if<EnumReference>(&value)) return yaml_text(named->text());
+  return yaml_text(*std::get<std::string*>(value));
 }
 
 void OptionTable::Entry::set(const std::string& value_text) {
@@ -95,10 +87,9 @@ void OptionTable::Entry::set(const std::string& value_text) {
     const auto parsed = parse_number<double>(value_text);
     if (!parsed || !std::isfinite(*parsed) || *parsed < min || *parsed > max) refuse();
     **number = *parsed;
-  } else if (auto* one_of = std::get_if<EnumReference>(&value)) {
-    if (!one_of->set(value_text)) refuse();
+  } else if (auto* named = std::get_if<EnumReference>(&value)) {
+    if (!named->set(value_text)) refuse();
   } else {
-    if (!choices.empty() && !is_choice(value_text, choices)) refuse();
     *std::get<std::string*>(value) = value_text;
   }
 }

@@ -27,7 +27,7 @@ struct UnwrappedOnly {
 
 /// The options with an empty filter chain.
 PipelineOptions without_filters(PipelineOptions options) {
-  options.filters.chain = "";
+  options.filters.chain.clear();
   return options;
 }
 

@@ -4,23 +4,12 @@
 #include "tofmap/filters/filter_chain.hpp"
 
 #include "tofmap/filters/gates.hpp"
-#include "tofmap/filters/isolated_wrap_filter.hpp"
 #include "tofmap/filters/jump_edge_filter.hpp"
 #include "tofmap/filters/outlier_filter.hpp"
-#include "tofmap/filters/phasor_mean_filter.hpp"
-#include "tofmap/filters/plane_edge_filter.hpp"
-#include "tofmap/filters/smooth_filter.hpp"
-#include "tofmap/filters/step_edge_filter.hpp"
 
 #include <algorithm>
 #include <array>
 #include <numbers>
-#include <ranges>
-#include <sstream>
-#include <string_view>
-
-#include <tofmap/core/error.hpp>
-#include <tofmap/core/text.hpp>
 
 namespace tofmap {
 namespace {
@@ -35,65 +24,62 @@ struct FilterInput {
   const FilterOptions& options;
 };
 
-struct NamedFilter {
-  std::string_view name;
+struct FilterStep {
+  Filter filter;
   InvalidReason reason;  ///< of the pixels that it drops; none if it drops nothing
   RangeImage (*apply)(const RangeImage&, const FilterInput&);
 };
 
-constexpr std::array<NamedFilter, 9> all_filters{
-    {{"amplitude", InvalidReason::low_amplitude,
+constexpr std::array<FilterStep, 9> all_filters{
+    {{Filter::amplitude, InvalidReason::low_amplitude,
       [](const RangeImage& image, const FilterInput& in) {
         return drop_low_amplitude(image, in.frame, in.options.min_amplitude);
       }},
-     {"confidence", InvalidReason::low_confidence,
+     {Filter::confidence, InvalidReason::low_confidence,
       [](const RangeImage& image, const FilterInput& in) {
         return drop_low_confidence(image, in.options.min_confidence);
       }},
-     {"phasor_mean", InvalidReason::none,
+     {Filter::phasor_mean, InvalidReason::none,
       [](const RangeImage& image, const FilterInput& in) {
         return average_phasors(image, in.frame, in.modulation, in.rays,
                                {.min_noise_cycles = in.options.min_phasor_noise_cycles,
                                 .max_radius_px = in.options.max_phasor_radius_px});
       }},
-     {"isolated_wrap", InvalidReason::isolated_wrap,
+     {Filter::isolated_wrap, InvalidReason::isolated_wrap,
       [](const RangeImage& image, const FilterInput& in) {
         return mend_isolated_wraps(image, in.frame, in.modulation,
                                    {.max_share = in.options.max_isolated_share});
       }},
-     {"jump_edge", InvalidReason::jump_edge,
+     {Filter::jump_edge, InvalidReason::jump_edge,
       [](const RangeImage& image, const FilterInput& in) {
         return drop_jump_edges(image, in.rays, in.options.max_edge_angle_deg * rad_per_deg,
                                in.options.min_edge_gap_sigmas);
       }},
-     {"step_edge", InvalidReason::jump_edge,
+     {Filter::step_edge, InvalidReason::jump_edge,
       [](const RangeImage& image, const FilterInput& in) {
         return drop_steps(image, in.rays,
-                          {.max_incidence_rad = in.options.max_step_incidence_deg * rad_per_deg,
+                          {.max_incidence_deg = in.options.max_step_incidence_deg,
                            .min_sigmas = in.options.min_step_sigmas});
       }},
-     {"plane_edge", InvalidReason::jump_edge,
+     {Filter::plane_edge, InvalidReason::jump_edge,
       [](const RangeImage& image, const FilterInput& in) {
         return drop_off_planes(image, in.frame, in.modulation, in.rays,
                                {.max_sigmas = in.options.max_plane_sigmas,
                                 .max_edge_sigmas = in.options.max_edge_sigmas,
                                 .tolerance_m = in.options.plane_tolerance_m});
       }},
-     {"outlier", InvalidReason::outlier,
+     {Filter::outlier, InvalidReason::outlier,
       [](const RangeImage& image, const FilterInput& in) {
         return drop_outliers(image, in.rays, in.options.max_outlier_deviations);
       }},
-     {"smooth", InvalidReason::none, [](const RangeImage& image, const FilterInput& in) {
+     {Filter::smooth, InvalidReason::none, [](const RangeImage& image, const FilterInput& in) {
         return smooth_ranges(image, in.rays,
                              {.max_sigmas = in.options.max_smooth_sigmas,
                               .tolerance_m = in.options.smooth_tolerance_m});
       }}}};
 
-const NamedFilter& find_filter(const std::string& name) {
-  const auto* found = std::ranges::find(all_filters, name, &NamedFilter::name);
-  if (found != all_filters.end()) return *found;
-  throw UsageError("option filters.chain: '" + name +
-                   "' is not a filter; allowed: " + filter_names(", "));
+const FilterStep& step_of(Filter filter) {
+  return *std::ranges::find(all_filters, filter, &FilterStep::filter);
 }
 
 /// The number of pixels that are valid after filtering and have another wrap count than before.
@@ -103,12 +89,24 @@ int count_corrected(const RangeImage& before, const RangeImage& after) {
 
 }  // namespace
 
+std::span<const NamedValue<Filter>> named_values(Filter) {
+  static constexpr std::array<NamedValue<Filter>, 9> names{
+      {{"amplitude", Filter::amplitude},
+       {"confidence", Filter::confidence},
+       {"phasor_mean", Filter::phasor_mean},
+       {"isolated_wrap", Filter::isolated_wrap},
+       {"jump_edge", Filter::jump_edge},
+       {"step_edge", Filter::step_edge},
+       {"plane_edge", Filter::plane_edge},
+       {"outlier", Filter::outlier},
+       {"smooth", Filter::smooth}}};
+  return names;
+}
+
 std::vector<OptionField<FilterOptions>> FilterOptions::fields() {
   using O = FilterOptions;
-  static const std::string chain_meaning =
-      "names of the filters in the order in which they run, from: " + filter_names(", ");
   return {
-      {"chain", &O::chain, 0, 0, "", chain_meaning},
+      {"chain", &O::chain, 0, 0, "", "the filters in the order in which they run"},
       {"min_amplitude", &O::min_amplitude, 0, 1e9, "",
        "amplitude: drops pixels with a weaker signal; in the units of the camera"},
       {"min_confidence", &O::min_confidence, 0, 1, "",
@@ -143,10 +141,10 @@ std::vector<OptionField<FilterOptions>> FilterOptions::fields() {
   };
 }
 
-std::string smoothing_chain() { return FilterOptions{}.chain + " smooth"; }
-
-std::string filter_names(const std::string& separator) {
-  return joined(std::views::transform(all_filters, &NamedFilter::name), separator);
+std::vector<Filter> smoothing_chain() {
+  std::vector<Filter> chain = FilterOptions{}.chain;
+  chain.push_back(Filter::smooth);
+  return chain;
 }
 
 FilterResult apply_filters(const RangeImage& image, const DualFrequencyFrame& frame,
@@ -154,12 +152,11 @@ FilterResult apply_filters(const RangeImage& image, const DualFrequencyFrame& fr
                            const FilterOptions& options) {
   FilterResult result;
   result.image = image;
-  std::istringstream names(options.chain);
-  for (std::string name; names >> name;) {
-    const NamedFilter& filter = find_filter(name);
-    RangeImage filtered = filter.apply(result.image, {frame, modulation, rays, options});
-    result.counts.push_back({.name = name,
-                             .reason = filter.reason,
+  for (const Filter filter : options.chain) {
+    const FilterStep& step = step_of(filter);
+    RangeImage filtered = step.apply(result.image, {frame, modulation, rays, options});
+    result.counts.push_back({.filter = filter,
+                             .reason = step.reason,
                              .removed = result.image.count_valid() - filtered.count_valid(),
                              .corrected = count_corrected(result.image, filtered)});
     result.image = std::move(filtered);

@@ -40,7 +40,7 @@ struct Complex {
 }
 
 /// `one` times the complex conjugate of `by`: rotates `one` back by the phase of `by`.
-[[gnu::always_inline]] inline Complex turned_back(Complex one, Complex by) {
+[[gnu::always_inline]] inline Complex rotated_back(Complex one, Complex by) {
   return {one.re * by.re + one.im * by.im, one.im * by.re - one.re * by.im};
 }
 
@@ -91,7 +91,7 @@ struct RotorRow {
 };
 
 /// Multiplies each rotor by the corresponding one of `by`.
-TOFMAP_VECTOR_CLONES void turn(int pixels, const RotorRow& rotors_, const RotorRow& by_) {
+TOFMAP_VECTOR_CLONES void rotate(int pixels, const RotorRow& rotors_, const RotorRow& by_) {
   const RotorRow rotors = rotors_;
   const RotorRow by = by_;
 #pragma GCC ivdep
@@ -102,9 +102,9 @@ TOFMAP_VECTOR_CLONES void turn(int pixels, const RotorRow& rotors_, const RotorR
   }
 }
 
-void turn(int pixels, Rotors& rotors, Rotors& by) {
-  turn(pixels, RotorRow(rotors.a), RotorRow(by.a));
-  turn(pixels, RotorRow(rotors.b), RotorRow(by.b));
+void rotate(int pixels, Rotors& rotors, Rotors& by) {
+  rotate(pixels, RotorRow(rotors.a), RotorRow(by.a));
+  rotate(pixels, RotorRow(rotors.b), RotorRow(by.b));
 }
 
 /// Sets `out` to the rotors of the offset (x, y). `ratio` is λ_A / λ_B.
@@ -220,19 +220,19 @@ TOFMAP_VECTOR_CLONES void add_place(int pixels, const Place& place_, const Rotor
   const float length2 = place.x * place.x + place.y * place.y;
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
-    const Complex turn_a = rotor_a[i];
-    const Complex turn_b = rotor_b[i];
-    const float cosines =
-        dot(product(own.a[i], turn_a), other.a[i]) + dot(product(own.b[i], turn_b), other.b[i]);
+    const Complex rotation_a = rotor_a[i];
+    const Complex rotation_b = rotor_b[i];
+    const float cosines = dot(product(own.a[i], rotation_a), other.a[i]) +
+                          dot(product(own.b[i], rotation_b), other.b[i]);
     const float noise = own.variance[i] + other.variance[i] + length2 * own.slope_variance[i];
     const float misfit = (4 - 2 * cosines) / noise * place.inverse_misfit;
-    const float open = 1.5F - 1.5F * misfit;
-    const float share = open < 0 ? 0.0F : (open > 1 ? 1.0F : open);
+    const float opening = 1.5F - 1.5F * misfit;
+    const float share = opening < 0 ? 0.0F : (opening > 1 ? 1.0F : opening);
     const float w = place.weight * share;
     const float wx = w * place.x;
     const float wy = w * place.y;
-    sums.a.add(i, turned_back(measured.a[i], turn_a), w, wx, wy);
-    sums.b.add(i, turned_back(measured.b[i], turn_b), w, wx, wy);
+    sums.a.add(i, rotated_back(measured.a[i], rotation_a), w, wx, wy);
+    sums.b.add(i, rotated_back(measured.b[i], rotation_b), w, wx, wy);
     const float information = measured.information[i];
     sums.s[i] += w * information;
     sums.sx[i] += wx * information;
@@ -254,8 +254,8 @@ struct MeanPhasor {
   MeanPhasor(const FrequencySums& sums, int i)
       : length(std::hypot(sums.re[i], sums.im[i])),
         direction{sums.re[i] / length, sums.im[i] / length},
-        turn_x(turned_back({sums.x_re[i], sums.x_im[i]}, direction).im),
-        turn_y(turned_back({sums.y_re[i], sums.y_im[i]}, direction).im) {}
+        turn_x(rotated_back({sums.x_re[i], sums.x_im[i]}, direction).im),
+        turn_y(rotated_back({sums.y_re[i], sums.y_im[i]}, direction).im) {}
 
   /// The direction, rotated by `angle`, radians.
   Complex turned(float angle) const {
@@ -358,9 +358,9 @@ class WindowStep {
                     RotorRow(rotors_.a), RotorRow(rotors_.b), PhasePlaneRow(before, v, 0),
                     PhasePlaneRow(before, v + y, x), MeasuredRow(phasors_, v + y, x), sums_.row());
         }
-        turn(cols_, rotors_, right_);
+        rotate(cols_, rotors_, right_);
       }
-      turn(cols_, row_start_, down_);
+      rotate(cols_, row_start_, down_);
     }
   }
 
@@ -390,15 +390,15 @@ Phasors::Phasors(const ImageF& phase_a, const ImageF& phase_b, const ImageF& sig
     : Phasors(static_cast<int>(phase_a.rows()), static_cast<int>(phase_a.cols()), margin) {
   for (int v = 0; v < phase_a.rows(); ++v) {
     for (int u = 0; u < phase_a.cols(); ++u) {
-      const float turn_a = two_pi * phase_a(v, u);
-      const float turn_b = two_pi * phase_b(v, u);
-      if (!std::isfinite(turn_a + turn_b + sigma_cycles(v, u))) continue;
+      const float rotation_a = two_pi * phase_a(v, u);
+      const float rotation_b = two_pi * phase_b(v, u);
+      if (!std::isfinite(rotation_a + rotation_b + sigma_cycles(v, u))) continue;
       const PhasorMoments moments(sigma_cycles(v, u));
       const float weight = moments.mean / moments.variance_across;
-      a.re.row(v)[u] = weight * std::cos(turn_a);
-      a.im.row(v)[u] = weight * std::sin(turn_a);
-      b.re.row(v)[u] = weight * std::cos(turn_b);
-      b.im.row(v)[u] = weight * std::sin(turn_b);
+      a.re.row(v)[u] = weight * std::cos(rotation_a);
+      a.im.row(v)[u] = weight * std::sin(rotation_a);
+      b.re.row(v)[u] = weight * std::cos(rotation_b);
+      b.im.row(v)[u] = weight * std::sin(rotation_b);
       information.row(v)[u] = weight * moments.mean;
     }
   }

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace tofmap {
 namespace {
@@ -22,7 +23,7 @@ class StepFinder {
   StepFinder(const RangeImage& image, const PixelRays& rays, const StepEdgeLimits& limits)
       : image_(image),
         rays_(rays),
-        slope_(static_cast<float>(std::tan(limits.max_incidence_rad))),
+        slope_(static_cast<float>(std::tan(limits.max_incidence_deg * std::numbers::pi / 180))),
         sigmas_(static_cast<float>(limits.min_sigmas)) {}
 
   bool is_between_steps(Eigen::Index row, Eigen::Index col) const {

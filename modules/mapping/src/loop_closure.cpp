@@ -155,10 +155,10 @@ PoseEdge edge_of(const Keyframe& from, int to, const Pose& world_from_camera,
   edge.from_from_to = from.world_from_camera.inverse() * world_from_camera;
   // The covariance of a registration is along the world's axes, that of an edge along those of
   // `from`.
-  Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
-  turn.topLeftCorner<3, 3>() = from.world_from_camera.linear().transpose();
-  turn.bottomRightCorner<3, 3>() = turn.topLeftCorner<3, 3>();
-  edge.covariance = turn * covariance * turn.transpose();
+  Eigen::Matrix<double, 6, 6> rotation = Eigen::Matrix<double, 6, 6>::Zero();
+  rotation.topLeftCorner<3, 3>() = from.world_from_camera.linear().transpose();
+  rotation.bottomRightCorner<3, 3>() = rotation.topLeftCorner<3, 3>();
+  edge.covariance = rotation * covariance * rotation.transpose();
   widen(edge, shared_sigma_rad, shared_sigma_m);
   return edge;
 }
@@ -167,12 +167,12 @@ RegistrationResult register_from_afar(const SurfaceCloud& cloud,
                                       std::span<const RegistrationTarget> targets,
                                       const CameraModel& camera, const MotionPrior& prior,
                                       const RegistrationOptions& registration) {
-  constexpr double widest_gap_m = 1;
+  constexpr double max_distance_m = 1;
   constexpr int iterations = 40;
   RegistrationOptions wide = registration;
   wide.max_correspondence_distance_m =
       std::max(registration.max_correspondence_distance_m,
-               std::min(widest_gap_m, 2 * prior.translation_sigma_m));
+               std::min(max_distance_m, 2 * prior.translation_sigma_m));
   wide.max_iterations = std::max(registration.max_iterations, iterations);
   MotionPrior closer = prior;
   closer.world_from_camera =

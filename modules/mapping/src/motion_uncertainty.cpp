@@ -30,10 +30,10 @@ void MotionUncertainty::learn(int frames, const Covariance& information) {
 
 void MotionUncertainty::reset() { joint_.setZero(); }
 
-void MotionUncertainty::turn(const Eigen::Matrix3d& new_from_old) {
-  Joint turn = Joint::Zero();
-  for (int i = 0; i < turn.rows(); i += 3) turn.block<3, 3>(i, i) = new_from_old;
-  joint_ = (turn * joint_ * turn.transpose()).eval();
+void MotionUncertainty::rotate(const Eigen::Matrix3d& new_from_old) {
+  Joint rotation = Joint::Zero();
+  for (int i = 0; i < rotation.rows(); i += 3) rotation.block<3, 3>(i, i) = new_from_old;
+  joint_ = (rotation * joint_ * rotation.transpose()).eval();
 }
 
 }  // namespace tofmap

@@ -4,6 +4,7 @@
 #include "tofmap/mapping/odometry.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tofmap {
@@ -53,24 +54,16 @@ std::vector<OptionField<OdometryOptions>> OdometryOptions::fields() {
   };
 }
 
-const char* status_name(TrackingStatus status) {
-  switch (status) {
-    case TrackingStatus::first:
-      return "first";
-    case TrackingStatus::tracked:
-      return "tracked";
-    case TrackingStatus::no_surface:
-      return "no_surface";
-    case TrackingStatus::lost:
-      return "lost";
-    case TrackingStatus::implausible:
-      return "implausible";
-    case TrackingStatus::relocalised:
-      return "relocalised";
-    case TrackingStatus::repeated:
-      return "repeated";
-  }
-  return "unknown";
+std::span<const NamedValue<TrackingStatus>> named_values(TrackingStatus) {
+  static constexpr std::array<NamedValue<TrackingStatus>, 7> statuses{
+      {{"first", TrackingStatus::first},
+       {"tracked", TrackingStatus::tracked},
+       {"no_surface", TrackingStatus::no_surface},
+       {"lost", TrackingStatus::lost},
+       {"implausible", TrackingStatus::implausible},
+       {"relocalised", TrackingStatus::relocalised},
+       {"repeated", TrackingStatus::repeated}}};
+  return statuses;
 }
 
 Odometry::Odometry(const CameraModel& camera, const OdometryOptions& options,
@@ -243,7 +236,7 @@ void Odometry::move(const Pose& new_from_old_world) {
   for (std::optional<StampedPose>* pose : {&last_, &before_last_}) {
     if (*pose) (*pose)->world_from_camera = new_from_old_world * (*pose)->world_from_camera;
   }
-  uncertainty_.turn(new_from_old_world.linear());
+  uncertainty_.rotate(new_from_old_world.linear());
 }
 
 void Odometry::accept(const StampedPose& pose) {

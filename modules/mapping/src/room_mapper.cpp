@@ -31,7 +31,7 @@ constexpr double steps_on_earlier_visits = 2;
 
 /// Keyframes within this many keyframe spacings of an anchor share its submap, since their relative
 /// poses hardly change any more.
-constexpr double steps_within_part = 4;
+constexpr double submap_radius_steps = 4;
 
 }  // namespace
 
@@ -229,7 +229,7 @@ void RoomMapper::add_keyframe(const NewFrame& frame, std::span<const Keyframe* c
 /// submap with the keyframe as its anchor.
 int RoomMapper::submap_for(int id, const Pose& pose, std::span<const Keyframe* const> around) {
   int nearest = -1;
-  double least_steps = steps_within_part;
+  double least_steps = submap_radius_steps;
   for (const Keyframe* keyframe : around) {
     const int submap = submap_of_[static_cast<std::size_t>(keyframe->id)];
     const int anchor = submaps_[static_cast<std::size_t>(submap)].anchor;

@@ -10,6 +10,7 @@
 #include "levelled_cloud.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include <omp.h>
@@ -252,26 +253,17 @@ std::vector<OptionField<CloudRegistrationOptions>> CloudRegistrationOptions::fie
   };
 }
 
-const char* verdict_name(PairVerdict verdict) {
-  switch (verdict) {
-    case PairVerdict::registered:
-      return "registered";
-    case PairVerdict::few_matches:
-      return "few_matches";
-    case PairVerdict::low_overlap:
-      return "low_overlap";
-    case PairVerdict::low_inliers:
-      return "low_inliers";
-    case PairVerdict::contradicted:
-      return "contradicted";
-    case PairVerdict::degenerate:
-      return "degenerate";
-    case PairVerdict::ambiguous:
-      return "ambiguous";
-    case PairVerdict::disagrees:
-      return "disagrees";
-  }
-  return "unknown";
+std::span<const NamedValue<PairVerdict>> named_values(PairVerdict) {
+  static constexpr std::array<NamedValue<PairVerdict>, 8> verdicts{
+      {{"registered", PairVerdict::registered},
+       {"few_matches", PairVerdict::few_matches},
+       {"low_overlap", PairVerdict::low_overlap},
+       {"low_inliers", PairVerdict::low_inliers},
+       {"contradicted", PairVerdict::contradicted},
+       {"degenerate", PairVerdict::degenerate},
+       {"ambiguous", PairVerdict::ambiguous},
+       {"disagrees", PairVerdict::disagrees}}};
+  return verdicts;
 }
 
 int CloudRegistration::registered() const {

@@ -36,8 +36,8 @@ std::string why_not_registered(int cloud, const std::vector<CloudPair>& pairs,
   if (best->verdict == PairVerdict::registered) {
     return "fits " + name + ", but neither of the two fits the other clouds";
   }
-  return "fits no other cloud; the best match is " + name + " (" + verdict_name(best->verdict) +
-         ")";
+  return "fits no other cloud; the best match is " + name + " (" +
+         std::string(name_of(best->verdict)) + ")";
 }
 
 std::string odd_size(double ratio) {

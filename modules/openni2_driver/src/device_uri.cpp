@@ -3,6 +3,7 @@
 
 #include "device_uri.hpp"
 
+#include <array>
 #include <set>
 #include <sstream>
 
@@ -10,17 +11,21 @@
 
 namespace tofmap {
 
+std::span<const NamedValue<PlayedLayout>> named_values(PlayedLayout) {
+  static constexpr std::array<NamedValue<PlayedLayout>, 2> layouts{
+      {{"stacked", PlayedLayout::stacked}, {"alternating", PlayedLayout::alternating}}};
+  return layouts;
+}
+
 std::vector<OptionField<PlayerOptions>> PlayerOptions::fields() {
   using P = PlayerOptions;
   return {
       {"layout", &P::layout, 0, 0, "",
        "stacked: each image holds A above B, and a tag; alternating: images of A and B alternate, "
-       "without a tag",
-       "stacked | alternating"},
+       "without a tag"},
       {"depth", &P::depth, 0, 0, "",
        "what depth images hold; radial: range along each pixel's ray; z: depth along the optical "
-       "axis, OpenNI2's convention",
-       "radial | z"},
+       "axis, OpenNI2's convention"},
       {"speed", &P::speed, -1, 1000, "",
        "playback speed relative to the recording; 0: as fast as possible; -1: a frame whenever a "
        "client waits for one"},

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
+#include <tofmap/acquisition/device_options.hpp>
+#include <tofmap/core/named_value.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/simulation/simulator.hpp>
 
@@ -13,14 +16,20 @@ namespace tofmap {
 /// The beginning of every device URI.
 inline constexpr const char* uri_scheme = "tofmap://";
 
+/// How a device plays the images of A and B.
+enum class PlayedLayout {
+  stacked,      ///< each image holds A above B
+  alternating,  ///< the images of A and B alternate
+};
+
+std::span<const NamedValue<PlayedLayout>> named_values(PlayedLayout);
+
 /// How a device plays frames.
 struct PlayerOptions {
-  /// `stacked`: each image holds A above B, and a tag. `alternating`: the images of A and B
-  /// alternate, without a tag.
-  std::string layout = "stacked";
-  /// What depth images hold. `radial`: range along the ray of each pixel. `z`: depth along the
-  /// optical axis, OpenNI2's convention.
-  std::string depth = "radial";
+  /// How images of A and B are played. Only stacked images have a tag.
+  PlayedLayout layout = PlayedLayout::stacked;
+  /// What depth images hold.
+  DepthKind depth = DepthKind::radial;
   /// Playback speed relative to that of the recording or scene, −1 … 1000. 0: as fast as possible.
   /// Negative: one frame whenever a client waits for one.
   double speed = 1;

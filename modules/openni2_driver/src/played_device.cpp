@@ -38,7 +38,7 @@ PlayedDevice::PlayedDevice(const DeviceRequest& request, Events events)
       player_(request, [this] { return !is_ending(); }),
       speed_(request.player.speed) {
   const CameraModel& camera = player_.sensor().camera;
-  const bool is_stacked = request.player.layout == "stacked";
+  const bool is_stacked = request.player.layout == PlayedLayout::stacked;
   OniVideoMode mode;
   mode.resolutionX = camera.width_px;
   mode.resolutionY =
@@ -48,7 +48,7 @@ PlayedDevice::PlayedDevice(const DeviceRequest& request, Events events)
   for (const DepthFormat& format : depth_formats) {
     try {
       codecs_.emplace_back(player_.sensor(),
-                           RangeScale{format.unit_m, request.player.depth == "z"});
+                           RangeScale{format.unit_m, request.player.depth == DepthKind::z});
     } catch (const UsageError&) {
       continue;  // 16 bits of this format do not hold a wavelength
     }
@@ -148,7 +148,7 @@ OniStatus PlayedDevice::getProperty(int id, void* data, int* size) {
     case openni2_property::frequency_b_hz:
       return answer(modulation.frequency_b_hz, data, size);
     case openni2_property::layout: {
-      const std::string& layout = request_.player.layout;
+      const std::string layout(name_of(request_.player.layout));
       const auto needed = static_cast<int>(layout.size()) + 1;
       if (*size < needed) return ONI_STATUS_BAD_PARAMETER;
       std::memcpy(data, layout.c_str(), static_cast<std::size_t>(needed));
@@ -298,7 +298,7 @@ void PlayedDevice::deliver(const DualFrequencyFrame& frame) {
   if (!wait_for_turn(frame.timestamp_s)) return;
   // Encodes only now, because the mode of a stream, and with it the unit, may have changed
   // meanwhile.
-  if (request_.player.layout == "stacked") {
+  if (request_.player.layout == PlayedLayout::stacked) {
     const StackedImages images = codec().stack(frame, static_cast<std::uint32_t>(frames_.load()));
     deliver_images(images.range, images.amplitude, frame.timestamp_s);
     return;

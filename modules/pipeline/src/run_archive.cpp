@@ -27,7 +27,7 @@ void serialize(Archive& archive, tofmap::ImageF& image, unsigned) {
 
 template <class Archive>
 void serialize(Archive& archive, tofmap::FilterCount& count, unsigned) {
-  archive& count.name& count.reason& count.removed& count.corrected;
+  archive& count.filter& count.reason& count.removed& count.corrected;
 }
 
 template <class Archive>

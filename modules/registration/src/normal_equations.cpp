@@ -140,15 +140,15 @@ Observability observability(const NormalEquations& equations, double lever_m) {
 
 std::vector<int> degenerate_directions(const Observability& seen, const NormalEquations& equations,
                                        const Vector6d& prior_sigmas) {
-  std::vector<int> open;
+  std::vector<int> degenerate;
   for (int i = 0; i < seen.directions.cols(); ++i) {
     const Vector6d twist = seen.scale.cwiseProduct(seen.directions.col(i));
     const double of_prior = twist.cwiseQuotient(prior_sigmas).squaredNorm();
     const double of_surfaces =
         twist.dot((equations.information - 2 * equations.noise_induced) * twist);
-    if (of_surfaces < of_prior) open.push_back(i);
+    if (of_surfaces < of_prior) degenerate.push_back(i);
   }
-  return open;
+  return degenerate;
 }
 
 void remove_information(NormalEquations& equations, const Observability& seen,

@@ -44,9 +44,9 @@ class EdgeError {
     const Eigen::Map<const Quaternion> q_to(to_rotation);
     const Eigen::Map<const Vector> t_from(from_translation);
     const Eigen::Map<const Vector> t_to(to_translation);
-    const Quaternion turn =
+    const Quaternion rotation =
         q_from.conjugate() * q_to * rotation_.conjugate().template cast<Scalar>();
-    const Scalar wxyz[4] = {turn.w(), turn.x(), turn.y(), turn.z()};
+    const Scalar wxyz[4] = {rotation.w(), rotation.x(), rotation.y(), rotation.z()};
     Eigen::Matrix<Scalar, 6, 1> error;
     ceres::QuaternionToAngleAxis(wxyz, error.data());
     error.template tail<3>() =

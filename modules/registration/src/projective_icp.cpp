@@ -91,9 +91,9 @@ System build_system(const std::vector<Correspondence>& pairs, const Pose& pose, 
 
   system.seen = observability(system.equations, lever_m);
   const Vector6d sigmas = prior_sigmas(prior);
-  const std::vector<int> open = degenerate_directions(system.seen, system.equations, sigmas);
-  remove_information(system.equations, system.seen, open);
-  system.degenerate_directions = static_cast<int>(open.size());
+  const std::vector<int> degenerate = degenerate_directions(system.seen, system.equations, sigmas);
+  remove_information(system.equations, system.seen, degenerate);
+  system.degenerate_directions = static_cast<int>(degenerate.size());
   system.information = system.equations.information;
   add_prior(system.equations, twist_between(pose, prior.world_from_camera), sigmas);
   return system;
@@ -242,30 +242,25 @@ std::vector<OptionField<RegistrationOptions>> RegistrationOptions::fields() {
 }
 
 double deviation(const MotionPrior& prior, const Pose& world_from_camera) {
-  const double turn = rotation_angle_rad(prior.world_from_camera, world_from_camera);
-  const double step =
+  const double rotation_rad = rotation_angle_rad(prior.world_from_camera, world_from_camera);
+  const double translation_m =
       (prior.world_from_camera.translation() - world_from_camera.translation()).norm();
-  return std::max(turn / prior.rotation_sigma_rad, step / prior.translation_sigma_m);
+  return std::max(rotation_rad / prior.rotation_sigma_rad,
+                  translation_m / prior.translation_sigma_m);
 }
 
 bool succeeded(RegistrationStatus status) {
   return status == RegistrationStatus::converged || status == RegistrationStatus::iteration_limit;
 }
 
-const char* status_name(RegistrationStatus status) {
-  switch (status) {
-    case RegistrationStatus::converged:
-      return "converged";
-    case RegistrationStatus::iteration_limit:
-      return "iteration_limit";
-    case RegistrationStatus::few_correspondences:
-      return "few_correspondences";
-    case RegistrationStatus::low_overlap:
-      return "low_overlap";
-    case RegistrationStatus::low_inliers:
-      return "low_inliers";
-  }
-  return "unknown";
+std::span<const NamedValue<RegistrationStatus>> named_values(RegistrationStatus) {
+  static constexpr std::array<NamedValue<RegistrationStatus>, 5> statuses{
+      {{"converged", RegistrationStatus::converged},
+       {"iteration_limit", RegistrationStatus::iteration_limit},
+       {"few_correspondences", RegistrationStatus::few_correspondences},
+       {"low_overlap", RegistrationStatus::low_overlap},
+       {"low_inliers", RegistrationStatus::low_inliers}}};
+  return statuses;
 }
 
 RegistrationResult register_to_targets(const SurfaceCloud& source,

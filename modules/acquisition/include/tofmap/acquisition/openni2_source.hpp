@@ -8,39 +8,11 @@
 #include <string>
 
 #include <tofmap/acquisition/camera_calibration.hpp>
+#include <tofmap/acquisition/device_options.hpp>
 #include <tofmap/acquisition/frame_pairing.hpp>
 #include <tofmap/acquisition/frame_source.hpp>
-#include <tofmap/core/option_table.hpp>
 
 namespace tofmap {
-
-/// How a device delivers dual-frequency frames (docs/cameras.md). The images of tofmap's own
-/// devices carry a tag that describes them; except for `timeout_s`, the options are for images
-/// without a tag.
-struct DeviceOptions {
-  /// `stacked`: each image holds A above B. `alternating`: the images of A and B alternate. `auto`:
-  /// the tag decides; images without a tag are refused.
-  std::string layout = "auto";
-  /// Modulation frequency of image A in Hz, 0 … 1e9. 0: the device is asked for it.
-  double frequency_a_hz = 0;
-  /// Modulation frequency of image B in Hz, 0 … 1e9. 0: the device is asked for it.
-  double frequency_b_hz = 0;
-  /// What depth images hold. `z`: depth along the optical axis, OpenNI2's convention. `radial`:
-  /// range along the ray of each pixel.
-  std::string depth = "z";
-  /// Largest range in the scene in metres, 0 … 65.5. 0: unknown.
-  double max_range_m = 0;
-  /// The first image of an alternating device: `a` or `b`. `auto`: determined from the ranges,
-  /// since no range exceeds the wavelength of its image.
-  std::string first = "auto";
-  /// Time between two images of an alternating device in seconds, 0 … 10. 0: the inverse of the
-  /// device's frame rate.
-  double period_s = 0;
-  /// Longest time to wait for an image in seconds, 0.1 … 3600. The source ends after it.
-  double timeout_s = 5;
-
-  static std::vector<OptionField<DeviceOptions>> fields();
-};
 
 /// True if the text names a device or an .oni file rather than a folder: it contains "://" or ends
 /// in ".oni".

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/core/frame.hpp>
 
 namespace tofmap {
@@ -18,6 +19,11 @@ using WallDistances = std::map<int, double>;
 /// file and line, if a line has another form, a distance is not positive, or a frame is given
 /// twice. Throws InputError if the file cannot be read or has no such line.
 WallDistances read_wall_distances(const std::filesystem::path& file);
+
+/// Throws InputError, which names `file`, if a distance is farther than a wall can fill an image
+/// from (100 m), or if the recording does not have one of the frames.
+void check_wall_distances(const WallDistances& distances_m, const std::filesystem::path& file,
+                          const SequenceReader& recording);
 
 /// The radial ranges of a flat wall that fills most of the image, in metres. `distance_m` is the
 /// distance of the wall from the optical centre along its normal; the tilt of the wall is estimated

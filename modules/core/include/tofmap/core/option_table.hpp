@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -16,15 +17,16 @@
 
 namespace tofmap {
 
-/// Access by name to the value of an enumeration that is a bound option.
+/// Access by name to a bound option that is a value of an enumeration, or a list of such values.
 struct EnumReference {
-  std::function<std::string_view()> name;          ///< returns the name of the current value
-  std::function<bool(std::string_view name)> set;  ///< returns false if no value has that name
-  std::string choices;                             ///< "a | b | c"
+  std::function<std::string()> text;               ///< returns the current name or names
+  std::function<bool(std::string_view text)> set;  ///< returns false if no value has a given name
+  std::string allowed;                             ///< "a | b | c", "any of a, b, c, in any order"
 };
 
-/// A pointer to a member whose type is an enumeration with named values (named_value.hpp), for any
-/// such enumeration.
+/// A pointer to a member whose type is an enumeration with named values (named_value.hpp), or a
+/// std::vector of such an enumeration, for any such enumeration. The text of a list is the names
+/// of its values with blanks between them.
 template <class Struct>
 class EnumMember {
  public:
@@ -33,14 +35,30 @@ class EnumMember {
       Enum Struct::*member)  // NOLINT(google-explicit-constructor): used in field tables
       : bind_([member](Struct& options) {
           Enum* value = &(options.*member);
-          return EnumReference{.name = [value] { return name_of(*value); },
+          return EnumReference{.text = [value] { return std::string(name_of(*value)); },
                                .set =
                                    [value](std::string_view name) {
                                      const std::optional<Enum> found = find_named<Enum>(name);
                                      if (found) *value = *found;
                                      return found.has_value();
                                    },
-                               .choices = all_names<Enum>(" | ")};
+                               .allowed = all_names<Enum>(" | ")};
+        }) {}
+
+  template <class Enum>
+  requires std::is_enum_v<Enum> EnumMember(
+      std::vector<Enum> Struct::*member)  // NOLINT(google-explicit-constructor): as above
+      : bind_([member](Struct& options) {
+          std::vector<Enum>* values = &(options.*member);
+          return EnumReference{.text = [values] { return joined_names<Enum>(*values, " "); },
+                               .set =
+                                   [values](std::string_view names) {
+                                     std::optional<std::vector<Enum>> found =
+                                         find_all_named<Enum>(names);
+                                     if (found) *values = std::move(*found);
+                                     return found.has_value();
+                                   },
+                               .allowed = "any of " + all_names<Enum>(", ") + ", in any order"};
         }) {}
 
   /// Access to the member of `options`, which must outlive the result.
@@ -66,7 +84,6 @@ struct OptionField {
   double max = std::numeric_limits<double>::infinity();   ///< largest allowed value of a number
   std::string_view unit;                                  ///< empty if the option has no unit
   std::string_view meaning;                               ///< one line of help
-  std::string_view choices{};  ///< allowed values of a string, "a | b | c"; empty: any text
 };
 
 /// An option as text, for help and documentation.
@@ -104,7 +121,6 @@ class OptionTable {
       entry.max = field.max;
       entry.unit = field.unit;
       entry.meaning = field.meaning;
-      entry.choices = field.choices;
       std::visit(
           [&](const auto& member) {
             if constexpr (std::is_member_pointer_v<std::decay_t<decltype(member)>>) {
@@ -144,7 +160,6 @@ class OptionTable {
     double max = 0;
     std::string unit;
     std::string meaning;
-    std::string choices;
     std::variant<bool*, int*, double*, std::string*, EnumReference> value;
 
     std::string key() const { return group.empty() ? name : group + "." + name; }

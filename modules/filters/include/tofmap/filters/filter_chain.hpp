@@ -2,23 +2,44 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
+#include <span>
 #include <vector>
 
 #include <tofmap/core/camera.hpp>
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/modulation.hpp>
+#include <tofmap/core/named_value.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/core/range_image.hpp>
+#include <tofmap/filters/isolated_wrap_filter.hpp>
+#include <tofmap/filters/phasor_mean_filter.hpp>
+#include <tofmap/filters/plane_edge_filter.hpp>
+#include <tofmap/filters/smooth_filter.hpp>
+#include <tofmap/filters/step_edge_filter.hpp>
 
 namespace tofmap {
+
+/// The filters that can run after unwrapping, by the names that users give.
+enum class Filter {
+  amplitude,      ///< drop_low_amplitude()
+  confidence,     ///< drop_low_confidence()
+  phasor_mean,    ///< average_phasors()
+  isolated_wrap,  ///< mend_isolated_wraps()
+  jump_edge,      ///< drop_jump_edges()
+  step_edge,      ///< drop_steps()
+  plane_edge,     ///< drop_off_planes()
+  outlier,        ///< drop_outliers()
+  smooth,         ///< smooth_ranges()
+};
+
+std::span<const NamedValue<Filter>> named_values(Filter);
 
 /// Options of the filters that run after unwrapping (docs/filters.md). Each limit has an effect
 /// only if its filter is in `chain`.
 struct FilterOptions {
-  /// Names of the filters in the order in which they run, separated by white space. Allowed are the
-  /// names that filter_names() returns. No filter runs if the string is empty.
-  std::string chain = "amplitude confidence phasor_mean isolated_wrap plane_edge";
+  /// The filters in the order in which they run.
+  std::vector<Filter> chain = {Filter::amplitude, Filter::confidence, Filter::phasor_mean,
+                               Filter::isolated_wrap, Filter::plane_edge};
 
   /// `amplitude`: drops pixels whose weaker amplitude of both frequencies is below this, in the
   /// units of the camera, 0 … 1e9. 0 keeps all pixels.
@@ -29,14 +50,14 @@ struct FilterOptions {
   double min_confidence = 0;
 
   /// `phasor_mean`: averages only pixels whose range noise exceeds this fraction of λ_A, 0 … 1.
-  double min_phasor_noise_cycles = 0.1;
+  double min_phasor_noise_cycles = PhasorMeanLimits{}.min_noise_cycles;
 
   /// `phasor_mean`: largest radius of the averaging windows, 0 … 64 pixels. Values below 2 turn the
   /// filter off.
-  double max_phasor_radius_px = 16;
+  double max_phasor_radius_px = PhasorMeanLimits{}.max_radius_px;
 
   /// `isolated_wrap`: leaves regions alone that are larger than this fraction of the image, 0 … 1.
-  double max_isolated_share = 0.01;
+  double max_isolated_share = IsolatedWrapLimits{}.max_share;
 
   /// `jump_edge`: drops a pixel if the angle at its point, between the line to the optical centre
   /// and the line to a neighbouring point, exceeds this, 90 … 180 degrees. 180 drops no pixel.
@@ -48,31 +69,31 @@ struct FilterOptions {
 
   /// `step_edge`: steepest surface that is not taken for a step, as the angle of incidence of the
   /// ray, 0 … 89.9 degrees. Larger angles drop fewer pixels.
-  double max_step_incidence_deg = 80;
+  double max_step_incidence_deg = StepEdgeLimits{}.max_incidence_deg;
 
   /// `step_edge`: standard deviations of the range error that are added to the smallest height of a
   /// step, 0 … 100. Larger values drop fewer pixels.
-  double min_step_sigmas = 3;
+  double min_step_sigmas = StepEdgeLimits{}.min_sigmas;
 
   /// `plane_edge`: how far a pixel that is not at a step may lie off the planes around it, in
   /// standard deviations, 0 … 100. Smaller values drop more pixels.
-  double max_plane_sigmas = 3.2;
+  double max_plane_sigmas = PlaneEdgeLimits{}.max_sigmas;
 
   /// `plane_edge`: the limit for pixels at a step between two surfaces, in standard deviations,
   /// 0 … 100. Smaller values drop more flying pixels, and more pixels of surfaces.
-  double max_edge_sigmas = 1.5;
+  double max_edge_sigmas = PlaneEdgeLimits{}.max_edge_sigmas;
 
   /// `plane_edge`: deviation in depth from a plane that is always accepted, 0 … 10 m. It is added
   /// to the two limits above in quadrature.
-  double plane_tolerance_m = 0.03;
+  double plane_tolerance_m = PlaneEdgeLimits{}.tolerance_m;
 
   /// `smooth`: averages a pixel only with pixels that differ from it by fewer standard deviations
   /// than this, 0 … 100.
-  double max_smooth_sigmas = 3;
+  double max_smooth_sigmas = SmoothLimits{}.max_sigmas;
 
   /// `smooth`: difference in depth up to which pixels are always averaged, 0 … 10 m. It is added to
   /// the limit above in quadrature.
-  double smooth_tolerance_m = 0.005;
+  double smooth_tolerance_m = SmoothLimits{}.tolerance_m;
 
   /// `outlier`: drops points whose spacing to their neighbours exceeds the median of the image by
   /// more than this many standard deviations, 0 … 1000.
@@ -84,11 +105,11 @@ struct FilterOptions {
 /// The default chain, followed by `smooth`: for ranges that are the final result. Maps do not use
 /// it, because they fit planes to the ranges, which smooths better, and because noise that
 /// neighbouring pixels share would look like the shape of a surface.
-std::string smoothing_chain();
+std::vector<Filter> smoothing_chain();
 
 /// What one filter of the chain did.
 struct FilterCount {
-  std::string name;
+  Filter filter = Filter::amplitude;
   InvalidReason reason = InvalidReason::none;  ///< of the dropped pixels; none if it drops nothing
   int removed = 0;                             ///< number of pixels that were dropped
   int corrected = 0;                           ///< number of pixels whose wrap count was changed
@@ -99,13 +120,9 @@ struct FilterResult {
   std::vector<FilterCount> counts;  ///< in the order of the chain
 };
 
-/// The names of all filters, with `separator` between them.
-std::string filter_names(const std::string& separator);
-
-/// Applies the filters named in `options.chain`, in that order. Each filter sees the image that the
+/// Applies the filters of `options.chain`, in that order. Each filter sees the image that the
 /// previous filters left. A dropped pixel keeps the reason of the filter that dropped it. Throws
-/// UsageError if a name in the chain is not one of filter_names(), or if a filter finds that
-/// `image`, `frame` and `rays` differ in size.
+/// UsageError if a filter finds that `image`, `frame` and `rays` differ in size.
 FilterResult apply_filters(const RangeImage& image, const DualFrequencyFrame& frame,
                            const Modulation& modulation, const PixelRays& rays,
                            const FilterOptions& options);

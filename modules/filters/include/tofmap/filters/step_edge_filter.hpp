@@ -9,9 +9,10 @@ namespace tofmap {
 
 /// Limits of drop_steps().
 struct StepEdgeLimits {
-  /// Angle of incidence of the steepest surface that is not taken for a step. The default is 80°.
-  double max_incidence_rad = 1.396;
-  /// Standard deviations of the range errors of both pixels that a step must exceed in addition.
+  /// Angle of incidence of the steepest surface that is not taken for a step, degrees, 0 … 89.9.
+  double max_incidence_deg = 80;
+  /// Standard deviations of the range errors of both pixels that a step must exceed in addition,
+  /// 0 or more.
   double min_sigmas = 3;
 };
 
@@ -21,7 +22,7 @@ struct StepEdgeLimits {
 ///
 ///   T = tan α ψ min(r, r') + k √(σ² + σ'²)
 ///
-/// with α = `max_incidence_rad`, the angle ψ between the rays, and k = `min_sigmas`
+/// with α = `max_incidence_deg`, the angle ψ between the rays, and k = `min_sigmas`
 /// (docs/filters.md, equation 5). Neighbours that are invalid or outside the image are ignored. The
 /// result does not depend on the order of the pixels. Apply it after unwrapping. Throws UsageError
 /// if image and rays differ in size.

@@ -35,7 +35,7 @@ class MotionUncertainty {
   void reset();
 
   /// Rotates the covariance into new axes of the world.
-  void turn(const Eigen::Matrix3d& new_from_old);
+  void rotate(const Eigen::Matrix3d& new_from_old);
 
  private:
   friend class boost::serialization::access;

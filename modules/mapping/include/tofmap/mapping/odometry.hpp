@@ -9,6 +9,7 @@
 
 #include <tofmap/cloud/surface_cloud.hpp>
 #include <tofmap/core/camera.hpp>
+#include <tofmap/core/named_value.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/core/trajectory.hpp>
 #include <tofmap/mapping/keyframe.hpp>
@@ -61,8 +62,7 @@ enum class TrackingStatus {
   repeated,     ///< the frame repeats the one before it, and was not registered
 };
 
-/// The status as text, spelled like the enumerator.
-const char* status_name(TrackingStatus status);
+std::span<const NamedValue<TrackingStatus>> named_values(TrackingStatus);
 
 /// How a frame was tracked.
 struct TrackingResult {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <tofmap/cloud/point_file.hpp>
+#include <tofmap/core/named_value.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/core/trajectory.hpp>
 #include <tofmap/registration/cloud_icp.hpp>
@@ -52,8 +53,7 @@ enum class PairVerdict {
   disagrees,     ///< the pair contradicts the other pairs
 };
 
-/// The verdict as text, spelled like the enumerator.
-const char* verdict_name(PairVerdict verdict);
+std::span<const NamedValue<PairVerdict>> named_values(PairVerdict);
 
 /// Result of registering one cloud with another.
 struct CloudPair {

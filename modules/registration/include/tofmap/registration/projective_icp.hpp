@@ -81,8 +81,7 @@ enum class RegistrationStatus {
 
 /// Whether the pose may be used: true for `converged` and `iteration_limit`.
 bool succeeded(RegistrationStatus status);
-/// The status as text, spelled like the enumerator.
-const char* status_name(RegistrationStatus status);
+std::span<const NamedValue<RegistrationStatus>> named_values(RegistrationStatus);
 
 /// The pose that register_to_targets() found, and how well it fits.
 struct RegistrationResult {

@@ -18,10 +18,10 @@ struct WrapCountOptions {
   /// The assumptions about scenes.
   WrapCountPrior prior;
   /// Iterations of belief propagation at every pyramid level; at least 1.
-  int iterations = 3;
+  int iterations = UnwrapOptions{}.count_iterations;
   /// Largest number of pyramid levels, at least 1. Level s, counted from 0, has blocks of 2^s x 2^s
   /// pixels. Coarser levels are used only as far as the phase noise of the frame requires.
-  int scales = 3;
+  int scales = UnwrapOptions{}.scales;
 };
 
 /// A frame and the noise of its phases; both NaN where there is no return.

@@ -11,6 +11,7 @@
 #include <tofmap/core/range_error.hpp>
 #include <tofmap/unwrap/common/diagonal_layout.hpp>
 #include <tofmap/unwrap/common/residual_cost.hpp>
+#include <tofmap/unwrap/common/unwrap_options.hpp>
 
 namespace tofmap {
 
@@ -19,10 +20,10 @@ namespace tofmap {
 struct WrapCountPrior {
   /// ε of equation 11: probability that a pixel's residual comes from no surface; above 0 and below
   /// 1. A larger value gives the residual of a single pixel less weight.
-  double outlier_share = 0.4;
+  double outlier_share = UnwrapOptions{}.outlier_share;
   /// s of equation 12: typical difference between the true ranges of neighbouring pixels on one
   /// surface, metres, above 0.
-  double slope_m = 0.2;
+  double slope_m = UnwrapOptions{}.slope_m;
   /// e_0 of equation 13: probability that two neighbours of equal amplitude are on different
   /// surfaces; above 0 and below 1.
   double edge_share = 0.02;
@@ -30,10 +31,10 @@ struct WrapCountPrior {
   /// amount within ± R, all equally probable.
   double edge_reach_m = 25;
   /// Whether an edge between surfaces is more probable where the amplitude changes.
-  bool amplitude_edges = true;
+  bool amplitude_edges = UnwrapOptions{}.amplitude_edges;
   /// Whether the unary factors of mixed pixels are made nearly uniform, so that their neighbours
   /// decide their wrap counts. Needs amplitudes.
-  bool mixed_pixels = true;
+  bool mixed_pixels = UnwrapOptions{}.mixed_pixels;
 };
 
 /// The probabilities of the wrap counts of all pixels as a factor graph on the pixel grid

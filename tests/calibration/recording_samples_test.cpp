@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "support/sample_frames.hpp"
+#include "support/temporary_folder.hpp"
+
+#include <cmath>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tofmap/calibration/recording_samples.hpp>
+
+namespace tofmap {
+namespace {
+
+using testing::ElementsAre;
+
+/// Of the 35 pixels, two have no return at one of the frequencies, and one has no true range.
+constexpr std::size_t usable_pixels = 32;
+
+class RecordingSamplesTest : public testing::Test {
+ protected:
+  /// Frames with these indices of sample_frame(), so that equal indices give equal frames.
+  SequenceReader record(const std::vector<int>& indices) const {
+    SequenceWriter writer(folder_.path(), test::sample_sensor());
+    double timestamp_s = 1;
+    for (const int index : indices) {
+      DualFrequencyFrame frame = test::sample_frame(index);
+      frame.timestamp_s = timestamp_s++;
+      writer.add(frame);
+    }
+    return SequenceReader(folder_.path());
+  }
+
+  /// Every frame has the same reference; remembers which frames asked for it.
+  ReferenceRanges reference() {
+    return [this](const DualFrequencyFrame& frame) {
+      asked_.push_back(frame.index);
+      return std::make_optional(test::sample_range_truth());
+    };
+  }
+
+  test::TemporaryFolder folder_;
+  std::vector<int> asked_;
+};
+
+TEST_F(RecordingSamplesTest, AreTakenOfAllFrames) {
+  const RecordingSamples found = collect_samples(record({0, 1, 2, 3}), reference(), 1);
+  EXPECT_THAT(asked_, ElementsAre(0, 1, 2, 3));
+  EXPECT_EQ(found.samples.size(), 4 * usable_pixels);
+  EXPECT_EQ(found.frames, 4U);
+  EXPECT_EQ(found.read, 4);
+  EXPECT_EQ(found.first.size(), 4U);
+}
+
+TEST_F(RecordingSamplesTest, AreTakenOfEveryNthFrame) {
+  const RecordingSamples found = collect_samples(record({0, 1, 2, 3, 4, 5, 6}), reference(), 3);
+  EXPECT_THAT(asked_, ElementsAre(0, 3, 6));
+  EXPECT_EQ(found.read, 3);
+}
+
+TEST_F(RecordingSamplesTest, LeaveOutFramesThatRepeatTheOneBefore) {
+  const RecordingSamples found = collect_samples(record({0, 0, 1, 0, 0, 0}), reference(), 1);
+  EXPECT_THAT(asked_, ElementsAre(0, 2, 3));
+  EXPECT_EQ(found.repeated, 3U);
+  EXPECT_EQ(found.frames, 3U);
+  EXPECT_EQ(found.samples.size(), 3 * usable_pixels);
+}
+
+TEST_F(RecordingSamplesTest, CountDamagedFramesAndKeepTheFirstReason) {
+  const SequenceReader recording = record({0, 1, 2});
+  std::filesystem::resize_file(folder_.path() / "phase_a/000001.png", 10);
+  std::filesystem::resize_file(folder_.path() / "phase_b/000002.png", 10);
+  const RecordingSamples found = collect_samples(recording, reference(), 1);
+  EXPECT_EQ(found.read, 3);
+  EXPECT_EQ(found.damaged, 2);
+  EXPECT_EQ(found.frames, 1U);
+  EXPECT_THAT(found.first_damage, testing::HasSubstr("phase_a/000001.png"));
+}
+
+TEST_F(RecordingSamplesTest, LeaveOutFramesWithoutAReference) {
+  const ReferenceRanges only_of_frame_1 = [](const DualFrequencyFrame& frame) {
+    return frame.index == 1 ? std::make_optional(test::sample_range_truth()) : std::nullopt;
+  };
+  const RecordingSamples found = collect_samples(record({0, 1, 2}), only_of_frame_1, 1);
+  EXPECT_EQ(found.frames, 1U);
+  ASSERT_EQ(found.first.size(), 1U);
+  EXPECT_EQ(found.first[0].index, 1);
+}
+
+TEST_F(RecordingSamplesTest, EndWhenTheCallerWantsNoMore) {
+  const RecordingSamples found =
+      collect_samples(record({0, 1, 2, 3}), reference(), 1, [](int frame) { return frame < 2; });
+  EXPECT_EQ(found.frames, 2U);
+}
+
+TEST_F(RecordingSamplesTest, AreSpreadOverThePixelsOfLongRecordings) {
+  // 2 million samples are the limit: of 140000 frames of 35 pixels, every third pixel is used. The
+  // frames are not written: they count, but cannot be read.
+  record({0, 1, 2});
+  std::ofstream list(folder_.path() / "frames.txt", std::ios::app);
+  for (int i = 3; i < 140000; ++i) {
+    list << i + 1
+         << " phase_a/none.png phase_b/none.png amplitude_a/none.png amplitude_b/none.png\n";
+  }
+  list.close();
+  const RecordingSamples found = collect_samples(SequenceReader(folder_.path()), reference(), 1,
+                                                 [](int frame) { return frame < 3; });
+  ASSERT_EQ(found.frames, 3U);
+  // Three frames with three first pixels use each pixel once.
+  EXPECT_EQ(found.samples.size(), usable_pixels);
+}
+
+}  // namespace
+}  // namespace tofmap
