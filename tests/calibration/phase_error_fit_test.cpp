@@ -142,6 +142,18 @@ TEST(FitToResidual, FindsHarmonicsWithoutKnownRanges) {
   expect_harmonic_4(found.error_b, b);
 }
 
+TEST(FitToResidual, FindsAHarmonicOfSixCentimetres) {
+  const auto large = [](double wavelength_m) {
+    return PhaseError{.harmonics = {{4, 0.001 * wavelength_m, 0.012 * wavelength_m}}};
+  };
+  const PhaseError a = large(modulation.wavelength_a_m());
+  const PhaseError b = large(modulation.wavelength_b_m());
+  const PhaseErrorFit found =
+      fit_to_residual(samples_of(a, b, unknown_ranges), modulation, orders({4}));
+  // The slope of the error correlates the noise of residual and phase by 2 % of the harmonic.
+  EXPECT_NEAR(share_found(found, a), 1, 0.03);
+}
+
 TEST(FitToResidual, FindsByHowMuchOffsetsDiffer) {
   const PhaseErrorFit found =
       fit_to_residual(samples_of({.offset_m = 0.007}, {}, unknown_ranges), modulation, orders({4}));

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include "support/sample_frames.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <cmath>
@@ -79,6 +80,15 @@ TEST(WallRange, LeavesOutWhatStandsBeforeTheWall) {
   EXPECT_LT((*found - truth_m).abs().maxCoeff(), 0.01);
 }
 
+TEST(WallRange, IsFoundIfMoreThanHalfOfTheImageIsWall) {
+  const ImageF truth_m = wall_m(3, 0, 0);
+  for (const int rows : {32, 40}) {  // of 72
+    ImageF seen_m = truth_m;
+    for (int v = 0; v < rows; ++v) seen_m.row(v) = 0.5F + 0.03F * static_cast<float>(v);
+    EXPECT_EQ(wall_range(frame_of(seen_m, 0, 0.005), sensor(), 3).has_value(), rows < 36) << rows;
+  }
+}
+
 TEST(WallRange, IsNotFoundWhereThereIsNone) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> anything(0, 5);
@@ -121,6 +131,33 @@ TEST_F(WallDistancesFile, NamesTheLineThatIsWrong) {
   EXPECT_THAT(complaint("0 nan\n"), testing::HasSubstr("wall.txt:1"));
   EXPECT_THAT(complaint("# nothing\n"), testing::HasSubstr("no line"));
   EXPECT_THROW(read_wall_distances(folder_.path() / "none"), InputError);
+}
+
+/// What check_wall_distances() says of distances for a recording of two frames; "none" if nothing.
+std::string complaint_about(const WallDistances& distances_m) {
+  const test::TemporaryFolder folder;
+  {
+    SequenceWriter writer(folder.path(), test::sample_sensor());
+    for (int i = 0; i < 2; ++i) writer.add(test::sample_frame(i));
+  }
+  try {
+    check_wall_distances(distances_m, "wall.txt", SequenceReader(folder.path()));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(WallDistances, AreOfFramesThatTheRecordingHas) {
+  EXPECT_EQ(complaint_about({{0, 2.0}, {1, 100.0}}), "none");
+  EXPECT_EQ(complaint_about({}), "none");
+  EXPECT_THAT(complaint_about({{0, 2.0}, {2, 2.0}}),
+              testing::AllOf(testing::HasSubstr("wall.txt"), testing::HasSubstr("frame 2"),
+                             testing::HasSubstr("2 frames")));
+}
+
+TEST(WallDistances, AreMetres) {
+  EXPECT_THAT(complaint_about({{0, 100.5}}), testing::HasSubstr("are its distances metres?"));
 }
 
 }  // namespace

@@ -68,6 +68,26 @@ TEST(Projection, FollowsTheDistortionOfOpenCv) {
   EXPECT_NEAR(pixel->y(), 210 * -0.20370782 + 70, 1e-9);
 }
 
+/// Distortion coefficients one by one: in cameras that have all of them, the terms of one can hide
+/// those of another.
+class DistortionTerm : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(DistortionTerm, IsUndoneOverTheWholeImage) {
+  CameraModel camera = plain_camera();
+  camera.distortion[GetParam()] = GetParam() == 2 || GetParam() == 3 ? 0.05 : 0.2;
+  for (int v = 0; v < camera.height_px; v += 13) {
+    for (int u = 0; u < camera.width_px; u += 7) {
+      const Eigen::Vector3d ray = pixel_ray(camera, u, v);
+      ASSERT_TRUE(ray.allFinite()) << u << ", " << v;
+      const auto pixel = project(camera, ray);
+      ASSERT_TRUE(pixel) << u << ", " << v;
+      EXPECT_NEAR((*pixel - Eigen::Vector2d(u, v)).norm(), 0, 1e-9) << u << ", " << v;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DistortionTerm, testing::Range(std::size_t{0}, std::size_t{5}));
+
 TEST(Projection, IsEmptyForPointsNotInFrontOfTheCamera) {
   EXPECT_FALSE(project(plain_camera(), {0, 0, 0}));
   EXPECT_FALSE(project(plain_camera(), {1, 1, -2}));

@@ -93,6 +93,24 @@ TEST(ModulationValidation, RefusesWhatIsNoFrequency) {
   EXPECT_THROW(validate(Modulation{nan, 31e6}), InputError);
 }
 
+TEST(ModulationValidation, RefusesAFrequencyThatIsNotFinite) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  for (const Modulation& wrong : {Modulation{infinite, 31e6}, Modulation{29e6, infinite}}) {
+    try {
+      validate(wrong);
+      FAIL() << "accepted";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("must be positive"));
+    }
+  }
+}
+
+TEST(ModulationValidation, TakesFrequenciesThatDifferByAMillionth) {
+  EXPECT_THROW(validate(Modulation{29e6, 29e6 * (1 + 0.9e-6)}), InputError);
+  EXPECT_THROW(validate(Modulation{29e6, 29e6 * (1 - 0.9e-6)}), InputError);
+  EXPECT_NO_THROW(validate(Modulation{29e6, 29e6 * (1 + 1.1e-6)}));
+}
+
 TEST(ModulationValidation, TakesEitherOrder) {
   EXPECT_NO_THROW(validate(paper));
   EXPECT_NO_THROW(validate(Modulation{31e6, 29e6}));

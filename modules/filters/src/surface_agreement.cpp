@@ -140,7 +140,7 @@ TOFMAP_VECTOR_CLONES void find_steps(int pixels, const DirectionRow& one_,
         one_to_other * one_to_other > tolerated(9 * one_variance + 4 * one_second + other_variance);
     const bool other_ends = other_to_one * other_to_one >
                             tolerated(9 * other_variance + 4 * other_second + one_variance);
-    sectors[i] |= differ & one_ends & other_ends ? bit : 0U;
+    sectors[i] |= (differ & one_ends & other_ends) ? bit : 0U;
   }
 }
 
