@@ -24,6 +24,7 @@
 #include <tofmap/calibration/recording_samples.hpp>
 #include <tofmap/calibration/wall_reference.hpp>
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/image.hpp>
 #include <tofmap/core/text.hpp>
 #include <tofmap/diagnostics/residual_survey.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
@@ -54,7 +55,7 @@ CalibrationReference reference_of(const CalibrationOptions& options, const Seque
   return truth.has_ranges() ? CalibrationReference::truth : CalibrationReference::residual;
 }
 
-/// Where the reference ranges of frames come from. The arguments must outlive the result.
+/// The function that returns the reference ranges of a frame. `source` and `truth` must outlive it.
 ReferenceRanges reference_ranges(CalibrationReference reference, const SequenceReader& source,
                                  const RecordedTruth& truth, const ProgramOptions& options) {
   if (reference == CalibrationReference::truth) {
@@ -105,7 +106,7 @@ void print_samples(const RecordingSamples& collected, const SensorModel& sensor)
     std::printf("warning: %s left out for repeating the frame before\n",
                 counted(collected.repeated, "frame").c_str());
   }
-  const std::optional<ResidualSurvey> residual = survey_residual(collected.first, sensor);
+  const std::optional<ResidualSurvey> residual = survey_residual(collected.first_frames, sensor);
   if (const auto warning = residual ? pairing_warning(*residual) : std::nullopt)
     print_warnings({*warning});
   constexpr std::size_t some = 5;

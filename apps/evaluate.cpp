@@ -178,7 +178,8 @@ int run_evaluate(const EvaluateArguments& arguments) {
   ProgramOptions options;
   OptionTable table = arguments.common.resolve("evaluate", options);
   arguments.recording.apply(table);
-  const std::vector<UnwrapMethod> methods = chosen_methods(options.evaluation);
+  check_methods(options.evaluation);
+  const std::vector<UnwrapMethod>& methods = options.evaluation.methods;
   const bool down_to_map = options.evaluation.down_to == EvaluatedStage::map;
   const bool quiet = arguments.common.quiet;
 

@@ -4,9 +4,10 @@
 #
 # Checks the format of all files with clang-format, and sources with clang-tidy:
 #   scripts/lint.sh [--since COMMIT]   those that changed since a commit (default: the last one),
-#   scripts/lint.sh --sample N         N of those, another choice for each commit,
+#   scripts/lint.sh --sample N         N sources, first those that the last commit changed, then
+#                                      any, another choice for each commit (CI does this),
 #   scripts/lint.sh --all              all sources, more than an hour of processor time,
-#   scripts/lint.sh --format           none: the format alone (CI does this).
+#   scripts/lint.sh --format           none: the format alone.
 # BUILD_DIR is a configured build folder, whose compile_commands.json is used (default: build).
 # Headers are checked with the sources of their module.
 set -euo pipefail
@@ -55,11 +56,16 @@ else
   echo "scripts/lint.sh: there is no commit '$since'" >&2
   exit 2
 fi
-if ((most > 0 && ${#sources[@]} > most)); then
-  mapfile -t sources < <(printf '%s\n' "${sources[@]}" | python3 -c '
+if ((most > 0)); then
+  mapfile -t sources < <({ printf '%s\n' "${sources[@]}"; echo; tracked; } | python3 -c '
 import random, sys
 commit, most = sys.argv[1], int(sys.argv[2])
-print("\n".join(random.Random(commit).sample(sys.stdin.read().split(), most)))
+changed, tracked = (part.split() for part in sys.stdin.read().split("\n\n"))
+others = [source for source in tracked if source not in changed]
+choice = random.Random(commit)
+choice.shuffle(changed)
+choice.shuffle(others)
+print("\n".join((changed + others)[:most]))
 ' "$(git rev-parse HEAD)" "$most")
 fi
 if ((${#sources[@]} == 0)); then

@@ -2,15 +2,30 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Installs missing packages, builds tofmap with the address and undefined-behaviour sanitizers, and
-# runs all tests. BUILD_DIR is the build folder (default: build-sanitize).
+# Installs missing packages, builds tofmap with Clang, warnings as errors and sanitizers, and runs
+# tests under them:
+#   scripts/sanitize.sh          address and undefined behaviour, all tests;
+#   scripts/sanitize.sh thread   threads, the tests of the modules that have threads of their own.
+# The thread sanitizer does not see OpenMP's synchronisation and would report false races, so OpenMP
+# runs with one thread. The presets of CMakePresets.json have the flags. Leak detection is off: VTK
+# and its drivers keep memory until the end of the process.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 bash scripts/packages.sh --tests
-build=${BUILD_DIR:-build-sanitize}
 
-cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1" \
-  -DTOFMAP_SANITIZE=address,undefined -DTOFMAP_PRECOMPILE_HEADERS=ON
-cmake --build "$build"
-# Leak detection is off: VTK and its drivers keep memory until the end of the process.
-ASAN_OPTIONS=detect_leaks=0 ctest --test-dir "$build" --output-on-failure -j "$(nproc)"
+case "${1:-}" in
+  "")
+    cmake --preset sanitize
+    cmake --build --preset sanitize
+    ctest --preset sanitize -j "$(nproc)"
+    ;;
+  thread)
+    cmake --preset sanitize-thread
+    cmake --build --preset sanitize-thread
+    ctest --preset sanitize-thread -j "$(nproc)"
+    ;;
+  *)
+    echo "usage: scripts/sanitize.sh [thread]" >&2
+    exit 2
+    ;;
+esac

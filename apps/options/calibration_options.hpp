@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <tofmap/calibration/phase_error_fit.hpp>
 #include <tofmap/core/option_table.hpp>
 
 namespace tofmap::app {
@@ -45,7 +46,7 @@ struct CalibrationOptions {
 
   /// Pixels whose error (for reference "residual": whose residual) differs from the median by more
   /// than this are outliers, unless noise explains the difference. Metres, 0.001 … 1.
-  double max_error_m = 0.15;
+  double max_error_m = PhaseErrorFitOptions{}.max_error_m;
 
   static std::vector<OptionField<CalibrationOptions>> fields();
 };

@@ -5,8 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
-#include <sstream>
+#include <string>
 
 #include <tofmap/core/error.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
@@ -21,33 +20,24 @@ std::span<const NamedValue<EvaluatedStage>> named_values(EvaluatedStage) {
 
 std::vector<OptionField<EvaluationOptions>> EvaluationOptions::fields() {
   using O = EvaluationOptions;
-  static const std::string methods_meaning =
-      "methods to compare, separated by spaces: " + all_names<UnwrapMethod>(", ");
   return {
-      {"methods", &O::methods, 0, 0, "", methods_meaning},
+      {"methods", &O::methods, 0, 0, "", "the unwrapping methods to compare, each once"},
       {"down_to", &O::down_to, 0, 0, "", "last stage to compare"},
   };
 }
 
-std::vector<UnwrapMethod> chosen_methods(const EvaluationOptions& options) {
-  std::vector<UnwrapMethod> methods;
-  std::istringstream words(options.methods);
-  for (std::string name; words >> name;) {
-    const std::optional<UnwrapMethod> method = find_named<UnwrapMethod>(name);
-    if (!method) {
-      throw UsageError("option evaluation.methods: '" + name +
-                       "' is not a method; allowed: " + all_names<UnwrapMethod>(" "));
+void check_methods(const EvaluationOptions& options) {
+  const std::vector<UnwrapMethod>& methods = options.methods;
+  for (auto method = methods.begin(); method != methods.end(); ++method) {
+    if (std::find(methods.begin(), method, *method) != method) {
+      throw UsageError("option evaluation.methods: '" + std::string(name_of(*method)) +
+                       "' is named twice");
     }
-    if (std::ranges::find(methods, *method) != methods.end()) {
-      throw UsageError("option evaluation.methods: '" + name + "' is named twice");
-    }
-    methods.push_back(*method);
   }
   if (methods.empty()) {
     throw UsageError("option evaluation.methods: is empty; allowed: " +
                      all_names<UnwrapMethod>(" "));
   }
-  return methods;
 }
 
 }  // namespace tofmap::app

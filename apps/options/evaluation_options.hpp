@@ -3,7 +3,6 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include <tofmap/core/option_table.hpp>
@@ -17,8 +16,10 @@ std::span<const NamedValue<EvaluatedStage>> named_values(EvaluatedStage);
 
 /// What `evaluate` compares, group `evaluation`.
 struct EvaluationOptions {
-  /// Names of the unwrapping methods to compare, separated by spaces.
-  std::string methods = "none pixel single paper jump joint";
+  /// The unwrapping methods to compare, each once.
+  std::vector<UnwrapMethod> methods = {UnwrapMethod::none,   UnwrapMethod::pixel,
+                                       UnwrapMethod::single, UnwrapMethod::paper,
+                                       UnwrapMethod::jump,   UnwrapMethod::joint};
 
   /// The last stage to compare.
   EvaluatedStage down_to = EvaluatedStage::map;
@@ -26,8 +27,7 @@ struct EvaluationOptions {
   static std::vector<OptionField<EvaluationOptions>> fields();
 };
 
-/// The methods that `options.methods` names, in the order given. Throws UsageError if a name is
-/// unknown or is given twice, or if there are none.
-std::vector<UnwrapMethod> chosen_methods(const EvaluationOptions& options);
+/// Throws UsageError if no method is to be compared, or one twice.
+void check_methods(const EvaluationOptions& options);
 
 }  // namespace tofmap::app

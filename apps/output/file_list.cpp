@@ -7,7 +7,6 @@
 #include <array>
 #include <charconv>
 #include <fstream>
-#include <ranges>
 #include <vector>
 
 #include <boost/crc.hpp>
@@ -151,7 +150,8 @@ bool FileList::remove_from(const fs::path& folder) const {
   }
   fs::remove(folder / file_name, ignored);
   // In order of name, folders follow those that contain them. Folders that are not empty stay.
-  for (const fs::path& inner : folders | std::views::reverse) fs::remove(inner, ignored);
+  std::ranges::reverse(folders);
+  for (const fs::path& inner : folders) fs::remove(inner, ignored);
   fs::remove(folder, ignored);
   return !fs::exists(fs::symlink_status(folder, ignored));
 }

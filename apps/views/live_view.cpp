@@ -85,7 +85,7 @@ void LiveView::show_result(const RoomMap& map) {
 /// in size, since it is uncertain while the map is small, but not after the user has rotated the
 /// view.
 void LiveView::level(const Snapshot& snapshot) {
-  if (window_->was_turned() || snapshot.surface.size() < 2 * levelled_points_) {
+  if (window_->was_moved() || snapshot.surface.size() < 2 * levelled_points_) {
     frame_.box_m = gravity_aligned_box(snapshot.surface, frame_.aligned_from_map);
     return;
   }
@@ -103,7 +103,7 @@ void LiveView::show(const Snapshot& snapshot) {
   }
   window_->show(drawing);
   window_->set_text(snapshot.status, help);
-  if (!window_->was_turned()) window_->look_from(viewpoint_outside(frame_.box_m));
+  if (!window_->was_moved()) window_->look_from(viewpoint_outside(frame_.box_m));
 }
 
 void LiveView::handle_events() {

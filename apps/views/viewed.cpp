@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <ranges>
 
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/text.hpp>
@@ -107,11 +106,12 @@ std::unique_ptr<Viewed> view_evaluation(const ViewRequest& request, std::vector<
   if (!request.method.empty()) {
     const auto first = std::ranges::find(files, request.method, &MapFile::method);
     if (first == files.end()) {
+      std::vector<std::string> methods;
+      for (const MapFile& file : files) methods.push_back(file.method);
       throw UsageError("--method " + request.method + ": " + request.path.string() +
-                       " holds the maps of " +
-                       joined(std::views::transform(files, &MapFile::method), ", "));
+                       " holds the maps of " + joined(methods, ", "));
     }
-    std::ranges::rotate(files, first);
+    std::rotate(files.begin(), first, files.end());
   }
   return view_maps(files, request.cameras);
 }

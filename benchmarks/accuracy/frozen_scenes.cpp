@@ -54,10 +54,10 @@ Scene attic() {
     add_beam(mesh, {x, width - 0.4, eaves}, {x, width / 2, ridge - 0.35}, 0.14, 0.45);
     add_beam(mesh, {x, 1.9, 2.5}, {x, width - 1.9, 2.5}, 0.16, 0.45);
   }
-  add_turned_box(mesh, {6.4, 3.6, 0}, {7.2, 4.4, 4.4}, 0.3, 0.3);
-  add_turned_box(mesh, {11.0, 5.2, 0}, {12.2, 6.0, 1.0}, 0.9, 0.8);
-  add_turned_box(mesh, {3.0, 1.2, 0}, {4.4, 1.9, 0.7}, 2.0, 0.15);
-  add_turned_box(mesh, {9.4, 1.0, 0}, {10.0, 1.8, 1.4}, 0.4, 0.55);
+  add_rotated_box(mesh, {6.4, 3.6, 0}, {7.2, 4.4, 4.4}, 0.3, 0.3);
+  add_rotated_box(mesh, {11.0, 5.2, 0}, {12.2, 6.0, 1.0}, 0.9, 0.8);
+  add_rotated_box(mesh, {3.0, 1.2, 0}, {4.4, 1.9, 0.7}, 2.0, 0.15);
+  add_rotated_box(mesh, {9.4, 1.0, 0}, {10.0, 1.8, 1.4}, 0.4, 0.55);
   add_cylinder(mesh, {2.2, 6.4, 0}, 0.35, 1.2, 0.1);
   scene.path = CameraPath(
       {look_at({1.2, 4.0, 1.5}, {12, 4.6, 1.4}), look_at({4.0, 3.0, 1.5}, {13, 6.0, 1.2}),
@@ -119,9 +119,9 @@ Scene workshop() {
   add_cylinder(mesh, {1.0, 4.4, 0}, 0.6, 2.2, 0.9);
   add_cylinder(mesh, {2.4, 4.7, 0}, 0.4, 1.8, 0.15);
   add_cylinder(mesh, {6.6, 0.9, 0}, 0.5, 2.6, 0.5);
-  add_turned_box(mesh, {3.2, 2.4, 0}, {4.4, 3.2, 1.1}, 0.5, 0.35);
-  add_turned_box(mesh, {5.6, 4.2, 0}, {6.8, 4.9, 1.9}, 0.15, 0.1);
-  add_turned_box(mesh, {0.4, 0.4, 0}, {2.6, 1.0, 0.9}, 0.05, 0.75);
+  add_rotated_box(mesh, {3.2, 2.4, 0}, {4.4, 3.2, 1.1}, 0.5, 0.35);
+  add_rotated_box(mesh, {5.6, 4.2, 0}, {6.8, 4.9, 1.9}, 0.15, 0.1);
+  add_rotated_box(mesh, {0.4, 0.4, 0}, {2.6, 1.0, 0.9}, 0.05, 0.75);
   add_box(mesh, {3.6, 0.0, 1.2}, {5.2, 0.35, 2.0}, 0.05);
   for (double x = 3.3; x < 5.4; x += 0.3) add_cylinder(mesh, {x, 5.3, 0.9}, 0.04, 1.2, 0.7);
   scene.path =

@@ -150,7 +150,7 @@ TEST(FitToResidual, FindsAHarmonicOfSixCentimetres) {
   const PhaseError b = large(modulation.wavelength_b_m());
   const PhaseErrorFit found =
       fit_to_residual(samples_of(a, b, unknown_ranges), modulation, orders({4}));
-  // The slope of the error correlates the noise of residual and phase by 2 % of the harmonic.
+  // The noise of a phase also changes the error at that phase, which biases the harmonic by 2 %.
   EXPECT_NEAR(share_found(found, a), 1, 0.03);
 }
 
@@ -159,7 +159,7 @@ TEST(FitToResidual, FindsByHowMuchOffsetsDiffer) {
       fit_to_residual(samples_of({.offset_m = 0.007}, {}, unknown_ranges), modulation, orders({4}));
   EXPECT_NEAR(found.offset_m.value, 0.007, 3e-4);
   EXPECT_LT(found.offset_m.sigma, 2e-3);
-  EXPECT_EQ(found.error_a.offset_m, 0) << "motion may have feigned it";
+  EXPECT_EQ(found.error_a.offset_m, 0) << "motion may have caused it";
 }
 
 TEST(FitToResidual, FindsNothingWhereThereIsNothing) {

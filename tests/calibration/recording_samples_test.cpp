@@ -5,12 +5,18 @@
 #include "support/temporary_folder.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tofmap/calibration/recording_samples.hpp>
+#include <tofmap/core/error.hpp>
 
 namespace tofmap {
 namespace {
@@ -34,7 +40,7 @@ class RecordingSamplesTest : public testing::Test {
     return SequenceReader(folder_.path());
   }
 
-  /// Every frame has the same reference; remembers which frames asked for it.
+  /// Every frame has the same reference; records the frames that it was called for.
   ReferenceRanges reference() {
     return [this](const DualFrequencyFrame& frame) {
       asked_.push_back(frame.index);
@@ -46,16 +52,16 @@ class RecordingSamplesTest : public testing::Test {
   std::vector<int> asked_;
 };
 
-TEST_F(RecordingSamplesTest, AreTakenOfAllFrames) {
+TEST_F(RecordingSamplesTest, AreTakenFromAllFrames) {
   const RecordingSamples found = collect_samples(record({0, 1, 2, 3}), reference(), 1);
   EXPECT_THAT(asked_, ElementsAre(0, 1, 2, 3));
   EXPECT_EQ(found.samples.size(), 4 * usable_pixels);
   EXPECT_EQ(found.frames, 4U);
   EXPECT_EQ(found.read, 4);
-  EXPECT_EQ(found.first.size(), 4U);
+  EXPECT_EQ(found.first_frames.size(), 4U);
 }
 
-TEST_F(RecordingSamplesTest, AreTakenOfEveryNthFrame) {
+TEST_F(RecordingSamplesTest, AreTakenFromEveryNthFrame) {
   const RecordingSamples found = collect_samples(record({0, 1, 2, 3, 4, 5, 6}), reference(), 3);
   EXPECT_THAT(asked_, ElementsAre(0, 3, 6));
   EXPECT_EQ(found.read, 3);
@@ -86,8 +92,26 @@ TEST_F(RecordingSamplesTest, LeaveOutFramesWithoutAReference) {
   };
   const RecordingSamples found = collect_samples(record({0, 1, 2}), only_of_frame_1, 1);
   EXPECT_EQ(found.frames, 1U);
-  ASSERT_EQ(found.first.size(), 1U);
-  EXPECT_EQ(found.first[0].index, 1);
+  ASSERT_EQ(found.first_frames.size(), 1U);
+  EXPECT_EQ(found.first_frames[0].index, 1);
+}
+
+TEST_F(RecordingSamplesTest, KeepTheFirstTwelveFrames) {
+  std::vector<int> indices(14);
+  std::iota(indices.begin(), indices.end(), 0);
+  const RecordingSamples found = collect_samples(record(indices), reference(), 1);
+  EXPECT_EQ(found.frames, 14U);
+  ASSERT_EQ(found.first_frames.size(), 12U);
+  EXPECT_EQ(found.first_frames.back().index, 11);
+}
+
+TEST_F(RecordingSamplesTest, NeedAStepOfAFrameAndReferencesOfTheImagesSize) {
+  const SequenceReader recording = record({0, 1});
+  EXPECT_THROW(collect_samples(recording, reference(), 0), UsageError);
+  const ReferenceRanges too_small = [](const DualFrequencyFrame&) {
+    return std::make_optional<ImageF>(ImageF::Constant(4, 7, 1));
+  };
+  EXPECT_THROW(collect_samples(recording, too_small, 1), UsageError);
 }
 
 TEST_F(RecordingSamplesTest, EndWhenTheCallerWantsNoMore) {
@@ -96,20 +120,35 @@ TEST_F(RecordingSamplesTest, EndWhenTheCallerWantsNoMore) {
   EXPECT_EQ(found.frames, 2U);
 }
 
-TEST_F(RecordingSamplesTest, AreSpreadOverThePixelsOfLongRecordings) {
-  // 2 million samples are the limit: of 140000 frames of 35 pixels, every third pixel is used. The
-  // frames are not written: they count, but cannot be read.
-  record({0, 1, 2});
-  std::ofstream list(folder_.path() / "frames.txt", std::ios::app);
-  for (int i = 3; i < 140000; ++i) {
+/// The recording of three frames that `folder` holds, with missing frames appended up to `frames`:
+/// these count, but cannot be read.
+void append_missing_frames(const std::filesystem::path& folder, int frames) {
+  std::ofstream list(folder / "frames.txt", std::ios::app);
+  for (int i = 3; i < frames; ++i) {
     list << i + 1
          << " phase_a/none.png phase_b/none.png amplitude_a/none.png amplitude_b/none.png\n";
   }
-  list.close();
+}
+
+TEST_F(RecordingSamplesTest, AreSpreadOverThePixelsOfLongRecordings) {
+  // 2 million samples are the limit: of 140000 frames of 35 pixels, every third pixel is used.
+  record({0, 1, 2});
+  append_missing_frames(folder_.path(), 140000);
   const RecordingSamples found = collect_samples(SequenceReader(folder_.path()), reference(), 1,
                                                  [](int frame) { return frame < 3; });
   ASSERT_EQ(found.frames, 3U);
   // Three frames with three first pixels use each pixel once.
+  EXPECT_EQ(found.samples.size(), usable_pixels);
+}
+
+TEST_F(RecordingSamplesTest, AreSpreadOverThePixelsIfFramesAreLeftOutAsWell) {
+  // Of 115000 frames every other is used: 57500 frames of 35 pixels, every second of them. With
+  // the frame's index, the first pixel would always be an even one.
+  record({0, 1, 2});
+  append_missing_frames(folder_.path(), 115000);
+  const RecordingSamples found = collect_samples(SequenceReader(folder_.path()), reference(), 2,
+                                                 [](int frame) { return frame < 3; });
+  ASSERT_EQ(found.frames, 2U);
   EXPECT_EQ(found.samples.size(), usable_pixels);
 }
 

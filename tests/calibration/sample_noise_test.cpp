@@ -46,7 +46,7 @@ TEST(SampleNoise, OfEquallyNoisyValuesIsAllOfTheirSpread) {
   EXPECT_EQ(found.floor_m, 0.001);
 }
 
-TEST(SampleNoise, OfAQuarterMoreNoiseIsNotSeparated) {
+TEST(SampleNoise, OfUpToHalfMoreNoiseIsNotSeparated) {
   // The noisiest quarter has 1.4 times the noise of the least noisy one, below the ratio of 1.5.
   const SampleNoise found = estimate_noise(values_of(0.004, 0.02, 1, 1.52));
   EXPECT_EQ(found.floor_m, 0.001);

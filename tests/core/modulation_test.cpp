@@ -105,7 +105,7 @@ TEST(ModulationValidation, RefusesAFrequencyThatIsNotFinite) {
   }
 }
 
-TEST(ModulationValidation, TakesFrequenciesThatDifferByAMillionth) {
+TEST(ModulationValidation, NeedsFrequenciesToDifferByAMillionth) {
   EXPECT_THROW(validate(Modulation{29e6, 29e6 * (1 + 0.9e-6)}), InputError);
   EXPECT_THROW(validate(Modulation{29e6, 29e6 * (1 - 0.9e-6)}), InputError);
   EXPECT_NO_THROW(validate(Modulation{29e6, 29e6 * (1 + 1.1e-6)}));

@@ -56,7 +56,7 @@ TEST(KeyframeGraph, HoldsAtLeastTheKeyframeItself) {
   KeyframeGraph graph;
   graph.add({0, 0, 0, at(3), nullptr});
   EXPECT_EQ(ids(graph.around(0, at(0), 1, {1, 1})), (std::vector<int>{0}));
-  graph.place(0, at(4));
+  graph.set_pose(0, at(4));
   EXPECT_EQ(graph[0].world_from_camera.translation().x(), 4);
 }
 

@@ -36,7 +36,7 @@ Keyframe keyframe(int id, const Pose& truth, const Pose& believed) {
 class FindLoop : public testing::Test {
  protected:
   FindLoop() {
-    options_.min_gap = 1;
+    options_.min_keyframes = 1;
     keyframes_.push_back(keyframe(0, old_truth_, old_truth_));
     keyframes_.push_back(keyframe(1, new_truth_, drift_ * new_truth_));
   }
@@ -68,7 +68,7 @@ TEST_F(FindLoop, MeasuresTheMotionSinceAPlaceSeenBefore) {
 }
 
 TEST_F(FindLoop, PassesOverKeyframesThatWereJustThere) {
-  options_.min_gap = 2;
+  options_.min_keyframes = 2;
   EXPECT_EQ(find().from, -1);
 }
 
@@ -107,7 +107,7 @@ class FindLoopFarOff : public testing::Test {
   FindLoopFarOff() {
     for (int id = 0; id < 4; ++id) add(100 + 2 * id, 0, Pose::Identity());
     add(103, path_m_, moved_by({0, 0.1, 0.02}, {0.7, 0.4, -0.3}));
-    options_.min_gap = 1;
+    options_.min_keyframes = 1;
   }
 
   void add(int frame, double path_m, const Pose& drift) {
@@ -172,7 +172,7 @@ class Turning : public testing::Test {
 
   Vector3d box_min_{-1.0, -0.8, -1.1};
   Vector3d box_max_{1.1, 0.9, 1.2};
-  LoopOptions loops_{.min_gap = 15};
+  LoopOptions loops_{.min_keyframes = 15};
 };
 
 /// How far the frame is off at the end, from where the path began.

@@ -65,7 +65,7 @@ TEST(MotionUncertainty, OfVelocityEndsWithASecondKnownPose) {
   EXPECT_LT(std::sqrt(uncertainty.of_pose()(3, 3)), 1.1 * translation_sigma);
 }
 
-TEST(MotionUncertainty, TurnsWithTheWorld) {
+TEST(MotionUncertainty, RotatesWithTheWorld) {
   MotionUncertainty uncertainty(rotation_sigma, translation_sigma);
   Covariance information = Covariance::Zero();
   information(3, 3) = 1e6;

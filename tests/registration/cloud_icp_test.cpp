@@ -102,7 +102,7 @@ TEST(Orient, RefusesTooFewPoints) {
 PointPair some_pair() {
   PointPair pair;
   pair.point_m = {1, -2, 0.5};
-  pair.gap_m = {0.02, 0.01, -0.03};
+  pair.difference_m = {0.02, 0.01, -0.03};
   pair.information = plane_to_plane_information(Eigen::Vector3d(1, 2, 2) / 3,
                                                 Eigen::Vector3d(2, 1, 2) / 3, 0.01, 0.1);
   return pair;
@@ -110,7 +110,7 @@ PointPair some_pair() {
 
 TEST(GapJacobian, IsThatOfNumericDifferences) {
   const PointPair pair = some_pair();
-  const auto jacobian = gap_jacobian(pair);
+  const auto jacobian = difference_jacobian(pair);
   constexpr double step = 1e-6;
   for (int i = 0; i < 6; ++i) {
     Vector6d twist = Vector6d::Zero();
@@ -136,8 +136,8 @@ TEST(CloudEquations, HaveTheGradientOfTheRobustCost) {
   // Geman and McClure's ρ(d) = ½ d² / (1 + d²/w²), whose weight ρ'(d)/d is 1 / (1 + d²/w²)².
   const auto cost = [&](const Vector6d& twist) {
     PointPair moved = pair;
-    moved.gap_m += pose_from_twist(twist) * pair.point_m - pair.point_m;
-    const double squared = moved.deviation() * moved.deviation();
+    moved.difference_m += pose_from_twist(twist) * pair.point_m - pair.point_m;
+    const double squared = moved.mahalanobis_distance() * moved.mahalanobis_distance();
     return 0.5 * squared / (1 + squared / (width * width));
   };
   const NormalEquations equations = build_equations(std::vector<PointPair>{pair}, width);

@@ -51,7 +51,7 @@ TEST(RayScene, InterpolatesReflectanceBetweenVertices) {
 
 TEST(RayScene, LetsNoRayOutOfAClosedBox) {
   TriangleMesh mesh;
-  add_turned_box(mesh, {-2, -3, -1}, {2, 3, 1}, 0.3, 0.5);
+  add_rotated_box(mesh, {-2, -3, -1}, {2, 3, 1}, 0.3, 0.5);
   const RayScene scene(mesh);
   std::mt19937 random(1);
   std::normal_distribution<double> normal;

@@ -208,6 +208,14 @@ FrequencyFit fit_frequency(std::span<const RangeSample> all, double wavelength_m
 void append_range_samples(const DualFrequencyFrame& frame, const SensorModel& sensor,
                           const ImageF& reference_m, int first, int stride,
                           std::vector<RangeSample>& samples) {
+  if (reference_m.rows() != frame.phase_a.rows() || reference_m.cols() != frame.phase_a.cols()) {
+    throw UsageError("append_range_samples: frame and reference ranges differ in size");
+  }
+  if (first < 0 || stride < 1) {
+    throw UsageError(
+        "append_range_samples: the first pixel must be 0 or more, the stride 1 or "
+        "more");
+  }
   const auto unwrapped = [](float phase_cycles, double wavelength_m, double near_m) {
     const double wraps = std::round(near_m / wavelength_m - double{phase_cycles});
     return static_cast<float>(wavelength_m * (wraps + double{phase_cycles}));

@@ -3,7 +3,7 @@
 
 #include "tofmap/calibration/recording_samples.hpp"
 
-#include <tofmap/core/image.hpp>
+#include <tofmap/core/error.hpp>
 
 namespace tofmap {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 constexpr long most_samples = 2'000'000;
 constexpr std::size_t most_first_frames = 12;
 
-/// Every n-th pixel is used, so that about `most_samples` remain.
+/// Stride between used pixels, so that at most about `most_samples` are taken.
 int pixel_stride(const SequenceReader& recording, int every_frame) {
   const CameraModel& camera = recording.sensor().camera;
   const long used_frames = 1 + (*recording.frame_count() - 1) / every_frame;
@@ -23,9 +23,13 @@ int pixel_stride(const SequenceReader& recording, int every_frame) {
 
 RecordingSamples collect_samples(const SequenceReader& recording, const ReferenceRanges& reference,
                                  int every_frame, const std::function<bool(int)>& keep_going) {
+  if (every_frame < 1) {
+    throw UsageError("collect_samples: every_frame is " + std::to_string(every_frame) +
+                     "; it must be at least 1");
+  }
   const int stride = pixel_stride(recording, every_frame);
   RecordingSamples collected;
-  ImageF last_phase;
+  DualFrequencyFrame last;
   for (int i = 0; i < *recording.frame_count(); i += every_frame) {
     if (keep_going && !keep_going(i)) break;
     const SourcedFrame sourced = recording.read(i);
@@ -35,8 +39,8 @@ RecordingSamples collect_samples(const SequenceReader& recording, const Referenc
       ++collected.damaged;
       continue;
     }
-    const bool is_repeated = same_values(sourced.frame->phase_a, last_phase);
-    last_phase = sourced.frame->phase_a;
+    const bool is_repeated = repeats(*sourced.frame, last);
+    last = *sourced.frame;
     if (is_repeated) {
       ++collected.repeated;
       continue;
@@ -44,10 +48,11 @@ RecordingSamples collect_samples(const SequenceReader& recording, const Referenc
     const std::optional<ImageF> reference_m = reference(*sourced.frame);
     if (!reference_m) continue;
     // The first pixel differs from frame to frame, so that all pixels of the camera are used.
-    append_range_samples(*sourced.frame, recording.sensor(), *reference_m, i % stride, stride,
-                         collected.samples);
+    append_range_samples(*sourced.frame, recording.sensor(), *reference_m,
+                         (collected.read - 1) % stride, stride, collected.samples);
     ++collected.frames;
-    if (collected.first.size() < most_first_frames) collected.first.push_back(*sourced.frame);
+    if (collected.first_frames.size() < most_first_frames)
+      collected.first_frames.push_back(*sourced.frame);
   }
   return collected;
 }

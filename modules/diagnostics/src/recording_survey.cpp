@@ -150,10 +150,6 @@ void warn_of_times(const RecordingSurvey& survey, std::vector<std::string>& warn
 
 }  // namespace
 
-bool repeats(const DualFrequencyFrame& frame, const DualFrequencyFrame& last) {
-  return same_values(frame.phase_a, last.phase_a) && same_values(frame.phase_b, last.phase_b);
-}
-
 std::optional<std::string> repetition_warning(int repeated) {
   if (repeated == 0) return std::nullopt;
   return counted(static_cast<std::size_t>(repeated), "frame") +

@@ -10,6 +10,10 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <string>
+#include <vector>
+
+#include <tofmap/core/error.hpp>
 
 namespace tofmap {
 namespace {
@@ -25,61 +29,76 @@ struct FilterInput {
 };
 
 struct FilterStep {
-  Filter filter;
+  NamedValue<Filter> filter;
   InvalidReason reason;  ///< of the pixels that it drops; none if it drops nothing
   RangeImage (*apply)(const RangeImage&, const FilterInput&);
 };
 
 constexpr std::array<FilterStep, 9> all_filters{
-    {{Filter::amplitude, InvalidReason::low_amplitude,
+    {{{"amplitude", Filter::amplitude},
+      InvalidReason::low_amplitude,
       [](const RangeImage& image, const FilterInput& in) {
         return drop_low_amplitude(image, in.frame, in.options.min_amplitude);
       }},
-     {Filter::confidence, InvalidReason::low_confidence,
+     {{"confidence", Filter::confidence},
+      InvalidReason::low_confidence,
       [](const RangeImage& image, const FilterInput& in) {
         return drop_low_confidence(image, in.options.min_confidence);
       }},
-     {Filter::phasor_mean, InvalidReason::none,
+     {{"phasor_mean", Filter::phasor_mean},
+      InvalidReason::none,
       [](const RangeImage& image, const FilterInput& in) {
         return average_phasors(image, in.frame, in.modulation, in.rays,
                                {.min_noise_cycles = in.options.min_phasor_noise_cycles,
                                 .max_radius_px = in.options.max_phasor_radius_px});
       }},
-     {Filter::isolated_wrap, InvalidReason::isolated_wrap,
+     {{"isolated_wrap", Filter::isolated_wrap},
+      InvalidReason::isolated_wrap,
       [](const RangeImage& image, const FilterInput& in) {
         return mend_isolated_wraps(image, in.frame, in.modulation,
                                    {.max_share = in.options.max_isolated_share});
       }},
-     {Filter::jump_edge, InvalidReason::jump_edge,
+     {{"jump_edge", Filter::jump_edge},
+      InvalidReason::jump_edge,
       [](const RangeImage& image, const FilterInput& in) {
         return drop_jump_edges(image, in.rays, in.options.max_edge_angle_deg * rad_per_deg,
                                in.options.min_edge_gap_sigmas);
       }},
-     {Filter::step_edge, InvalidReason::jump_edge,
+     {{"step_edge", Filter::step_edge},
+      InvalidReason::jump_edge,
       [](const RangeImage& image, const FilterInput& in) {
         return drop_steps(image, in.rays,
                           {.max_incidence_deg = in.options.max_step_incidence_deg,
                            .min_sigmas = in.options.min_step_sigmas});
       }},
-     {Filter::plane_edge, InvalidReason::jump_edge,
+     {{"plane_edge", Filter::plane_edge},
+      InvalidReason::jump_edge,
       [](const RangeImage& image, const FilterInput& in) {
         return drop_off_planes(image, in.frame, in.modulation, in.rays,
                                {.max_sigmas = in.options.max_plane_sigmas,
                                 .max_edge_sigmas = in.options.max_edge_sigmas,
                                 .tolerance_m = in.options.plane_tolerance_m});
       }},
-     {Filter::outlier, InvalidReason::outlier,
+     {{"outlier", Filter::outlier},
+      InvalidReason::outlier,
       [](const RangeImage& image, const FilterInput& in) {
         return drop_outliers(image, in.rays, in.options.max_outlier_deviations);
       }},
-     {Filter::smooth, InvalidReason::none, [](const RangeImage& image, const FilterInput& in) {
+     {{"smooth", Filter::smooth},
+      InvalidReason::none,
+      [](const RangeImage& image, const FilterInput& in) {
         return smooth_ranges(image, in.rays,
                              {.max_sigmas = in.options.max_smooth_sigmas,
                               .tolerance_m = in.options.smooth_tolerance_m});
       }}}};
 
+/// Throws UsageError for a value that is no filter.
 const FilterStep& step_of(Filter filter) {
-  return *std::ranges::find(all_filters, filter, &FilterStep::filter);
+  for (const FilterStep& step : all_filters) {
+    if (step.filter.value == filter) return step;
+  }
+  throw UsageError("filter chain: " + std::to_string(static_cast<int>(filter)) +
+                   " is not a filter");
 }
 
 /// The number of pixels that are valid after filtering and have another wrap count than before.
@@ -90,23 +109,18 @@ int count_corrected(const RangeImage& before, const RangeImage& after) {
 }  // namespace
 
 std::span<const NamedValue<Filter>> named_values(Filter) {
-  static constexpr std::array<NamedValue<Filter>, 9> names{
-      {{"amplitude", Filter::amplitude},
-       {"confidence", Filter::confidence},
-       {"phasor_mean", Filter::phasor_mean},
-       {"isolated_wrap", Filter::isolated_wrap},
-       {"jump_edge", Filter::jump_edge},
-       {"step_edge", Filter::step_edge},
-       {"plane_edge", Filter::plane_edge},
-       {"outlier", Filter::outlier},
-       {"smooth", Filter::smooth}}};
+  static const std::vector<NamedValue<Filter>> names = [] {
+    std::vector<NamedValue<Filter>> all;
+    for (const FilterStep& step : all_filters) all.push_back(step.filter);
+    return all;
+  }();
   return names;
 }
 
 std::vector<OptionField<FilterOptions>> FilterOptions::fields() {
   using O = FilterOptions;
   return {
-      {"chain", &O::chain, 0, 0, "", "the filters in the order in which they run"},
+      {"chain", &O::chain, 0, 0, "", "the filters in the order in which they run; empty: none"},
       {"min_amplitude", &O::min_amplitude, 0, 1e9, "",
        "amplitude: drops pixels with a weaker signal; in the units of the camera"},
       {"min_confidence", &O::min_confidence, 0, 1, "",

@@ -96,9 +96,9 @@ TOFMAP_VECTOR_CLONES void rotate(int pixels, const RotorRow& rotors_, const Roto
   const RotorRow by = by_;
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
-    const Complex turned = product(rotors[i], by[i]);
-    rotors.re[i] = turned.re;
-    rotors.im[i] = turned.im;
+    const Complex rotated = product(rotors[i], by[i]);
+    rotors.re[i] = rotated.re;
+    rotors.im[i] = rotated.im;
   }
 }
 
@@ -226,8 +226,8 @@ TOFMAP_VECTOR_CLONES void add_place(int pixels, const Place& place_, const Rotor
                           dot(product(own.b[i], rotation_b), other.b[i]);
     const float noise = own.variance[i] + other.variance[i] + length2 * own.slope_variance[i];
     const float misfit = (4 - 2 * cosines) / noise * place.inverse_misfit;
-    const float opening = 1.5F - 1.5F * misfit;
-    const float share = opening < 0 ? 0.0F : (opening > 1 ? 1.0F : opening);
+    const float ramp = 1.5F - 1.5F * misfit;
+    const float share = ramp < 0 ? 0.0F : (ramp > 1 ? 1.0F : ramp);
     const float w = place.weight * share;
     const float wx = w * place.x;
     const float wy = w * place.y;
@@ -247,18 +247,18 @@ TOFMAP_VECTOR_CLONES void add_place(int pixels, const Place& place_, const Rotor
 /// The sum phasor of one frequency over a window, and the score of the slope.
 struct MeanPhasor {
   float length;
-  Complex direction;  ///< unit
-  float turn_x;       ///< derivative of the log likelihood by the slope along x
-  float turn_y;       ///< derivative of the log likelihood by the slope along y
+  Complex direction;    ///< unit
+  float slope_score_x;  ///< derivative of the log likelihood by the slope along x
+  float slope_score_y;  ///< derivative of the log likelihood by the slope along y
 
   MeanPhasor(const FrequencySums& sums, int i)
       : length(std::hypot(sums.re[i], sums.im[i])),
         direction{sums.re[i] / length, sums.im[i] / length},
-        turn_x(rotated_back({sums.x_re[i], sums.x_im[i]}, direction).im),
-        turn_y(rotated_back({sums.y_re[i], sums.y_im[i]}, direction).im) {}
+        slope_score_x(rotated_back({sums.x_re[i], sums.x_im[i]}, direction).im),
+        slope_score_y(rotated_back({sums.y_re[i], sums.y_im[i]}, direction).im) {}
 
   /// The direction, rotated by `angle`, radians.
-  Complex turned(float angle) const {
+  Complex rotated(float angle) const {
     return product(direction, {std::cos(angle), std::sin(angle)});
   }
 };
@@ -285,15 +285,15 @@ void solve(const SumRow& sums, int v, int i, const WindowGrowth& growth, const P
   const float determinant = xx * yy - xy * xy;
   const float slope_x = before.slope_x.row(v)[i];
   const float slope_y = before.slope_y.row(v)[i];
-  const float score_x = a.turn_x + ratio * b.turn_x - prior * slope_x;
-  const float score_y = a.turn_y + ratio * b.turn_y - prior * slope_y;
+  const float score_x = a.slope_score_x + ratio * b.slope_score_x - prior * slope_x;
+  const float score_y = a.slope_score_y + ratio * b.slope_score_y - prior * slope_y;
   const float step_x = (yy * score_x - xy * score_y) / determinant;
   const float step_y = (xx * score_y - xy * score_x) / determinant;
   // The sum phasor gives the phase at the centroid of the window; the plane needs that at the
   // pixel.
   const float back = -(mean_x * step_x + mean_y * step_y);
-  const Complex at_a = a.turned(back);
-  const Complex at_b = b.turned(ratio * back);
+  const Complex at_a = a.rotated(back);
+  const Complex at_b = b.rotated(ratio * back);
   const float spread = sums.s2[i] / s;
   const float lever = yy * mean_x * mean_x - 2 * xy * mean_x * mean_y + xx * mean_y * mean_y;
   out.a.re.row(v)[i] = at_a.re;

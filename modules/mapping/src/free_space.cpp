@@ -24,34 +24,34 @@ class View {
     }
   }
 
-  enum class Verdict { nothing, agrees, sees_through };
+  enum class Observation { nothing, agrees, sees_through };
 
-  Verdict judge(const Eigen::Vector3d& world_m) const {
+  Observation judge(const Eigen::Vector3d& world_m) const {
     const Eigen::Vector3d point_m = camera_from_world_ * world_m;
-    if (point_m.z() <= 0 || point_m.z() > farthest_m_ + margin_m_) return Verdict::nothing;
+    if (point_m.z() <= 0 || point_m.z() > farthest_m_ + margin_m_) return Observation::nothing;
     const std::optional<Eigen::Vector2d> pixel = project(camera_, point_m);
-    if (!pixel) return Verdict::nothing;
+    if (!pixel) return Observation::nothing;
     const double u = std::round(pixel->x());
     const double v = std::round(pixel->y());
     if (!(u >= 1 && v >= 1 && u + 1 < cloud_.width && v + 1 < cloud_.height)) {
-      return Verdict::nothing;
+      return Observation::nothing;
     }
     const int col = static_cast<int>(u);
     const int row = static_cast<int>(v);
     const Eigen::Vector3f at_m = point_m.cast<float>();
     const std::optional<float> before = share_before(row, col, at_m);
-    if (!before) return Verdict::nothing;
-    if (std::abs(*before) <= 1) return Verdict::agrees;
-    if (*before < 0) return Verdict::nothing;  // the point is occluded
+    if (!before) return Observation::nothing;
+    if (std::abs(*before) <= 1) return Observation::agrees;
+    if (*before < 0) return Observation::nothing;  // the point is occluded
     // At the outline of an object, a small error of the pose makes a point project onto the
     // background. So the point must be in front of the surfaces around as well.
     for (int r = row - 1; r <= row + 1; ++r) {
       for (int c = col - 1; c <= col + 1; ++c) {
         const std::optional<float> beside = share_before(r, c, at_m);
-        if (!beside || *beside <= 1) return Verdict::nothing;
+        if (!beside || *beside <= 1) return Observation::nothing;
       }
     }
-    return Verdict::sees_through;
+    return Observation::sees_through;
   }
 
  private:
@@ -80,9 +80,9 @@ bool violates_free_space(const MapPoint& point, const std::vector<View>& views) 
   int free_space_violation = 0;
   int agreeing = 0;
   for (const View& view : views) {
-    const View::Verdict verdict = view.judge(point.getVector3fMap().cast<double>());
-    free_space_violation += verdict == View::Verdict::sees_through ? 1 : 0;
-    agreeing += verdict == View::Verdict::agrees ? 1 : 0;
+    const View::Observation observation = view.judge(point.getVector3fMap().cast<double>());
+    free_space_violation += observation == View::Observation::sees_through ? 1 : 0;
+    agreeing += observation == View::Observation::agrees ? 1 : 0;
   }
   return free_space_violation >= least && free_space_violation > agreeing;
 }

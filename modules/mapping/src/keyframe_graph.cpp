@@ -31,7 +31,7 @@ void KeyframeGraph::connect(int a, int b) {
   }
 }
 
-void KeyframeGraph::place(int id, const Pose& world_from_camera) {
+void KeyframeGraph::set_pose(int id, const Pose& world_from_camera) {
   keyframes_[static_cast<std::size_t>(id)].world_from_camera = world_from_camera;
 }
 

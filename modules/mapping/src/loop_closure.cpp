@@ -31,7 +31,7 @@ std::vector<const Keyframe*> earlier_around(const Keyframe& keyframe,
   std::vector<const Keyframe*> earlier;
   const Pose& pose = keyframe.world_from_camera;
   for (const Keyframe& other : keyframes) {
-    if (other.id + options.min_gap > keyframe.id) break;
+    if (other.id + options.min_keyframes > keyframe.id) break;
     if ((pose.translation() - other.world_from_camera.translation()).norm() < options.radius_m &&
         rotation_angle_rad(pose, other.world_from_camera) < options.max_rotation_rad) {
       earlier.push_back(&other);
@@ -104,7 +104,7 @@ std::optional<LoopCandidate> find_where_alike(const Keyframe& keyframe,
   const RegistrationResult found =
       register_near(other, *keyframe.cloud, before, camera, registration);
   const double drift_sigmas =
-      deviation(drift_prior(keyframe, other, options), found.world_from_camera);
+      prior_deviation_sigmas(drift_prior(keyframe, other, options), found.world_from_camera);
   if (drift_sigmas > most_drift_sigmas || !is_verified(found, options)) return std::nullopt;
   return LoopCandidate{.from = other.id, .registration = found, .edge = {}};
 }
@@ -119,7 +119,7 @@ std::vector<OptionField<LoopOptions>> LoopOptions::fields() {
        "loops are searched for among keyframes at most this far away"},
       {"max_rotation_rad", &O::max_rotation_rad, 0.01, 3.2, "rad",
        "loops are searched for among keyframes that are rotated by at most this"},
-      {"min_gap", &O::min_gap, 1, 100000, "",
+      {"min_keyframes", &O::min_keyframes, 1, 100000, "",
        "smallest number of keyframes from one end of a loop to the other"},
       {"min_overlap", &O::min_overlap, 0.01, 1, "",
        "smallest share of a keyframe's points that must have a correspondence in earlier "

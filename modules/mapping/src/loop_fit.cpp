@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t least_agreeing = 2;
 
 /// Two loops agree within this many standard deviations.
-constexpr double most_deviations = 2;
+constexpr double most_sigmas = 2;
 
 using Loops = std::vector<const PoseEdge*>;
 
@@ -39,7 +39,7 @@ bool agree(const PoseEdge& one, const PoseEdge& other, std::span<const Keyframe>
   const MotionPrior prior =
       drift_prior(correction * at(keyframes, other.to).world_from_camera,
                   path_between_m(one.from, other.from) + path_between_m(one.to, other.to), options);
-  return deviation(prior, found(other)) < most_deviations;
+  return prior_deviation_sigmas(prior, found(other)) < most_sigmas;
 }
 
 /// The loop that agrees with most others, together with these others.
@@ -84,12 +84,12 @@ PoseGraphResult fit_loops(std::span<const Keyframe> keyframes, std::span<const P
     if (edge.may_be_wrong) loops.push_back(&edge);
   }
   const Loops agreeing = most_that_agree(loops, keyframes, options);
-  const auto outvoted = std::ranges::count_if(agreeing, [&](const PoseEdge* loop) {
-    return is_outvoted(mahalanobis_distance(*loop, fitted.poses), options.kernel_width);
+  const auto rejected = std::ranges::count_if(agreeing, [&](const PoseEdge* loop) {
+    return is_rejected(mahalanobis_distance(*loop, fitted.poses), options.kernel_width);
   });
   const bool tell_of_drift = agreeing.size() >= least_agreeing &&
                              2 * agreeing.size() > loops.size() &&
-                             2 * static_cast<std::size_t>(outvoted) > agreeing.size();
+                             2 * static_cast<std::size_t>(rejected) > agreeing.size();
   if (!tell_of_drift) return fitted;
   fitted = optimise_pose_graph(std::move(poses), with_drift(edges, agreeing, keyframes, options),
                                options.kernel_width);

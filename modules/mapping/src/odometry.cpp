@@ -48,7 +48,7 @@ std::vector<OptionField<OdometryOptions>> OdometryOptions::fields() {
        "standard deviation of the change in frame-to-frame rotation, per axis and frame"},
       {"prior_translation_sigma_m", &O::prior_translation_sigma_m, 1e-4, 10, "m",
        "standard deviation of the change in frame-to-frame translation, per axis and frame"},
-      {"max_prior_mahalanobis", &O::max_prior_mahalanobis, 1, 1000, "",
+      {"max_prior_sigmas", &O::max_prior_sigmas, 1, 1000, "",
        "largest difference from the predicted pose, in standard deviations; a pose that differs "
        "more is rejected"},
   };
@@ -91,7 +91,7 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
   register_from(prior, cloud, around, result);
   MotionPrior standing = prior;
   standing.world_from_camera = last_->world_from_camera;
-  if (is_after_gap(timestamp_s) && deviation(prior, standing.world_from_camera) > 0) {
+  if (is_after_gap(timestamp_s) && prior_deviation_sigmas(prior, standing.world_from_camera) > 0) {
     // The camera may have stood still instead.
     TrackingResult other;
     register_from(standing, cloud, around, other);
@@ -104,8 +104,8 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
     result.status = TrackingStatus::lost;
   } else if (is_believed && !is_believed(result.registration)) {
     result.status = TrackingStatus::lost;
-  } else if (deviation(prior, result.registration.world_from_camera) >
-             options_.max_prior_mahalanobis) {
+  } else if (prior_deviation_sigmas(prior, result.registration.world_from_camera) >
+             options_.max_prior_sigmas) {
     result.status = TrackingStatus::implausible;
   } else {
     result.status = TrackingStatus::tracked;
@@ -146,9 +146,9 @@ bool Odometry::is_within_reach(double timestamp_s, const Pose& pose) const {
   constexpr double most_sigmas = 4;
   if (!last_) return false;
   MotionPrior prior = predict(timestamp_s);
-  if (deviation(prior, pose) <= most_sigmas) return true;
+  if (prior_deviation_sigmas(prior, pose) <= most_sigmas) return true;
   prior.world_from_camera = last_->world_from_camera;
-  return deviation(prior, pose) <= most_sigmas;
+  return prior_deviation_sigmas(prior, pose) <= most_sigmas;
 }
 
 void Odometry::note_frame(double timestamp_s) {

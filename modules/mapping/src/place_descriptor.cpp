@@ -15,11 +15,11 @@ PlaceDescriptor::PlaceDescriptor() { log_range_.fill(std::numeric_limits<float>:
 
 PlaceDescriptor::PlaceDescriptor(const SurfaceCloud& cloud) : PlaceDescriptor() {
   std::vector<float> ranges;
-  for (std::size_t part = 0; part < log_range_.size(); ++part) {
-    const std::size_t first_row = part / cols * cloud.height / rows;
-    const std::size_t last_row = (part / cols + 1) * cloud.height / rows;
-    const std::size_t first_col = part % cols * cloud.width / cols;
-    const std::size_t last_col = (part % cols + 1) * cloud.width / cols;
+  for (std::size_t cell = 0; cell < log_range_.size(); ++cell) {
+    const std::size_t first_row = cell / cols * cloud.height / rows;
+    const std::size_t last_row = (cell / cols + 1) * cloud.height / rows;
+    const std::size_t first_col = cell % cols * cloud.width / cols;
+    const std::size_t last_col = (cell % cols + 1) * cloud.width / cols;
     ranges.clear();
     for (std::size_t row = first_row; row < last_row; ++row) {
       for (std::size_t col = first_col; col < last_col; ++col) {
@@ -29,7 +29,7 @@ PlaceDescriptor::PlaceDescriptor(const SurfaceCloud& cloud) : PlaceDescriptor() 
     }
     const std::size_t pixels = (last_row - first_row) * (last_col - first_col);
     if (ranges.empty() || 2 * ranges.size() < pixels) continue;
-    log_range_[part] = std::log(median(ranges));
+    log_range_[cell] = std::log(median(ranges));
   }
 }
 

@@ -247,14 +247,14 @@ void RoomMapper::fit() {
   const Pose current_before = keyframes_[current_].world_from_camera;
   const PoseGraphResult fitted = fit_loops(keyframes_.all(), edges_, loop_options_);
   for (int id = 0; id < keyframes_.size(); ++id) {
-    keyframes_.place(id, fitted.poses[static_cast<std::size_t>(id)]);
+    keyframes_.set_pose(id, fitted.poses[static_cast<std::size_t>(id)]);
   }
   odometry_.move(keyframes_[current_].world_from_camera * current_before.inverse());
   auto loop = loops_.begin();
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     if (!edges_[i].may_be_wrong) continue;
     loop->mahalanobis_distance = fitted.edge_mahalanobis[i];
-    loop->is_used = !is_outvoted(loop->mahalanobis_distance, loop_options_.kernel_width);
+    loop->is_used = !is_rejected(loop->mahalanobis_distance, loop_options_.kernel_width);
     // The relative pose of both ends is now correct, so frames may be registered with either.
     if (loop->is_used) keyframes_.connect(edges_[i].from, edges_[i].to);
     ++loop;

@@ -70,15 +70,15 @@ void SurfaceMap::integrate(const SurfaceCloud& cloud, const Pose& world_from_cam
   }
 }
 
-void SurfaceMap::add(const SurfaceMap& part, const Pose& world_from_part) {
+void SurfaceMap::add(const SurfaceMap& submap, const Pose& world_from_submap) {
   // In the order of the grid, since the order of the hash table depends on the order of insertion.
-  for (const std::int64_t place : sorted_keys(part.voxels_)) {
-    const Voxel& voxel = part.voxels_.at(place);
+  for (const std::int64_t place : sorted_keys(submap.voxels_)) {
+    const Voxel& voxel = submap.voxels_.at(place);
     if (!(voxel.weight > 0)) continue;
-    const Eigen::Vector3d in_world = world_from_part * (voxel.weighted_point_m / voxel.weight);
+    const Eigen::Vector3d in_world = world_from_submap * (voxel.weighted_point_m / voxel.weight);
     Voxel& own = voxels_[key(in_world)];
     own.weighted_point_m += voxel.weight * in_world;
-    own.weighted_normal += world_from_part.linear() * voxel.weighted_normal;
+    own.weighted_normal += world_from_submap.linear() * voxel.weighted_normal;
     own.weight += voxel.weight;
     own.confidence += voxel.confidence;
     own.observations += voxel.observations;

@@ -23,24 +23,25 @@ std::vector<std::size_t> by_quality(const std::vector<CloudPair>& pairs) {
   return order;
 }
 
-/// The connected part that each cloud belongs to, named by the lowest index of its clouds.
-std::vector<int> parts_of(std::size_t clouds, const std::vector<CloudPair>& pairs) {
-  std::vector<int> part(clouds);
-  std::iota(part.begin(), part.end(), 0);
+/// The connected component that each cloud belongs to, named by the lowest index of its clouds.
+std::vector<int> components_of(std::size_t clouds, const std::vector<CloudPair>& pairs) {
+  std::vector<int> component(clouds);
+  std::iota(component.begin(), component.end(), 0);
   for (const CloudPair& pair : pairs) {
     if (pair.verdict != PairVerdict::registered) continue;
-    const int one = part[static_cast<std::size_t>(pair.source)];
-    const int other = part[static_cast<std::size_t>(pair.target)];
-    std::ranges::replace(part, std::max(one, other), std::min(one, other));
+    const int one = component[static_cast<std::size_t>(pair.source)];
+    const int other = component[static_cast<std::size_t>(pair.target)];
+    std::ranges::replace(component, std::max(one, other), std::min(one, other));
   }
-  return part;
+  return component;
 }
 
-/// The connected part with most clouds. Of equally large parts, the one with the lowest index.
-int largest_part(const std::vector<int>& part) {
+/// The connected component with most clouds. Of equally large components, the one with the lowest
+/// index.
+int largest_component(const std::vector<int>& component) {
   int best = 0;
-  for (int i = 0; i < static_cast<int>(part.size()); ++i) {
-    if (std::ranges::count(part, i) > std::ranges::count(part, best)) best = i;
+  for (int i = 0; i < static_cast<int>(component.size()); ++i) {
+    if (std::ranges::count(component, i) > std::ranges::count(component, best)) best = i;
   }
   return best;
 }
@@ -91,7 +92,7 @@ std::vector<Pose> fitted_poses(std::vector<Pose> poses, std::vector<CloudPair>& 
   PoseGraphResult fitted = optimise_pose_graph(std::move(poses), edges, kernel_width);
   for (std::size_t i = 0; i < used.size(); ++i) {
     used[i]->mahalanobis_distance = fitted.edge_mahalanobis[i];
-    if (is_outvoted(used[i]->mahalanobis_distance, kernel_width)) {
+    if (is_rejected(used[i]->mahalanobis_distance, kernel_width)) {
       used[i]->verdict = PairVerdict::disagrees;
     }
   }
@@ -103,16 +104,16 @@ std::vector<Pose> fitted_poses(std::vector<Pose> poses, std::vector<CloudPair>& 
 std::vector<std::optional<Pose>> fit_graph(std::size_t clouds, std::vector<CloudPair>& pairs,
                                            double slack_m, double kernel_width) {
   std::vector<std::optional<Pose>> registered(clouds);
-  int first = largest_part(parts_of(clouds, pairs));
+  int first = largest_component(components_of(clouds, pairs));
   const std::vector<Pose> poses =
       fitted_poses(chained_poses(clouds, pairs, first), pairs, slack_m, kernel_width);
   // Without the rejected pairs, fewer clouds may be connected.
-  const std::vector<int> part = parts_of(clouds, pairs);
-  first = largest_part(part);
-  if (std::ranges::count(part, first) < 2) return registered;
+  const std::vector<int> component = components_of(clouds, pairs);
+  first = largest_component(component);
+  if (std::ranges::count(component, first) < 2) return registered;
   const Pose first_from_world = poses[static_cast<std::size_t>(first)].inverse();
   for (std::size_t i = 0; i < clouds; ++i) {
-    if (part[i] == first) registered[i] = first_from_world * poses[i];
+    if (component[i] == first) registered[i] = first_from_world * poses[i];
   }
   return registered;
 }

@@ -11,8 +11,8 @@ namespace {
 
 /// Largest correspondence distances, in voxels of the level. On the coarsest level, poses from
 /// features may be wrong by more than a voxel.
-constexpr double coarse_gap_voxels = 2.5;
-constexpr double fine_gap_voxels = 2;
+constexpr double coarse_distance_voxels = 2.5;
+constexpr double fine_distance_voxels = 2;
 
 /// Number of source points used: enough to compare guesses, and enough to average noise.
 constexpr std::size_t coarse_points = 1500;
@@ -100,7 +100,7 @@ std::vector<Candidate> refine_guesses(const LevelledCloud& source_cloud,
   for (const AlignmentGuess& guess : guesses) {
     Candidate candidate;
     candidate.icp = align_clouds(source, target, guess.target_from_source,
-                                 {method, coarse_gap_voxels * target.voxel_m, coarse_points});
+                                 {method, coarse_distance_voxels * target.voxel_m, coarse_points});
     candidate.support = guess.support;
     candidate.fit = mutual_fit(source, target, candidate.icp.target_from_source);
     candidate.free_space_violation =
@@ -145,8 +145,9 @@ CloudPair align_pair(const LevelledCloud& source, const LevelledCloud& target,
   if (candidates.size() > 1) pair.runner_up = candidates[1].quality() / best.quality();
   const std::size_t levels = std::min(source.levels.size(), target.levels.size());
   for (std::size_t level = 1; level < levels; ++level) {
-    best.icp = align_clouds(source.levels[level], target.levels[level], best.icp.target_from_source,
-                            {method, fine_gap_voxels * target.levels[level].voxel_m, fine_points});
+    best.icp =
+        align_clouds(source.levels[level], target.levels[level], best.icp.target_from_source,
+                     {method, fine_distance_voxels * target.levels[level].voxel_m, fine_points});
   }
   pair.support = best.support;
   // The fit is judged on the coarsest level, since means over large voxels have little noise.

@@ -16,7 +16,7 @@ namespace tofmap {
 /// The beginning of every device URI.
 inline constexpr const char* uri_scheme = "tofmap://";
 
-/// How a device plays the images of A and B.
+/// How a device plays the images of A and B: ImageLayout without the value that leaves it to a tag.
 enum class PlayedLayout {
   stacked,      ///< each image holds A above B
   alternating,  ///< the images of A and B alternate

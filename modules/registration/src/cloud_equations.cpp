@@ -12,7 +12,7 @@
 
 namespace tofmap {
 
-Eigen::Matrix<double, 3, 6> gap_jacobian(const PointPair& pair) {
+Eigen::Matrix<double, 3, 6> difference_jacobian(const PointPair& pair) {
   const Eigen::Vector3d& p = pair.point_m;
   Eigen::Matrix<double, 3, 6> jacobian;
   jacobian << 0, p.z(), -p.y(), 1, 0, 0,  //
@@ -39,18 +39,18 @@ Eigen::Matrix3d point_to_plane_information(const Eigen::Vector3d& target_normal,
 double robust_scale(const std::vector<PointPair>& pairs, double least) {
   if (pairs.empty()) return least;
   std::vector<double> deviations(pairs.size());
-  std::ranges::transform(pairs, deviations.begin(), &PointPair::deviation);
+  std::ranges::transform(pairs, deviations.begin(), &PointPair::mahalanobis_distance);
   return std::max(least, sigma_of_median_deviation * median(deviations));
 }
 
 NormalEquations build_equations(const std::vector<PointPair>& pairs, double kernel_width) {
   NormalEquations equations;
   for (const PointPair& pair : pairs) {
-    const double weight = geman_mcclure_weight(pair.deviation(), kernel_width);
-    const Eigen::Matrix<double, 3, 6> jacobian = gap_jacobian(pair);
+    const double weight = geman_mcclure_weight(pair.mahalanobis_distance(), kernel_width);
+    const Eigen::Matrix<double, 3, 6> jacobian = difference_jacobian(pair);
     const Eigen::Matrix3d information = weight * pair.information;
     equations.information += jacobian.transpose() * information * jacobian;
-    equations.gradient += jacobian.transpose() * (information * pair.gap_m);
+    equations.gradient += jacobian.transpose() * (information * pair.difference_m);
     equations.weight_sum += information.trace();
   }
   return equations;

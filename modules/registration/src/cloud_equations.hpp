@@ -11,16 +11,17 @@ namespace tofmap {
 /// A correspondence of ICP: a source point, its difference from the paired target point, and the
 /// information about that difference, along the target's axes about a local origin.
 struct PointPair {
-  Eigen::Vector3d point_m;      ///< source point, relative to the origin
-  Eigen::Vector3d gap_m;        ///< source point − target point
-  Eigen::Matrix3d information;  ///< inverse covariance of `gap_m`
+  Eigen::Vector3d point_m;       ///< source point, relative to the origin
+  Eigen::Vector3d difference_m;  ///< source point − target point
+  Eigen::Matrix3d information;   ///< inverse covariance of `difference_m`
 
-  /// Mahalanobis distance of the pair.
-  double deviation() const { return std::sqrt(gap_m.dot(information * gap_m)); }
+  double mahalanobis_distance() const {
+    return std::sqrt(difference_m.dot(information * difference_m));
+  }
 };
 
-/// Derivative of `gap_m` with respect to the twist: [−[point]ₓ  1].
-Eigen::Matrix<double, 3, 6> gap_jacobian(const PointPair& pair);
+/// Derivative of `difference_m` with respect to the twist: [−[point]ₓ  1].
+Eigen::Matrix<double, 3, 6> difference_jacobian(const PointPair& pair);
 
 /// Information of a pair in generalised ICP: both points scatter about their place on a plane with
 /// a standard deviation of `sigma_m` along the normal and of `spread_m` along the plane.

@@ -81,7 +81,7 @@ std::vector<PointPair> find_pairs(const OrientedCloud& source, const OrientedClo
     if (std::abs(normal.dot(one.normal)) < max_pairing_normal_cos) continue;
     PointPair pair;
     pair.point_m = one.point_m - origin_m;
-    pair.gap_m = one.point_m - target.points_m[*one.index].cast<double>();
+    pair.difference_m = one.point_m - target.points_m[*one.index].cast<double>();
     pair.information =
         options.method == CloudMethod::point_to_plane
             ? point_to_plane_information(normal, sigma_m)

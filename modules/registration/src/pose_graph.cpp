@@ -101,11 +101,11 @@ ceres::Solver::Summary solve(std::span<const PoseEdge> edges, double kernel_widt
   ceres::Problem::Options ownership;
   ownership.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::EigenQuaternionManifold turns;
+  ceres::EigenQuaternionManifold rotations;
   GemanMcClureLoss kernel(kernel_width);
   ceres::Problem problem(ownership);
   for (Node& node : nodes) {
-    problem.AddParameterBlock(node.rotation.coeffs().data(), 4, &turns);
+    problem.AddParameterBlock(node.rotation.coeffs().data(), 4, &rotations);
     problem.AddParameterBlock(node.translation_m.data(), 3);
   }
   problem.SetParameterBlockConstant(nodes.front().rotation.coeffs().data());
@@ -176,7 +176,7 @@ PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const Pos
   return result;
 }
 
-bool is_outvoted(double deviations, double kernel_width) {
+bool is_rejected(double deviations, double kernel_width) {
   return deviations > std::sqrt(3) * kernel_width;  // where the weight is 1/16
 }
 

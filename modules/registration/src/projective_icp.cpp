@@ -241,7 +241,7 @@ std::vector<OptionField<RegistrationOptions>> RegistrationOptions::fields() {
   };
 }
 
-double deviation(const MotionPrior& prior, const Pose& world_from_camera) {
+double prior_deviation_sigmas(const MotionPrior& prior, const Pose& world_from_camera) {
   const double rotation_rad = rotation_angle_rad(prior.world_from_camera, world_from_camera);
   const double translation_m =
       (prior.world_from_camera.translation() - world_from_camera.translation()).norm();

@@ -108,6 +108,7 @@ Pose CameraPath::pose_at(double u) const {
 
 CameraMotion plan_motion(const CameraPath& path, const MotionLimits& limits, int frames,
                          int min_frames, double frame_rate_hz, double b_delay_share) {
+  if (path.empty()) throw UsageError("the path of the camera has no poses");
   const EffortTable efforts(path, limits);
   const int needed = static_cast<int>(std::ceil(efforts.total() / limit_share)) + 1;
   const int count = frames > 0 ? frames : std::max(needed, min_frames);

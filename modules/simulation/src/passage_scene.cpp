@@ -54,8 +54,8 @@ void furnish_hall(TriangleMesh& mesh, double height) {
   add_box(mesh, {11.2, 7.0, 0}, {12.4, 7.9, 0.8}, 0.25);
   add_box(mesh, {15.0, 9.0, 0}, {16.2, 10.0, 1.7}, 0.1);
   add_box(mesh, {19.0, 5.4, 0}, {19.6, 7.0, 2.2}, 0.15);
-  add_turned_box(mesh, {12.5, 12.6, 0}, {14.0, 13.4, 1.2}, 0.5, 0.3);
-  add_turned_box(mesh, {9.0, 2.0, 0}, {10.2, 3.0, 1.5}, 0.8, 0.2);
+  add_rotated_box(mesh, {12.5, 12.6, 0}, {14.0, 13.4, 1.2}, 0.5, 0.3);
+  add_rotated_box(mesh, {9.0, 2.0, 0}, {10.2, 3.0, 1.5}, 0.8, 0.2);
   add_box(mesh, {21.9, 8.4, 1.0}, {22.0, 10.4, 2.4}, 0.3);
   add_box(mesh, {8.0, 0, height - 0.5}, {8.4, 16, height}, 0.1);
   add_box(mesh, {13.0, 0, height - 0.5}, {13.4, 16, height}, 0.1);

@@ -51,9 +51,9 @@ void add_random_box(TriangleMesh& mesh, Draw& draw, const Vector3d& room_m, doub
                     double top_m) {
   const Vector3d place = place_on_floor(draw, room_m);
   const Vector3d half(draw.log_between(0.05, 1), draw.log_between(0.05, 1), 0);
-  add_turned_box(mesh, place - half + Vector3d(0, 0, bottom_m),
-                 place + half + Vector3d(0, 0, top_m), draw.between(0, std::numbers::pi),
-                 reflectance(draw));
+  add_rotated_box(mesh, place - half + Vector3d(0, 0, bottom_m),
+                  place + half + Vector3d(0, 0, top_m), draw.between(0, std::numbers::pi),
+                  reflectance(draw));
 }
 
 /// Adds a tilted board that stands on the floor.

@@ -28,11 +28,11 @@ void add_table(TriangleMesh& mesh, const Vector3d& min, const Vector3d& max, dou
 
 void add_chair(TriangleMesh& mesh, const Vector3d& seat, double yaw_rad, double reflectance) {
   const Vector3d half(0.22, 0.22, 0);
-  add_turned_box(mesh, seat - half + Vector3d(0, 0, 0.40), seat + half + Vector3d(0, 0, 0.46),
-                 yaw_rad, reflectance);
+  add_rotated_box(mesh, seat - half + Vector3d(0, 0, 0.40), seat + half + Vector3d(0, 0, 0.46),
+                  yaw_rad, reflectance);
   const Vector3d back = seat + Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()) * Vector3d(-0.2, 0, 0);
-  add_turned_box(mesh, back + Vector3d(-0.03, -0.22, 0.46), back + Vector3d(0.03, 0.22, 0.95),
-                 yaw_rad, reflectance);
+  add_rotated_box(mesh, back + Vector3d(-0.03, -0.22, 0.46), back + Vector3d(0.03, 0.22, 0.95),
+                  yaw_rad, reflectance);
   add_cylinder(mesh, seat, 0.05, 0.4, reflectance);
 }
 
@@ -69,9 +69,9 @@ void furnish_room(TriangleMesh& mesh) {
   add_box(mesh, {11.5, 5.2, 0.7}, {11.98, 7.0, 0.76}, 0.8);
   add_box(mesh, {11.6, 5.6, 0.76}, {11.8, 6.4, 1.3}, 0.15);
   add_box(mesh, {0.02, 5.6, 0}, {0.6, 7.6, 2.0}, 0.7);
-  add_turned_box(mesh, {0.5, 2.2, 0}, {1.2, 2.9, 0.7}, 0.5, 0.45);
-  add_turned_box(mesh, {0.55, 2.3, 0.7}, {1.05, 2.8, 1.1}, 0.9, 0.5);
-  add_turned_box(mesh, {10.6, 7.2, 0}, {11.3, 8.0, 0.9}, 0.35, 0.4);
+  add_rotated_box(mesh, {0.5, 2.2, 0}, {1.2, 2.9, 0.7}, 0.5, 0.45);
+  add_rotated_box(mesh, {0.55, 2.3, 0.7}, {1.05, 2.8, 1.1}, 0.9, 0.5);
+  add_rotated_box(mesh, {10.6, 7.2, 0}, {11.3, 8.0, 0.9}, 0.35, 0.4);
   add_box(mesh, {2.2, 8.4, 0}, {4.4, 8.98, 0.8}, 0.6);
   add_box(mesh, {2.6, 8.6, 0.8}, {3.9, 8.75, 1.55}, 0.12);
   add_box(mesh, {5.6, 8.7, 0}, {6.6, 8.98, 2.1}, 0.3);
@@ -127,7 +127,7 @@ void furnish_flat(TriangleMesh& mesh) {
   add_box(mesh, {9.0, 7.6, 0.75}, {9.6, 7.7, 1.2}, 0.12);
   add_shelf(mesh, {5.4, 7.6, 0}, {7.4, 7.97, 2.1}, false, 0.5);
   add_box(mesh, {9.4, 4.6, 0}, {9.98, 6.0, 1.8}, 0.7);
-  add_turned_box(mesh, {5.5, 4.4, 0}, {6.2, 5.0, 0.6}, 0.4, 0.4);
+  add_rotated_box(mesh, {5.5, 4.4, 0}, {6.2, 5.0, 0.6}, 0.4, 0.4);
   // Bedroom, upper left.
   add_box(mesh, {0.05, 5.0, 0}, {1.5, 7.0, 0.5}, 0.8);
   add_box(mesh, {0.02, 5.0, 0.5}, {0.1, 7.0, 1.1}, 0.4);

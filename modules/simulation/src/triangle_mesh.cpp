@@ -52,11 +52,11 @@ void add_quad(TriangleMesh& mesh, const Vector3d& c, const Vector3d& a, const Ve
 }
 
 void add_box(TriangleMesh& mesh, const Vector3d& min, const Vector3d& max, double reflectance) {
-  add_turned_box(mesh, min, max, 0, reflectance);
+  add_rotated_box(mesh, min, max, 0, reflectance);
 }
 
-void add_turned_box(TriangleMesh& mesh, const Vector3d& min, const Vector3d& max, double yaw_rad,
-                    double reflectance) {
+void add_rotated_box(TriangleMesh& mesh, const Vector3d& min, const Vector3d& max, double yaw_rad,
+                     double reflectance) {
   const Vector3d size = max - min;
   const Eigen::AngleAxisd turn(yaw_rad, Vector3d::UnitZ());
   const Vector3d middle = (min + max) / 2;

@@ -50,19 +50,19 @@ class WindowStyle : public vtkInteractorStyleTrackballCamera {
     if (on_key) on_key(Interactor->GetKeySym());
   }
   void StartState(int state) override {
-    was_turned = true;
+    was_moved = true;
     vtkInteractorStyleTrackballCamera::StartState(state);
   }
   void OnMouseWheelForward() override {
-    was_turned = true;
+    was_moved = true;
     vtkInteractorStyleTrackballCamera::OnMouseWheelForward();
   }
   void OnMouseWheelBackward() override {
-    was_turned = true;
+    was_moved = true;
     vtkInteractorStyleTrackballCamera::OnMouseWheelBackward();
   }
 
-  bool was_turned = false;
+  bool was_moved = false;
   std::function<void(const std::string&)> on_key;
 };
 
@@ -115,11 +115,11 @@ class Window::Impl {
 
   void look_from(const Viewpoint& viewpoint) {
     tofmap::look_from(*renderer_, viewpoint);
-    style_->was_turned = false;
+    style_->was_moved = false;
     is_drawn_ = false;
   }
 
-  bool was_turned() const { return style_->was_turned; }
+  bool was_moved() const { return style_->was_moved; }
 
   void set_text(const std::string& upper, const std::string& lower) {
     upper_->SetInput(upper.c_str());
@@ -188,7 +188,7 @@ void Window::show(const Drawing& drawing) { impl_->show(drawing); }
 
 void Window::look_from(const Viewpoint& viewpoint) { impl_->look_from(viewpoint); }
 
-bool Window::was_turned() const { return impl_->was_turned(); }
+bool Window::was_moved() const { return impl_->was_moved(); }
 
 void Window::set_text(const std::string& upper, const std::string& lower) {
   impl_->set_text(upper, lower);

@@ -23,7 +23,8 @@ struct RangeSample {
 
 /// Appends samples of the pixels `first`, `first` + `stride`, … of a frame, counted row by row.
 /// Leaves out pixels without a return at one of the frequencies, saturated pixels, and pixels
-/// without a reference range (NaN). `reference_m` has the camera's size.
+/// without a reference range (NaN). Throws UsageError if `reference_m` has another size than the
+/// frame, `first` is negative or `stride` is less than 1.
 void append_range_samples(const DualFrequencyFrame& frame, const SensorModel& sensor,
                           const ImageF& reference_m, int first, int stride,
                           std::vector<RangeSample>& samples);

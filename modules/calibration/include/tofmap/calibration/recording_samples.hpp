@@ -10,6 +10,8 @@
 
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/calibration/phase_error_fit.hpp>
+#include <tofmap/core/frame.hpp>
+#include <tofmap/core/image.hpp>
 
 namespace tofmap {
 
@@ -20,18 +22,20 @@ using ReferenceRanges = std::function<std::optional<ImageF>(const DualFrequencyF
 /// Samples of the pixels of a recording, and the frames that they come from.
 struct RecordingSamples {
   std::vector<RangeSample> samples;
-  std::size_t frames = 0;                 ///< number of frames that samples were taken from
-  std::vector<DualFrequencyFrame> first;  ///< the first twelve of these frames
-  int read = 0;                           ///< number of frames that were tried, damaged or not
-  int damaged = 0;                        ///< number of frames that could not be read
-  std::string first_damage;               ///< why the first of them could not be read
-  std::size_t repeated = 0;  ///< number of frames that repeat the one before; they give no samples
+  std::size_t frames = 0;                        ///< number of frames that samples were taken from
+  std::vector<DualFrequencyFrame> first_frames;  ///< the first twelve of these frames
+  int read = 0;              ///< number of frames that were tried, damaged or not
+  int damaged = 0;           ///< number of frames that could not be read
+  std::string first_damage;  ///< why the first of them could not be read
+  /// Number of frames that repeat the one that was read before. They give no samples.
+  std::size_t repeated = 0;
 };
 
 /// Takes samples (append_range_samples()) of every n-th frame of a recording, at most about two
-/// million, spread evenly over frames and pixels. `every_frame` is at least 1. `keep_going` is
-/// called with the index of each frame before it is read; if it returns false, the samples so far
-/// are returned. It may be empty.
+/// million, spread evenly over frames and pixels. `keep_going` is called with the index of each
+/// frame before it is read; if it returns false, the samples so far are returned. It may be empty.
+/// Throws UsageError if `every_frame` is less than 1, or if a reference has another size than its
+/// frame.
 RecordingSamples collect_samples(const SequenceReader& recording, const ReferenceRanges& reference,
                                  int every_frame,
                                  const std::function<bool(int frame)>& keep_going = {});

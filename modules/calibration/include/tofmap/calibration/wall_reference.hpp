@@ -20,8 +20,8 @@ using WallDistances = std::map<int, double>;
 /// twice. Throws InputError if the file cannot be read or has no such line.
 WallDistances read_wall_distances(const std::filesystem::path& file);
 
-/// Throws InputError, which names `file`, if a distance is farther than a wall can fill an image
-/// from (100 m), or if the recording does not have one of the frames.
+/// Throws InputError, which names `file`, if a distance exceeds 100 m, from where no wall fills the
+/// image, or if the recording does not have one of the frames.
 void check_wall_distances(const WallDistances& distances_m, const std::filesystem::path& file,
                           const SequenceReader& recording);
 
@@ -29,9 +29,9 @@ void check_wall_distances(const WallDistances& distances_m, const std::filesyste
 /// distance of the wall from the optical centre along its normal; the tilt of the wall is estimated
 /// from the phases of A. NaN where a ray does not meet the wall, or only at a grazing angle.
 ///
-/// Empty if less than half of the returns lie on one plane at this distance. The tilt can be found
-/// if at least half of the wall is within half a wavelength of where it would be without tilt, and
-/// if the offset of A is below a quarter of a wavelength.
+/// `distance_m` must be above 0. Empty if less than half of the returns lie on one plane at this
+/// distance. The tilt can be found if at least half of the wall is within half a wavelength of
+/// where it would be without tilt, and if the offset of A is below a quarter of a wavelength.
 std::optional<ImageF> wall_range(const DualFrequencyFrame& frame, const SensorModel& sensor,
                                  double distance_m);
 

@@ -38,4 +38,9 @@ struct DualFrequencyFrame {
   bool has_amplitude() const { return amplitude_a.size() > 0; }
 };
 
+/// Whether a frame has the same phases as the frame `last` before it, at both frequencies.
+inline bool repeats(const DualFrequencyFrame& frame, const DualFrequencyFrame& last) {
+  return same_values(frame.phase_a, last.phase_a) && same_values(frame.phase_b, last.phase_b);
+}
+
 }  // namespace tofmap

@@ -14,7 +14,7 @@ namespace tofmap {
 
 /// A value of an enumeration and its name in options, reports and messages.
 ///
-/// An enumeration that is used as an option has in its namespace a function
+/// An enumeration whose values have names has in its namespace a function
 /// `std::span<const NamedValue<Enum>> named_values(Enum)`, which returns the values in the order in
 /// which users see them. The argument only selects the overload.
 template <class Enum>

@@ -21,7 +21,7 @@ namespace tofmap {
 struct EnumReference {
   std::function<std::string()> text;               ///< returns the current name or names
   std::function<bool(std::string_view text)> set;  ///< returns false if no value has a given name
-  std::string allowed;                             ///< "a | b | c", "any of a, b, c, in any order"
+  std::string allowed;                             ///< "a | b | c", "words from a, b, c"
 };
 
 /// A pointer to a member whose type is an enumeration with named values (named_value.hpp), or a
@@ -58,7 +58,7 @@ class EnumMember {
                                      if (found) *values = std::move(*found);
                                      return found.has_value();
                                    },
-                               .allowed = "any of " + all_names<Enum>(", ") + ", in any order"};
+                               .allowed = "words from " + all_names<Enum>(", ")};
         }) {}
 
   /// Access to the member of `options`, which must outlive the result.

@@ -34,9 +34,6 @@ struct RecordingSurvey {
   ErrorSurvey errors;  ///< of up to twelve frames, spread over the recording
 };
 
-/// Whether a frame has the same phases as the frame `last` before it, at both frequencies.
-bool repeats(const DualFrequencyFrame& frame, const DualFrequencyFrame& last);
-
 /// A warning that `repeated` frames repeat the previous frame. Empty if `repeated` is 0.
 std::optional<std::string> repetition_warning(int repeated);
 

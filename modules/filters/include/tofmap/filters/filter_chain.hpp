@@ -37,7 +37,7 @@ std::span<const NamedValue<Filter>> named_values(Filter);
 /// Options of the filters that run after unwrapping (docs/filters.md). Each limit has an effect
 /// only if its filter is in `chain`.
 struct FilterOptions {
-  /// The filters in the order in which they run.
+  /// The filters in the order in which they run. No filter runs if it is empty.
   std::vector<Filter> chain = {Filter::amplitude, Filter::confidence, Filter::phasor_mean,
                                Filter::isolated_wrap, Filter::plane_edge};
 

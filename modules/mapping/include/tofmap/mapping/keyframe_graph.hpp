@@ -40,7 +40,7 @@ class KeyframeGraph {
   std::span<const Keyframe> all() const { return keyframes_; }
 
   /// Sets the pose of a keyframe.
-  void place(int id, const Pose& world_from_camera);
+  void set_pose(int id, const Pose& world_from_camera);
 
   /// At most `count` keyframes around a pose: keyframe `id`, and those nearest to the pose among
   /// the keyframes that at most five registrations connect with `id`. Keyframe `id` comes last, the

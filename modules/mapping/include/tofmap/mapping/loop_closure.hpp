@@ -25,7 +25,7 @@ struct LoopOptions {
   /// poses, 0.01 … 3.2 rad.
   double max_rotation_rad = 1;
   /// Smallest difference between the ids of the keyframes of a loop, 1 … 100000.
-  int min_gap = 20;
+  int min_keyframes = 20;
   /// Smallest share of a keyframe's points that must have a correspondence in earlier keyframes,
   /// 0.01 … 1.
   double min_overlap = 0.35;
@@ -57,8 +57,8 @@ struct LoopCandidate {
 
 /// Searches for an earlier keyframe that sees the same place as `keyframe`.
 ///
-/// Candidates are keyframes with an id that is smaller by at least `min_gap`, whose cameras are
-/// within `radius_m` and `max_rotation_rad` of the camera of `keyframe`. First, `keyframe` is
+/// Candidates are keyframes with an id that is smaller by at least `min_keyframes`, whose cameras
+/// are within `radius_m` and `max_rotation_rad` of the camera of `keyframe`. First, `keyframe` is
 /// registered with the three candidates that overlap it most, together, from its current pose with
 /// drift_prior() along the path since. If the result is not verified, the drift may have been
 /// larger: then `keyframe` is registered with the candidate that looks most similar, from the pose

@@ -46,7 +46,7 @@ struct OdometryOptions {
   double prior_translation_sigma_m = 0.03;
   /// Largest difference between the registered and the predicted pose, in standard deviations of
   /// the prior, 1 … 1000. A pose that differs more is rejected.
-  double max_prior_mahalanobis = 8;
+  double max_prior_sigmas = 8;
 
   static std::vector<OptionField<OdometryOptions>> fields();
 };

@@ -49,7 +49,7 @@ class SurfaceMap {
 
   /// Adds the voxels of a submap with the same options, each as one point with the weight and the
   /// observations of the voxel. Throws UsageError as integrate() does.
-  void add(const SurfaceMap& part, const Pose& world_from_part);
+  void add(const SurfaceMap& submap, const Pose& world_from_submap);
 
   /// Number of voxels seen so far.
   std::size_t size() const { return voxels_.size(); }

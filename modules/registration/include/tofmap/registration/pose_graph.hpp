@@ -54,6 +54,6 @@ double mahalanobis_distance(const PoseEdge& edge, const std::vector<Pose>& poses
 
 /// Whether the kernel rejects an edge at this Mahalanobis distance: its weight is less than a
 /// sixteenth of the weight of an edge without error.
-bool is_outvoted(double deviations, double kernel_width);
+bool is_rejected(double deviations, double kernel_width);
 
 }  // namespace tofmap

@@ -26,9 +26,9 @@ struct MotionPrior {
   double translation_sigma_m = 0;  ///< standard deviation per axis; must be positive
 };
 
-/// Difference between a pose and the predicted one, divided by the prior's standard deviation: the
-/// larger value of rotation and translation.
-double deviation(const MotionPrior& prior, const Pose& world_from_camera);
+/// Difference between a pose and the predicted one, divided by the prior's standard deviations:
+/// the larger value of rotation and translation.
+double prior_deviation_sigmas(const MotionPrior& prior, const Pose& world_from_camera);
 
 /// How frames are registered.
 enum class RegistrationMethod {
@@ -54,8 +54,8 @@ struct RegistrationOptions {
   /// Width of the Geman-McClure kernel in robust standard deviations of the residuals, 0.5 … 100. A
   /// smaller width down-weights outliers more strongly.
   double kernel_width = 3;
-  /// Standard deviation of the error of a point that averaging does not reduce, 0 … 1 m. Its
-  /// square is added to the predicted variance of each correspondence.
+  /// Standard deviation of the error of a point that averaging does not reduce, 0 … 1 m. Its square
+  /// is added to the predicted variance of each correspondence.
   double systematic_sigma_m = 0.003;
   /// Number of correspondences that count as one independent observation, 1 … 1000. A larger number
   /// increases the covariance and the weight of the prior.
@@ -131,8 +131,8 @@ struct RegistrationResult {
 /// includes its iteration limit, and the overlap and the inlier ratio are large enough. All other
 /// values of the result are measured at PCL's pose.
 ///
-/// Throws UsageError if a standard deviation of the prior is not positive. The status of the result
-/// tells whether registration succeeded.
+/// Throws UsageError if a standard deviation of the prior is not positive. The status
+/// of the result tells whether registration succeeded.
 RegistrationResult register_to_targets(const SurfaceCloud& source,
                                        std::span<const RegistrationTarget> targets,
                                        const CameraModel& camera, const MotionPrior& prior,

@@ -32,8 +32,8 @@ void add_box(TriangleMesh& mesh, const Eigen::Vector3d& min, const Eigen::Vector
              double reflectance);
 
 /// Adds the box of add_box(), rotated by `yaw_rad` about the vertical axis through its centre.
-void add_turned_box(TriangleMesh& mesh, const Eigen::Vector3d& min, const Eigen::Vector3d& max,
-                    double yaw_rad, double reflectance);
+void add_rotated_box(TriangleMesh& mesh, const Eigen::Vector3d& min, const Eigen::Vector3d& max,
+                     double yaw_rad, double reflectance);
 
 /// Adds an upright cylinder (a prism of 24 sides) with closed ends. `base` is the centre of its
 /// lower end, metres.

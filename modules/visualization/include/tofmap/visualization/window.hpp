@@ -30,7 +30,7 @@ class Window {
   void look_from(const Viewpoint& viewpoint);
 
   /// Whether the user has rotated, panned or zoomed since the last look_from().
-  bool was_turned() const;
+  bool was_moved() const;
 
   /// Replaces the text in the upper left and in the lower left corner.
   void set_text(const std::string& upper, const std::string& lower);
