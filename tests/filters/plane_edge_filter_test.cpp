@@ -161,6 +161,24 @@ TEST(PlaneEdgeFilter, FindsFlyingPixelsInNoiseAndKeepsTheSurfacesBesideThem) {
   EXPECT_GT(kept - flying_left, 0.95 * seeds * (pixels - 16));
 }
 
+TEST(PlaneEdgeFilter, TreatsTheFirstColumnLikeTheLast) {
+  // An edge between an upper and a lower surface, and a row of pixels that moves from one to the
+  // other, through the limits of planes and of edges. All is symmetric about the middle column.
+  int dropped = 0;
+  for (int i = 1; i < 60; ++i) {
+    RangeImage image = plane(3);
+    image.sigma_m.setConstant(0.05F);
+    image.range_m.bottomRows(8) = plane(5).range_m.bottomRows(8);
+    image.range_m.row(7) = plane(3 + 0.01F * static_cast<float>(i)).range_m.row(7);
+    const RangeImage out = off_planes_dropped(image);
+    for (Eigen::Index v = 0; v < out.rows(); ++v) {
+      EXPECT_EQ(out.valid(v, 0), out.valid(v, out.cols() - 1)) << "offset " << i << ", row " << v;
+      dropped += out.valid(v, 0) ? 0 : 1;
+    }
+  }
+  EXPECT_GT(dropped, 0);
+}
+
 TEST(PlaneEdgeFilter, HearsNothingFromInvalidPixelsAndBorders) {
   RangeImage image = plane(3);
   for (int v = 0; v < 16; ++v) image.invalidate(v, 5, InvalidReason::low_amplitude);
