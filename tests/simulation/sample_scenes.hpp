@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
+
+#include <tofmap/core/image.hpp>
 #include <tofmap/simulation/scenes.hpp>
+#include <tofmap/simulation/simulator.hpp>
 
 namespace tofmap::test {
 
@@ -23,6 +27,26 @@ inline Scene facing_wall_scene(double range_m, double reflectance, double walk_m
   scene.min_frames = 2;
   scene.max_range_m = 60;
   return scene;
+}
+
+/// A small camera without noise, mixed pixels, or motion between A and B.
+inline SimulatorOptions ideal_camera() {
+  SimulatorOptions options;
+  options.width_px = 40;
+  options.height_px = 24;
+  options.subpixels = 1;
+  options.range_noise_m = 0;
+  options.b_delay_share = 0;
+  return options;
+}
+
+/// Errors of the ranges that phases stand for, measured minus true, with the wrap counts that make
+/// them smallest.
+inline ImageF range_error_m(const ImageF& phase, const ImageF& range_truth_m, double wavelength_m) {
+  return range_truth_m.binaryExpr(phase, [wavelength_m](float truth_m, float cycles) {
+    const double off = double{cycles} - double{truth_m} / wavelength_m;
+    return static_cast<float>(wavelength_m * (off - std::round(off)));
+  });
 }
 
 }  // namespace tofmap::test

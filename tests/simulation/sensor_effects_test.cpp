@@ -13,27 +13,13 @@
 namespace tofmap {
 namespace {
 
-SimulatorOptions ideal() {
-  SimulatorOptions options;
-  options.width_px = 40;
-  options.height_px = 24;
-  options.subpixels = 1;
-  options.range_noise_m = 0;
-  options.b_delay_share = 0;
-  return options;
-}
-
-/// By how much the phase of A makes the range too long, the wraps of the truth given.
+/// Of the ranges of A.
 ImageF range_error_m(const SimulatedFrame& simulated, double wavelength_m) {
-  return simulated.range_truth_m.binaryExpr(
-      simulated.frame.phase_a, [wavelength_m](float truth_m, float phase) {
-        const double off = double{phase} - double{truth_m} / wavelength_m;
-        return static_cast<float>(wavelength_m * (off - std::round(off)));
-      });
+  return test::range_error_m(simulated.frame.phase_a, simulated.range_truth_m, wavelength_m);
 }
 
 TEST(Wiggling, SwingsFourTimesAWavelengthByTheAmplitudeWanted) {
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   options.wiggle_m = 0.02;
   const Simulator simulator(test::facing_wall_scene(3, 0.5), options);
   const double wavelength_m = simulator.sensor().modulation.wavelength_a_m();
@@ -48,7 +34,7 @@ TEST(Wiggling, SwingsFourTimesAWavelengthByTheAmplitudeWanted) {
 }
 
 TEST(Wiggling, SwingsAsManyDegreesAtB) {
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   options.wiggle_m = 0.02;
   const Simulator simulator(test::facing_wall_scene(3, 0.5), options);
   SimulatedFrame simulated = simulator.simulate(0);
@@ -77,7 +63,7 @@ Scene corner_scene() {
 }
 
 TEST(Multipath, BendsACorner) {
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   options.multipath_rays = 256;
   const Simulator simulator(corner_scene(), options);
   const ImageF error_m =
@@ -93,16 +79,16 @@ TEST(Multipath, BendsACorner) {
 }
 
 TEST(Multipath, IsNotThereBeforeAFlatWall) {
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   options.multipath_rays = 64;
   const Simulator simulator(test::facing_wall_scene(3, 0.5), options);
-  const Simulator without(test::facing_wall_scene(3, 0.5), ideal());
+  const Simulator without(test::facing_wall_scene(3, 0.5), test::ideal_camera());
   EXPECT_TRUE((simulator.simulate(0).frame.phase_a == without.simulate(0).frame.phase_a).all());
 }
 
 TEST(FullWell, TakesAmplitudeFromWhatIsTooBright) {
   // At 1 m the amplitude is 3000, so samples hold up to 6000.
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   const Scene scene = test::facing_wall_scene(1, 0.5);
   const float plain = Simulator(scene, options).simulate(0).frame.amplitude_a(12, 20);
   EXPECT_NEAR(plain, 3000, 5);
@@ -121,7 +107,7 @@ TEST(FullWell, TakesAmplitudeFromWhatIsTooBright) {
 }
 
 TEST(DarkLevel, AddsItsShotNoiseAndLeavesLessRoom) {
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   options.dark_level = 200;
   const Simulator simulator(test::facing_wall_scene(5, 0.5), options);
   const SimulatedFrame simulated = simulator.simulate(0);
@@ -131,9 +117,11 @@ TEST(DarkLevel, AddsItsShotNoiseAndLeavesLessRoom) {
   const double differences =
       std::sqrt((amplitude.rightCols(39) - amplitude.leftCols(39)).square().mean() / 2);
   EXPECT_NEAR(differences, std::sqrt(options.dark_level / 2), 0.1 * std::sqrt(100));
-  EXPECT_NEAR(
-      mean,
-      Simulator(test::facing_wall_scene(5, 0.5), ideal()).simulate(0).frame.amplitude_a.mean(), 2)
+  EXPECT_NEAR(mean,
+              Simulator(test::facing_wall_scene(5, 0.5), test::ideal_camera())
+                  .simulate(0)
+                  .frame.amplitude_a.mean(),
+              2)
       << "charge that all samples have is no signal";
   options.full_well = 330;  // enough for twice the amplitude of 120, but not on top of the charge
   EXPECT_LT(
@@ -154,7 +142,7 @@ Scene two_tone_scene() {
 }
 
 TEST(Exposure, MovesRangesWhereTheSurfaceChangesBetweenSamples) {
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   options.max_translation_m = 0.3;  // three pixels of the wall
   const auto worst_m = [&](double exposure_share) {
     options.exposure_share = exposure_share;
@@ -169,10 +157,10 @@ TEST(Exposure, MovesRangesWhereTheSurfaceChangesBetweenSamples) {
 }
 
 TEST(Exposure, DoesNotMatterWhereTheCameraStandsStill) {
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   options.exposure_share = 0.8;
   const Simulator simulator(corner_scene(), options);
-  const Simulator without(corner_scene(), ideal());
+  const Simulator without(corner_scene(), test::ideal_camera());
   const ImageF phase = simulator.simulate(0).frame.phase_a;
   EXPECT_LT((phase - without.simulate(0).frame.phase_a).abs().maxCoeff(), 1e-6F);
 }

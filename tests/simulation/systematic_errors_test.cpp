@@ -20,24 +20,6 @@ namespace {
 /// Rays are cast in single precision: some 1e-6 of 10 m.
 constexpr float tolerance_m = 5e-5F;
 
-SimulatorOptions ideal() {
-  SimulatorOptions options;
-  options.width_px = 40;
-  options.height_px = 24;
-  options.subpixels = 1;
-  options.range_noise_m = 0;
-  options.b_delay_share = 0;
-  return options;
-}
-
-/// By how much phases make ranges too long, the wraps of the truth given.
-ImageF range_error_m(const ImageF& phase, const ImageF& range_truth_m, double wavelength_m) {
-  return range_truth_m.binaryExpr(phase, [wavelength_m](float truth_m, float cycles) {
-    const double off = double{cycles} - double{truth_m} / wavelength_m;
-    return static_cast<float>(wavelength_m * (off - std::round(off)));
-  });
-}
-
 struct FrameErrors {
   ImageF a_m;
   ImageF b_m;
@@ -47,8 +29,8 @@ FrameErrors range_errors_m(const Simulator& simulator, int frame = 0) {
   const SimulatedFrame simulated = simulator.simulate(frame);
   const Modulation& modulation = simulator.sensor().modulation;
   const ImageF& truth_m = simulated.range_truth_m;
-  return {range_error_m(simulated.frame.phase_a, truth_m, modulation.wavelength_a_m()),
-          range_error_m(simulated.frame.phase_b, truth_m, modulation.wavelength_b_m())};
+  return {test::range_error_m(simulated.frame.phase_a, truth_m, modulation.wavelength_a_m()),
+          test::range_error_m(simulated.frame.phase_b, truth_m, modulation.wavelength_b_m())};
 }
 
 bool same_pixels(const SimulatedFrame& one, const SimulatedFrame& other) {
@@ -60,7 +42,7 @@ bool same_pixels(const SimulatedFrame& one, const SimulatedFrame& other) {
 }
 
 TEST(SystematicErrors, OfSizeZeroLeaveEveryBitAsItIs) {
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   options.range_noise_m = 0.02;
   const SimulatedFrame plain = Simulator(test::facing_wall_scene(3, 0.5), options).simulate(0);
   options.errors_seed = 77;
@@ -70,7 +52,7 @@ TEST(SystematicErrors, OfSizeZeroLeaveEveryBitAsItIs) {
 }
 
 TEST(RangeOffset, IsThatOfEachFrequency) {
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   options.offset_a_m = -0.03;
   options.offset_b_m = 0.05;
   const FrameErrors errors = range_errors_m(Simulator(test::facing_wall_scene(3, 0.5), options));
@@ -102,7 +84,7 @@ HarmonicFit fit_harmonics(const ImageF& error_m, const ImageF& range_m, double w
 
 /// Over the image ranges go from 3 to 3.9 m: at these frequencies, a cycle and more.
 SimulatorOptions short_waves() {
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   options.frequency_a_hz = 190e6;
   options.frequency_b_hz = 220e6;
   return options;
@@ -145,7 +127,7 @@ TEST(PeriodicError, IsThatOfTheCameraAndNotOfTheNoise) {
 }
 
 TEST(AmplitudeError, GoesWithTheLogarithmOfTheAmplitudeOverThreeDecades) {
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   options.amplitude_error_a_m = 0.03;
   options.amplitude_error_b_m = -0.02;
   // Amplitudes of 65535 (the end of the scale), 5400, 600 and 6.
@@ -164,7 +146,7 @@ TEST(AmplitudeError, GoesWithTheLogarithmOfTheAmplitudeOverThreeDecades) {
 }
 
 TEST(FixedPattern, IsOfThePixelAndTheFrequencyAndTheSameInEveryFrame) {
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   options.fixed_pattern_m = 0.01;
   const Simulator simulator(test::facing_wall_scene(3, 0.5, 0.05), options);
   const FrameErrors errors = range_errors_m(simulator);
@@ -183,7 +165,7 @@ TEST(FixedPattern, IsOfThePixelAndTheFrequencyAndTheSameInEveryFrame) {
 }
 
 TEST(FixedPattern, IsDrawnByTheErrorsSeedAlone) {
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   options.fixed_pattern_m = 0.01;
   const auto errors_m = [&] {
     return range_errors_m(Simulator(test::facing_wall_scene(3, 0.5), options)).a_m;
@@ -196,11 +178,11 @@ TEST(FixedPattern, IsDrawnByTheErrorsSeedAlone) {
 }
 
 TEST(SystematicErrors, AddUp) {
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   const Scene scene = test::facing_wall_scene(3, 0.5);
   ImageF sum_m = ImageF::Zero(options.height_px, options.width_px);
   const auto add_alone = [&](double SimulatorOptions::*size, double value) {
-    SimulatorOptions alone = ideal();
+    SimulatorOptions alone = test::ideal_camera();
     alone.*size = value;
     options.*size = value;
     sum_m += range_errors_m(Simulator(scene, alone)).b_m;
@@ -214,7 +196,7 @@ TEST(SystematicErrors, AddUp) {
 }
 
 TEST(AmbientLight, RaisesTheNoiseInItsPartOfTheImageAlone) {
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   options.width_px = 160;
   options.height_px = 120;
   options.range_noise_m = 0.02;
@@ -236,8 +218,8 @@ TEST(AmbientLight, RaisesTheNoiseInItsPartOfTheImageAlone) {
       const DualFrequencyFrame& frame = simulated.frame;
       const Modulation& modulation = simulator.sensor().modulation;
       const ImageF error_m =
-          range_error_m(of_a ? frame.phase_a : frame.phase_b, simulated.range_truth_m,
-                        of_a ? modulation.wavelength_a_m() : modulation.wavelength_b_m());
+          test::range_error_m(of_a ? frame.phase_a : frame.phase_b, simulated.range_truth_m,
+                              of_a ? modulation.wavelength_a_m() : modulation.wavelength_b_m());
       return std::sqrt(double{in_light(error_m).square().mean()});
     };
     // The same draws, five times as large: only the second order differs.
@@ -274,7 +256,7 @@ Scene edge_scene() {
 }
 
 TEST(Labels, AreThoseOfThePixelWithoutItsSystematicErrors) {
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   options.subpixels = 4;
   const ImageU8 plain = Simulator(edge_scene(), options).simulate(0).label;
   ASSERT_GT((plain == static_cast<std::uint8_t>(PixelLabel::flying)).count(), 5);
@@ -295,7 +277,7 @@ TEST(SystematicErrors, RefuseWhatHasNoEffect) {
     }
     return "none";
   };
-  SimulatorOptions options = ideal();
+  SimulatorOptions options = test::ideal_camera();
   options.phase_bits = 3;
   EXPECT_NE(complaint(options).find("simulator.phase_bits"), std::string::npos);
   options.phase_bits = 4;
