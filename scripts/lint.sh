@@ -5,9 +5,9 @@
 # Checks the format of all files with clang-format, and sources with clang-tidy:
 #   scripts/lint.sh [--since COMMIT]   those that changed since a commit (default: the last one),
 #   scripts/lint.sh --sample N         N sources, first those that the last commit changed, then
-#                                      any, another choice for each commit (CI does this),
+#                                      any, another choice for each commit,
 #   scripts/lint.sh --all              all sources, more than an hour of processor time,
-#   scripts/lint.sh --format           none: the format alone.
+#   scripts/lint.sh --format           none: the format alone (CI does this).
 # BUILD_DIR is a configured build folder, whose compile_commands.json is used (default: build).
 # Headers are checked with the sources of their module.
 set -euo pipefail
