@@ -65,8 +65,8 @@ def name_of(sequence):
 
 
 def registered_pairs(build, sequence):
-    """The pairs of report.json, whether the pose of each is right, and for each registered cloud
-    the error of its pose relative to the first one, metres."""
+    """The number of clouds, the pairs of report.json, whether the pose of each pair is right, and
+    for each registered cloud the error of its pose relative to the first one, metres."""
     with tempfile.TemporaryDirectory() as folder:
         poses = write_clouds(sequence, folder)
         subprocess.run([f"{build}/apps/tofmap", "register", *poses, "--out", f"{folder}/out",
@@ -81,16 +81,15 @@ def registered_pairs(build, sequence):
         is_right.append(error_m(pair["target_from_source"], truth) < RIGHT_WITHIN_M)
     errors = [error_m(c["transform"], numpy.linalg.inv(poses[placed[0]["path"]]) @ poses[c["path"]])
               for c in placed]
-    return pairs, is_right, errors
+    return len(poses), pairs, is_right, errors
 
 
 def score(build, sequence):
-    pairs, is_right, errors = registered_pairs(build, sequence)
+    clouds, pairs, is_right, errors = registered_pairs(build, sequence)
     registered = [pair["verdict"] == "registered" for pair in pairs]
     right = sum(r and ok for r, ok in zip(registered, is_right))
     wrong = sum(registered) - right
     rejected = sum(is_right) - right
-    clouds = len({pair[side] for pair in pairs for side in ("source", "target")})
     rms_mm = 1000 * numpy.sqrt(numpy.mean(numpy.square(errors))) if errors else numpy.nan
     print(f"| {name_of(sequence)} | {clouds} | {len(pairs)} | {right} "
           f"| {wrong} | {rejected} | {len(errors)} | {rms_mm:.0f} |", flush=True)

@@ -40,18 +40,13 @@ CANDIDATES = {field.name: field.default * STEPS for field in dataclasses.fields(
 class Pairs:
     """The figures of pairs as arrays, and which of them are right."""
 
-    def __init__(self, reports, is_right):
+    def __init__(self, recordings):
+        """`recordings`: of each, the pairs of report.json and whether they are right."""
+        reports = [report for pairs, _ in recordings for report in pairs]
+        is_right = [right for _, rights in recordings for right in rights]
         self.is_right = numpy.array(is_right, dtype=bool)
         self.figures = {name: numpy.array([report[name] for report in reports], dtype=float)
                         for name in CANDIDATES}
-
-    @staticmethod
-    def joined(parts):
-        all_pairs = Pairs([], [])
-        all_pairs.is_right = numpy.concatenate([part.is_right for part in parts])
-        all_pairs.figures = {name: numpy.concatenate([part.figures[name] for part in parts])
-                             for name in CANDIDATES}
-        return all_pairs
 
     def registered(self, limits):
         figure = self.figures
@@ -93,16 +88,17 @@ def main():
     build, sequences = sys.argv[1], sys.argv[2:]
     if len(sequences) < 2:
         sys.exit(__doc__)
-    pairs = {}
+    recordings = {}
     for sequence in sequences:
-        reports, is_right, _ = cloud_pairs.registered_pairs(build, sequence)
-        pairs[cloud_pairs.name_of(sequence)] = Pairs(reports, is_right)
+        _, pairs, is_right, _ = cloud_pairs.registered_pairs(build, sequence)
+        recordings[cloud_pairs.name_of(sequence)] = (pairs, is_right)
     print("| recording | pairs | right | limits chosen on the others: wrong registered "
           "| right rejected | limits of the program: wrong registered | right rejected "
           "| chosen limits that differ |\n|---|---|---|---|---|---|---|---|")
     sums = numpy.zeros(6, dtype=int)
-    for name, held_out in pairs.items():
-        limits = best_limits(Pairs.joined([p for other, p in pairs.items() if other != name]))
+    for name, recording in recordings.items():
+        held_out = Pairs([recording])
+        limits = best_limits(Pairs([r for other, r in recordings.items() if other != name]))
         figures = (held_out.is_right.size, numpy.count_nonzero(held_out.is_right),
                    *held_out.errors(limits), *held_out.errors(Limits()))
         sums += figures

@@ -11,21 +11,15 @@
 # and its drivers keep memory until the end of the process.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-bash scripts/packages.sh --tests
-
 case "${1:-}" in
-  "")
-    cmake --preset sanitize
-    cmake --build --preset sanitize
-    ctest --preset sanitize -j "$(nproc)"
-    ;;
-  thread)
-    cmake --preset sanitize-thread
-    cmake --build --preset sanitize-thread
-    ctest --preset sanitize-thread -j "$(nproc)"
-    ;;
+  "") preset=sanitize ;;
+  thread) preset=sanitize-thread ;;
   *)
     echo "usage: scripts/sanitize.sh [thread]" >&2
     exit 2
     ;;
 esac
+bash scripts/packages.sh --tests
+cmake --preset "$preset"
+cmake --build --preset "$preset"
+ctest --preset "$preset" -j "$(nproc)"

@@ -212,9 +212,7 @@ void append_range_samples(const DualFrequencyFrame& frame, const SensorModel& se
     throw UsageError("append_range_samples: frame and reference ranges differ in size");
   }
   if (first < 0 || stride < 1) {
-    throw UsageError(
-        "append_range_samples: the first pixel must be 0 or more, the stride 1 or "
-        "more");
+    throw UsageError("append_range_samples: first is below 0 or stride below 1");
   }
   const auto unwrapped = [](float phase_cycles, double wavelength_m, double near_m) {
     const double wraps = std::round(near_m / wavelength_m - double{phase_cycles});
