@@ -390,15 +390,15 @@ Phasors::Phasors(const ImageF& phase_a, const ImageF& phase_b, const ImageF& sig
     : Phasors(static_cast<int>(phase_a.rows()), static_cast<int>(phase_a.cols()), margin) {
   for (int v = 0; v < phase_a.rows(); ++v) {
     for (int u = 0; u < phase_a.cols(); ++u) {
-      const float rotation_a = two_pi * phase_a(v, u);
-      const float rotation_b = two_pi * phase_b(v, u);
-      if (!std::isfinite(rotation_a + rotation_b + sigma_cycles(v, u))) continue;
+      const float phase_a_rad = two_pi * phase_a(v, u);
+      const float phase_b_rad = two_pi * phase_b(v, u);
+      if (!std::isfinite(phase_a_rad + phase_b_rad + sigma_cycles(v, u))) continue;
       const PhasorMoments moments(sigma_cycles(v, u));
       const float weight = moments.mean / moments.variance_across;
-      a.re.row(v)[u] = weight * std::cos(rotation_a);
-      a.im.row(v)[u] = weight * std::sin(rotation_a);
-      b.re.row(v)[u] = weight * std::cos(rotation_b);
-      b.im.row(v)[u] = weight * std::sin(rotation_b);
+      a.re.row(v)[u] = weight * std::cos(phase_a_rad);
+      a.im.row(v)[u] = weight * std::sin(phase_a_rad);
+      b.re.row(v)[u] = weight * std::cos(phase_b_rad);
+      b.im.row(v)[u] = weight * std::sin(phase_b_rad);
       information.row(v)[u] = weight * moments.mean;
     }
   }
