@@ -66,6 +66,20 @@ TEST(GuessAlignments, FindsNothingInChance) {
   }
 }
 
+TEST(GuessAlignments, HasNoneFromMatchesThatAreAllInOnePlace) {
+  // Within the tolerance of their distances any of these would be compatible with any other, but
+  // they say nothing of a rotation.
+  std::mt19937 random(8);
+  std::vector<Eigen::Vector3f> places;
+  for (int i = 0; i < 100; ++i) places.push_back(random_vector(random, 0.05F));
+  const std::vector<Eigen::Vector3f> normals(100, Eigen::Vector3f::UnitZ());
+  const PointSearch search(places);
+  const OrientedCloud cloud(places, normals, 0.1, search);
+  std::vector<FeatureMatch> matches;
+  for (int i = 0; i < 100; ++i) matches.push_back({i, (i * 37 + 11) % 100});
+  EXPECT_TRUE(guess_alignments(cloud, cloud, matches).empty());
+}
+
 TEST(GuessAlignments, HasNoneWithoutMatches) {
   std::mt19937 random(5);
   const OrientedCloud cloud = random_cloud(random, 100);

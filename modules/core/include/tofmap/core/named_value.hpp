@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
 #include <optional>
 #include <span>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <tofmap/core/text.hpp>
 
 namespace tofmap {
 
@@ -44,37 +45,25 @@ std::optional<Enum> find_named(std::string_view name) {
 /// The names of all values of an enumeration, with `separator` between them.
 template <class Enum>
 std::string all_names(std::string_view separator) {
-  std::string text;
-  for (const NamedValue<Enum>& named : named_values(Enum{})) {
-    if (!text.empty()) text += separator;
-    text += named.name;
-  }
-  return text;
+  return joined(named_values(Enum{}), separator, &NamedValue<Enum>::name);
 }
 
 /// The names of some values of an enumeration, with `separator` between them.
 template <class Enum>
 std::string joined_names(const std::vector<Enum>& values, std::string_view separator) {
-  std::string text;
-  for (const Enum value : values) {
-    if (!text.empty()) text += separator;
-    text += name_of(value);
-  }
-  return text;
+  return joined(values, separator, name_of<Enum>);
 }
 
 /// The values whose names are the words of a text, in its order. Words are separated by white
 /// space. Empty if a word is not the name of a value.
 template <class Enum>
 std::optional<std::vector<Enum>> find_all_named(std::string_view text) {
-  constexpr std::string_view white_space = " \t\r\n";
   std::vector<Enum> values;
-  for (std::size_t from = text.find_first_not_of(white_space); from != std::string_view::npos;) {
-    const std::size_t to = std::min(text.find_first_of(white_space, from), text.size());
-    const std::optional<Enum> value = find_named<Enum>(text.substr(from, to - from));
+  std::istringstream words{std::string(text)};
+  for (std::string word; words >> word;) {
+    const std::optional<Enum> value = find_named<Enum>(word);
     if (!value) return std::nullopt;
     values.push_back(*value);
-    from = text.find_first_not_of(white_space, to);
   }
   return values;
 }

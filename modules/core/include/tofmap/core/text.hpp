@@ -2,18 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 
 namespace tofmap {
 
-/// The words, with `separator` between them.
-template <class Words>
-std::string joined(const Words& words, std::string_view separator) {
+/// The words of a range of items, with `separator` between them. `word_of` gives an item's word, as
+/// something that a string_view can refer to.
+template <class Items, class WordOf = std::identity>
+std::string joined(const Items& items, std::string_view separator, WordOf word_of = {}) {
   std::string text;
-  for (const std::string_view word : words) {
+  for (const auto& item : items) {
     if (!text.empty()) text += separator;
-    text += word;
+    text += std::string_view(std::invoke(word_of, item));
   }
   return text;
 }
