@@ -12,6 +12,11 @@ function(tofmap_private_flags target)
   # GCC 12 wrongly warns of overlaps in std::string (GCC bug 105651).
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(${target} PRIVATE -Wno-restrict)
+    # With precompiled headers, it takes code of the standard library for code of the project.
+    if(TOFMAP_PRECOMPILE_HEADERS)
+      target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow
+                                               -Wno-stringop-overread)
+    endif()
   endif()
   # Clang does not know `#pragma GCC ivdep`, which is for speed alone.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
