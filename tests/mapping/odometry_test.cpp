@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,7 @@ std::shared_ptr<const SurfaceCloud> view(int frame) {
 class FollowedCamera {
  public:
   explicit FollowedCamera(const RegistrationOptions& registration = {})
-      : odometry_(test::small_camera(), {}, registration) {}
+      : odometry_(test::small_camera(), {}, registration, {}) {}
 
   TrackingResult track(int frame, const std::shared_ptr<const SurfaceCloud>& cloud) {
     std::vector<const Keyframe*> around;
@@ -126,6 +127,48 @@ TEST(Odometry, MovesWithItsKeyframes) {
   const TrackingResult next = camera.track(15, view(15));
   ASSERT_TRUE(next.registered());
   EXPECT_LT(error_m(next, 15, elsewhere), 2e-3);
+}
+
+/// How a camera is followed that stands still for `still` frames and then makes these motions, one
+/// per frame.
+void expect_followed(int still, const std::vector<Pose>& motions) {
+  FollowedCamera camera;
+  Pose pose = Pose::Identity();
+  const auto seen = [&] {
+    return std::make_shared<const SurfaceCloud>(
+        test::box_cloud(test::small_camera(), room_min, room_max, pose));
+  };
+  for (int frame = 0; frame < still; ++frame) camera.track(frame, seen());
+  int frame = still;
+  for (const Pose& motion : motions) {
+    pose = pose * motion;
+    const TrackingResult result = camera.track(frame++, seen());
+    ASSERT_TRUE(result.registered()) << "frame " << frame;
+    EXPECT_LT((pose.inverse() * result.world_from_camera).translation().norm(), 5e-3)
+        << "frame " << frame;
+    EXPECT_LT(rotation_angle_rad(pose, result.world_from_camera), 2e-3) << "frame " << frame;
+  }
+}
+
+Pose turned_by_deg(const Eigen::Vector3d& axis, double angle_deg, const Vector3d& moved_m) {
+  return test::moved_by(angle_deg * std::numbers::pi / 180 * axis.normalized(), moved_m);
+}
+
+TEST(Odometry, FollowsACameraThatTurnsFromItsFirstFrame) {
+  std::vector<Pose> motions;
+  for (const double angle_deg : {17, 13, 9, 6}) {
+    motions.push_back(turned_by_deg({0, 1, 0.1}, angle_deg, {0, 0, 0}));
+  }
+  expect_followed(1, motions);
+}
+
+TEST(Odometry, FollowsAStandingCameraThatTurnsBy20DegreesAndMovesBy30Centimetres) {
+  for (int i = 0; i < 3; ++i) {
+    const Vector3d axis = Vector3d::Unit(i);
+    SCOPED_TRACE(axis.transpose());
+    expect_followed(5, {turned_by_deg(axis, 20, {0.2, -0.1, 0.2}),
+                        turned_by_deg(axis, -20, {-0.2, 0.1, -0.2})});
+  }
 }
 
 TEST(Odometry, DoesNotBelieveALeap) {

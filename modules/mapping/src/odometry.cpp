@@ -3,6 +3,8 @@
 
 #include "tofmap/mapping/odometry.hpp"
 
+#include "tofmap/mapping/rotation_search.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,6 +20,38 @@ constexpr double periods_of_steady_tracking = 3.5;
 double support(const RegistrationResult& result) {
   return succeeded(result.status) ? result.overlap * result.inlier_ratio : 0;
 }
+
+/// Share by which the support of a registration must exceed that of another one that ends
+/// elsewhere.
+constexpr double clear_share = 1.1;
+
+bool is_clearly_better(const RegistrationResult& one, const RegistrationResult& other) {
+  return support(one) > clear_share * support(other);
+}
+
+bool is_elsewhere(const RegistrationResult& one, const RegistrationResult& other) {
+  constexpr double apart_m = 0.1;
+  constexpr double apart_rad = 0.05;
+  const Pose& a = one.world_from_camera;
+  const Pose& b = other.world_from_camera;
+  return (a.translation() - b.translation()).norm() > apart_m ||
+         rotation_angle_rad(a, b) > apart_rad;
+}
+
+/// A registered frame is tried from other rotations as well if its pose differs from the predicted
+/// one by more than this many standard deviations, or if its support is less than this share of
+/// what is usual.
+constexpr double suspect_sigmas = 4;
+constexpr double suspect_share = 0.75;
+
+/// Largest rotation from the last pose that is tried: a turn by 30 degrees and what ICP adds.
+constexpr double reach_rad = 0.6;
+constexpr std::size_t most_rotations = 4;
+
+/// Standard deviations of the prior around a rotation that was found by search: the step of its
+/// grid, and a translation that at `max_prior_sigmas` allows half a metre a frame.
+constexpr double turned_sigma_rad = 0.07;
+constexpr double turned_sigma_m = 0.06;
 
 bool has_surface(const SurfaceCloud& cloud, int min_points) {
   int count = 0;
@@ -67,15 +101,15 @@ std::span<const NamedValue<TrackingStatus>> named_values(TrackingStatus) {
 }
 
 Odometry::Odometry(const CameraModel& camera, const OdometryOptions& options,
-                   const RegistrationOptions& registration)
+                   const RegistrationOptions& registration, const LoopOptions& recognition)
     : camera_(camera),
       options_(options),
       registration_(registration),
+      recognition_(recognition),
       uncertainty_(options.prior_rotation_sigma_rad, options.prior_translation_sigma_m) {}
 
 TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
-                               std::span<const Keyframe* const> around,
-                               const std::function<bool(const RegistrationResult&)>& is_believed) {
+                               std::span<const Keyframe* const> around) {
   TrackingResult result;
   ++frames_since_registered_;
   if (!has_surface(cloud, registration_.min_correspondences)) {
@@ -87,55 +121,111 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
     accept({timestamp_s, result.world_from_camera});
     return result;
   }
-  MotionPrior prior = predict(timestamp_s);
-  register_from(prior, cloud, around, result);
-  MotionPrior standing = prior;
-  standing.world_from_camera = last_->world_from_camera;
-  if (is_after_gap(timestamp_s) && prior_deviation_sigmas(prior, standing.world_from_camera) > 0) {
-    // The camera may have stood still instead.
-    TrackingResult other;
-    register_from(standing, cloud, around, other);
-    if (support(other.registration) > support(result.registration)) {
-      result = other;
-      prior = standing;
+  Attempt attempt = register_as_predicted(timestamp_s, cloud, around);
+  double periods = std::max(1.0, periods_since_registered(timestamp_s));
+  if (is_suspect(attempt)) {
+    const auto turned = register_turned(periods, cloud, around);
+    if (turned && (judge(attempt, timestamp_s) != TrackingStatus::tracked ||
+                   is_clearly_better(turned->registration, attempt.registration))) {
+      attempt = *turned;
+      // The motion changed by more than the prior allows, as it may over that many frames.
+      periods = std::max(periods, prior_deviation_sigmas(predict(timestamp_s),
+                                                         attempt.registration.world_from_camera));
     }
   }
-  if (!succeeded(result.registration.status)) {
-    result.status = TrackingStatus::lost;
-  } else if (is_believed && !is_believed(result.registration)) {
-    result.status = TrackingStatus::lost;
-  } else if (prior_deviation_sigmas(prior, result.registration.world_from_camera) >
-             options_.max_prior_sigmas) {
-    result.status = TrackingStatus::implausible;
-  } else {
-    result.status = TrackingStatus::tracked;
-    result.world_from_camera = result.registration.world_from_camera;
-    // The covariance of this registration includes the prior of one frame only. It would be too
-    // small where frames before it had degenerate directions, too.
-    const double periods = std::max(1.0, periods_since_registered(timestamp_s));
-    uncertainty_.learn(static_cast<int>(std::lround(periods)),
-                       result.registration.surface_information);
-    result.pose_covariance = uncertainty_.of_pose();
-    accept({timestamp_s, result.world_from_camera});
-  }
+  result.status = judge(attempt, timestamp_s);
+  result.targets = std::move(attempt.targets);
+  result.registration = attempt.registration;
+  if (result.status != TrackingStatus::tracked) return result;
+  result.world_from_camera = result.registration.world_from_camera;
+  // The covariance of this registration includes the prior of one frame only. It would be too small
+  // where frames before it had degenerate directions, too.
+  uncertainty_.learn(static_cast<int>(std::lround(periods)),
+                     result.registration.surface_information);
+  result.pose_covariance = uncertainty_.of_pose();
+  constexpr double share_of_newest = 0.1;
+  const double newest = support(result.registration);
+  usual_support_ += share_of_newest * (newest - usual_support_);
+  accept({timestamp_s, result.world_from_camera});
   return result;
 }
 
-void Odometry::register_from(const MotionPrior& prior, const SurfaceCloud& cloud,
-                             std::span<const Keyframe* const> around,
-                             TrackingResult& result) const {
-  std::vector<RegistrationTarget> targets;
-  for (const Keyframe* keyframe : choose_targets(cloud, prior.world_from_camera, around)) {
-    targets.push_back(target_of(*keyframe));
-    result.targets.push_back(keyframe->id);
-  }
+Odometry::Attempt Odometry::register_from(const MotionPrior& prior, const SurfaceCloud& cloud,
+                                          std::span<const Keyframe* const> around) const {
+  Attempt attempt;
+  attempt.prior = prior;
+  const std::vector<RegistrationTarget> targets =
+      choose_targets(cloud, prior.world_from_camera, around, attempt);
   RegistrationOptions registration = registration_;
   // A distant initial pose takes more iterations.
   constexpr int times = 3;
   if (prior.translation_sigma_m > periods_of_steady_tracking * options_.prior_translation_sigma_m) {
     registration.max_iterations *= times;
   }
-  result.registration = register_to_targets(cloud, targets, camera_, prior, registration);
+  attempt.registration = register_to_targets(cloud, targets, camera_, prior, registration);
+  return attempt;
+}
+
+/// Registers a frame from the pose that constant velocity predicts, and after a gap from the last
+/// pose as well, since the camera may have stood still instead.
+Odometry::Attempt Odometry::register_as_predicted(double timestamp_s, const SurfaceCloud& cloud,
+                                                  std::span<const Keyframe* const> around) const {
+  const MotionPrior prior = predict(timestamp_s);
+  Attempt moving = register_from(prior, cloud, around);
+  MotionPrior standing = prior;
+  standing.world_from_camera = last_->world_from_camera;
+  if (!is_after_gap(timestamp_s) ||
+      prior_deviation_sigmas(prior, standing.world_from_camera) == 0) {
+    return moving;
+  }
+  Attempt still = register_from(standing, cloud, around);
+  return support(still.registration) > support(moving.registration) ? still : moving;
+}
+
+/// Registers a frame from the rotations around the last pose at which its ranges fit those of the
+/// keyframes, `periods` frame periods later. Empty if no result is verified, or if two different
+/// ones fit about equally well.
+std::optional<Odometry::Attempt> Odometry::register_turned(
+    double periods, const SurfaceCloud& cloud, std::span<const Keyframe* const> around) const {
+  std::vector<Attempt> verified;
+  for (const Pose& pose :
+       search_rotations(cloud, around, last_->world_from_camera, reach_rad, most_rotations)) {
+    Attempt attempt;
+    attempt.prior = {pose, turned_sigma_rad, periods * turned_sigma_m};
+    const std::vector<RegistrationTarget> targets = choose_targets(cloud, pose, around, attempt);
+    attempt.registration =
+        register_from_afar(cloud, targets, camera_, attempt.prior, registration_);
+    if (is_verified(attempt.registration, recognition_)) verified.push_back(std::move(attempt));
+  }
+  if (verified.empty()) return std::nullopt;
+  const auto best = std::ranges::max_element(
+      verified, {}, [](const Attempt& attempt) { return support(attempt.registration); });
+  const bool is_ambiguous = std::ranges::any_of(verified, [&](const Attempt& other) {
+    return !is_clearly_better(best->registration, other.registration) &&
+           is_elsewhere(best->registration, other.registration);
+  });
+  return is_ambiguous ? std::nullopt : std::optional(*best);
+}
+
+/// Whether the camera may have moved otherwise than expected: registration failed or did not
+/// converge, or the result is far from the predicted pose, or it fits worse than is usual.
+bool Odometry::is_suspect(const Attempt& attempt) const {
+  return attempt.registration.status != RegistrationStatus::converged ||
+         prior_deviation_sigmas(attempt.prior, attempt.registration.world_from_camera) >
+             suspect_sigmas ||
+         support(attempt.registration) < suspect_share * usual_support_;
+}
+
+TrackingStatus Odometry::judge(const Attempt& attempt, double timestamp_s) const {
+  const RegistrationResult& found = attempt.registration;
+  if (!succeeded(found.status)) return TrackingStatus::lost;
+  if (is_after_gap(timestamp_s) && !(found.overlap >= recognition_.min_overlap &&
+                                     found.inlier_ratio >= recognition_.min_inlier_ratio)) {
+    return TrackingStatus::lost;
+  }
+  return prior_deviation_sigmas(attempt.prior, found.world_from_camera) > options_.max_prior_sigmas
+             ? TrackingStatus::implausible
+             : TrackingStatus::tracked;
 }
 
 bool Odometry::is_after_gap(double timestamp_s) const {
@@ -196,9 +286,11 @@ MotionPrior Odometry::predict(double timestamp_s) const {
   return prior;
 }
 
-std::vector<const Keyframe*> Odometry::choose_targets(
-    const SurfaceCloud& cloud, const Pose& expected,
-    std::span<const Keyframe* const> around) const {
+/// The keyframes that overlap the frame most at an expected pose. Writes their ids to `attempt`.
+std::vector<RegistrationTarget> Odometry::choose_targets(const SurfaceCloud& cloud,
+                                                         const Pose& expected,
+                                                         std::span<const Keyframe* const> around,
+                                                         Attempt& attempt) const {
   struct Candidate {
     double overlap;
     const Keyframe* keyframe;
@@ -217,10 +309,11 @@ std::vector<const Keyframe*> Odometry::choose_targets(
   // Reversed before a stable sort, so that of equal overlaps the most recent keyframe comes first.
   std::ranges::reverse(candidates);
   std::ranges::stable_sort(candidates, std::ranges::greater(), &Candidate::overlap);
-  std::vector<const Keyframe*> targets;
+  std::vector<RegistrationTarget> targets;
   for (const Candidate& candidate : candidates) {
     if (static_cast<int>(targets.size()) == options_.targets) break;
-    targets.push_back(candidate.keyframe);
+    targets.push_back(target_of(*candidate.keyframe));
+    attempt.targets.push_back(candidate.keyframe->id);
   }
   return targets;
 }
@@ -229,6 +322,7 @@ void Odometry::restart(const StampedPose& pose) {
   last_ = pose;
   before_last_.reset();
   uncertainty_.reset();
+  usual_support_ = expected_support;
   frames_since_registered_ = 0;
 }
 

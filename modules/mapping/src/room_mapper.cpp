@@ -43,7 +43,7 @@ RoomMapper::RoomMapper(const CameraModel& camera, const OdometryOptions& odometr
       registration_(registration),
       loop_options_(loops),
       surface_options_(surface),
-      odometry_(camera, odometry, registration) {}
+      odometry_(camera, odometry, registration, loops) {}
 
 AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
   AddedFrame added;
@@ -98,11 +98,7 @@ TrackingResult RoomMapper::find_camera(double timestamp_s, const SurfaceCloud& c
     const TrackingResult found = relocalised(timestamp_s, cloud);
     if (found.registered() || lost_frames_ >= frames_until_given_up) return found;
   }
-  if (!odometry_.is_after_gap(timestamp_s)) return odometry_.track(timestamp_s, cloud, around);
-  return odometry_.track(timestamp_s, cloud, around, [this](const RegistrationResult& result) {
-    return result.overlap >= loop_options_.min_overlap &&
-           result.inlier_ratio >= loop_options_.min_inlier_ratio;
-  });
+  return odometry_.track(timestamp_s, cloud, around);
 }
 
 TrackingResult RoomMapper::relocalised(double timestamp_s, const SurfaceCloud& cloud) {

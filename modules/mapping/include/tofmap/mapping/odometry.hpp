@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,6 +12,7 @@
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/core/trajectory.hpp>
 #include <tofmap/mapping/keyframe.hpp>
+#include <tofmap/mapping/loop_closure.hpp>
 #include <tofmap/mapping/motion_uncertainty.hpp>
 #include <tofmap/registration/projective_icp.hpp>
 
@@ -89,19 +89,25 @@ struct TrackingResult {
 /// as well, and registration may take three times as many iterations. The first frame with a
 /// surface gets the identity as its pose. A frame that cannot be registered only increases the time
 /// since the last registered frame.
+///
+/// The camera may move faster than the prior allows. If registration fails, ends far from the
+/// predicted pose, or fits the surfaces clearly worse than the frames before, the frame is also
+/// registered from the rotations around the last pose that search_rotations() finds. The best of
+/// these results replaces the first one if it fits better, is verified as for a loop, and no other
+/// one fits as well.
 class Odometry {
  public:
+  /// `recognition` says when a registration is trusted that does not follow from the motion of the
+  /// camera.
   Odometry(const CameraModel& camera, const OdometryOptions& options,
-           const RegistrationOptions& registration);
+           const RegistrationOptions& registration, const LoopOptions& recognition);
 
   /// Finds the pose of a frame. Frames must come in the order of time. `around` are keyframes whose
   /// relative poses are correct. The last of them is considered as a target even if it overlaps the
   /// frame by less than `min_target_overlap`. Without keyframes, every frame after the first
-  /// registered one is lost. If `is_believed` is given and returns false for a successful
-  /// registration, the frame is lost.
+  /// registered one is lost.
   TrackingResult track(double timestamp_s, const SurfaceCloud& cloud,
-                       std::span<const Keyframe* const> around,
-                       const std::function<bool(const RegistrationResult&)>& is_believed = {});
+                       std::span<const Keyframe* const> around);
 
   /// Must be called for every frame after registration was tried, whether here or elsewhere. The
   /// frame period of the camera is estimated from the timestamps.
@@ -127,23 +133,41 @@ class Odometry {
   template <class Archive>
   void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
 
+  /// A registration of the frame with some keyframes, and where it started.
+  struct Attempt {
+    MotionPrior prior;
+    std::vector<int> targets;  ///< ids of the keyframes, best overlap first
+    RegistrationResult registration;
+  };
+
   double periods_since_registered(double timestamp_s) const;
-  void register_from(const MotionPrior& prior, const SurfaceCloud& cloud,
-                     std::span<const Keyframe* const> around, TrackingResult& result) const;
+  Attempt register_from(const MotionPrior& prior, const SurfaceCloud& cloud,
+                        std::span<const Keyframe* const> around) const;
+  Attempt register_as_predicted(double timestamp_s, const SurfaceCloud& cloud,
+                                std::span<const Keyframe* const> around) const;
+  std::optional<Attempt> register_turned(double periods, const SurfaceCloud& cloud,
+                                         std::span<const Keyframe* const> around) const;
+  bool is_suspect(const Attempt& attempt) const;
+  TrackingStatus judge(const Attempt& attempt, double timestamp_s) const;
   MotionPrior predict(double timestamp_s) const;
-  std::vector<const Keyframe*> choose_targets(const SurfaceCloud& cloud, const Pose& expected,
-                                              std::span<const Keyframe* const> around) const;
+  std::vector<RegistrationTarget> choose_targets(const SurfaceCloud& cloud, const Pose& expected,
+                                                 std::span<const Keyframe* const> around,
+                                                 Attempt& attempt) const;
   void accept(const StampedPose& pose);
 
   CameraModel camera_;
   OdometryOptions options_;
   RegistrationOptions registration_;
+  LoopOptions recognition_;
   std::optional<StampedPose> last_;
   std::optional<StampedPose> before_last_;
   int frames_since_registered_ = 0;
   std::vector<double> recent_periods_s_;  ///< times between successive frames, the newest last
   double last_timestamp_s_ = 0;           ///< of the last frame passed to note_frame()
   MotionUncertainty uncertainty_;         ///< of the last registered pose
+  static constexpr double expected_support = 0.8;  ///< before any frame was registered
+  /// Share of a frame's points that fit the surfaces, averaged over recent registered frames.
+  double usual_support_ = expected_support;
 };
 
 }  // namespace tofmap
