@@ -88,6 +88,13 @@ void write_map_and_path(OutputFolder& out, const RoomMap& map) {
   write_map(out.path() / "map.ply", map.surface);
   write_trajectory(out.path() / "trajectory.txt", map.trajectory);
   write_trajectory(out.path() / "keyframes.txt", map.keyframes);
+  for (std::size_t i = 0; i < map.separate_maps.size(); ++i) {
+    const SeparateMap& one = map.separate_maps[i];
+    const SeparateMapFiles files = files_of_separate_map(i);
+    write_map(out.path() / files.map, one.surface);
+    write_trajectory(out.path() / files.trajectory, one.trajectory);
+    write_trajectory(out.path() / files.keyframes, one.keyframes);
+  }
   out.keep();
 }
 
@@ -121,6 +128,10 @@ void keeping_map(const OutputFolder& out, const Step& step) {
 void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
   std::printf("%zu of %zu frames registered, %zu keyframes, %zu map points\n",
               map.trajectory.size(), map.frames.size(), map.keyframes.size(), map.surface.size());
+  for (std::size_t i = 0; i < map.separate_maps.size(); ++i) {
+    std::printf("tracking was lost: %zu more frames are in a map of their own, %s\n",
+                map.separate_maps[i].trajectory.size(), files_of_separate_map(i).map.c_str());
+  }
   if (map.damaged() > 0) std::printf("%d frames were damaged; see report.json\n", map.damaged());
   for (const std::string& remark : remarks_about(map.errors)) std::printf("%s\n", remark.c_str());
   std::printf("map: %s, mesh beside it\n", (folder / "map.ply").c_str());

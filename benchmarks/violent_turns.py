@@ -8,7 +8,8 @@
 The camera follows the path of a built-in scene. Now and then, and from the first frame on, it turns
 to another direction within two to four frames, stays there for up to eleven frames and turns back.
 The turns are 1, 3/4, 1/2 and 1/3 of the largest turn per frame, about axes that are random but
-mostly upright. Recordings and maps stay in OUT_DIR. Needs Debian's python3-numpy and python3-scipy.
+mostly upright. Recordings and maps stay in OUT_DIR; recordings that are there are used again. Needs
+Debian's python3-numpy and python3-scipy.
 """
 import argparse
 import pathlib
@@ -77,8 +78,9 @@ def measure(tofmap, out, scene, seed, largest_turn_deg):
     turned = Slerp(steps, rotations)(at) * glances(numpy.random.default_rng(seed), largest_turn_deg)
     along = numpy.column_stack([numpy.interp(at, steps, axis) for axis in positions.T])
     write_trajectory(out / f"{name}.txt", along, turned)
-    run(tofmap, "simulate", scene, "--out", out / name, "--set",
-        f"simulator.trajectory_file={out / name}.txt")
+    if not (out / name / "sequence.yaml").exists():
+        run(tofmap, "simulate", scene, "--out", out / name, "--set",
+            f"simulator.trajectory_file={out / name}.txt")
     run(tofmap, "map", out / name, "--out", out / f"{name}_map")
     found = numpy.loadtxt(out / f"{name}_map" / "trajectory.txt")
     errors_m = position_errors_m(numpy.loadtxt(out / name / "groundtruth.txt"), found)

@@ -120,15 +120,38 @@ Json errors_json(const ErrorSurvey& survey) {
           {"remarks", remarks_about(survey)}};
 }
 
+SeparateMapFiles files_of_separate_map(std::size_t index) {
+  constexpr std::size_t first = 2;
+  const std::string number = "_" + std::to_string(first + index);
+  return {"map" + number + ".ply", "trajectory" + number + ".txt", "keyframes" + number + ".txt"};
+}
+
+Json separate_maps_json(const RoomMap& map) {
+  Json separate = Json::array();
+  for (std::size_t i = 0; i < map.separate_maps.size(); ++i) {
+    const SeparateMap& one = map.separate_maps[i];
+    separate.push_back({{"map", files_of_separate_map(i).map},
+                        {"registered", one.trajectory.size()},
+                        {"keyframes", one.keyframes.size()},
+                        {"map_points", one.surface.size()}});
+  }
+  return separate;
+}
+
 Json summary_json(const RoomMap& map) {
   const StageTimes mean = mean_times(map);
-  return {
-      {"frames", map.frames.size()},       {"damaged", map.damaged()},
-      {"repeated", map.repeated()},        {"registered", map.trajectory.size()},
-      {"keyframes", map.keyframes.size()}, {"frames_with_degenerate_directions", map.degenerate()},
-      {"loops", loops_json(map)},          {"map_points", map.surface.size()},
-      {"interrupted", map.interrupted},    {"milliseconds_per_frame", mean.total_ms()},
-      {"milliseconds", times_json(mean)}};
+  return {{"frames", map.frames.size()},
+          {"damaged", map.damaged()},
+          {"repeated", map.repeated()},
+          {"registered", map.trajectory.size()},
+          {"keyframes", map.keyframes.size()},
+          {"frames_with_degenerate_directions", map.degenerate()},
+          {"loops", loops_json(map)},
+          {"map_points", map.surface.size()},
+          {"separate_maps", separate_maps_json(map)},
+          {"interrupted", map.interrupted},
+          {"milliseconds_per_frame", mean.total_ms()},
+          {"milliseconds", times_json(mean)}};
 }
 
 }  // namespace tofmap::app

@@ -91,6 +91,10 @@ std::string sentence_of(const MapPageSubject& subject, const MapScores& scores,
   const RoomMap& map = subject.map;
   std::string text = std::to_string(map.trajectory.size()) + " of " +
                      counted(map.frames.size(), "frame") + " could be registered. ";
+  if (!map.separate_maps.empty()) {
+    text += fmt::format("{} more are in {} of their own: tracking was lost. ", map.separate(),
+                        counted(map.separate_maps.size(), "map"));
+  }
   if (map.interrupted) text += "Then the run was interrupted. ";
   if (subject.options.pipeline.unwrap.method == UnwrapMethod::none) {
     text += "Nothing was unwrapped. ";
@@ -130,6 +134,10 @@ PageTable summary_table(const RoomMap& map, const MapScores& scores) {
   add("frames", std::to_string(map.frames.size()));
   add("damaged", std::to_string(map.damaged()));
   add("registered", std::to_string(map.trajectory.size()));
+  for (std::size_t i = 0; i < map.separate_maps.size(); ++i) {
+    add(("registered in " + files_of_separate_map(i).map).c_str(),
+        std::to_string(map.separate_maps[i].trajectory.size()));
+  }
   add("frames with a degenerate direction, %",
       fmt::format("{:.1f}", percent(map.degenerate(), static_cast<double>(map.frames.size()))));
   add("keyframes", std::to_string(map.keyframes.size()));

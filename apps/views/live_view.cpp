@@ -64,7 +64,12 @@ void LiveView::update(const MapRun& run, const std::string& status) {
     if (next_) return;
   }
   const RoomMapper& mapper = run.mapper();
-  Snapshot snapshot{mapper.surface(), mapper.trajectory(), status};
+  const std::vector<int> maps = mapper.maps();
+  Snapshot snapshot{{}, {}, status};
+  if (!maps.empty()) {
+    snapshot.surface = mapper.surface(maps.front());
+    snapshot.trajectory = mapper.trajectory(maps.front());
+  }
   const Clock::time_point end = Clock::now();
   next_time_ = end + std::max<Clock::duration>(shortest_step, most_share_of_time * (end - start));
   const std::scoped_lock lock(mutex_);

@@ -49,6 +49,18 @@ TEST(Verdict, GoesByTheFramesThatWereRegistered) {
   EXPECT_EQ(verdict_on({}), Verdict::bad) << "no frame at all";
 }
 
+TEST(Verdict, DoubtsAMapThatIsNotTheOnlyOne) {
+  MapEvidence evidence = good_evidence();
+  evidence.registered = 60;
+  evidence.separate = 38;
+  evidence.separate_maps = 2;
+  const Judgement judgement = judge(evidence);
+  EXPECT_EQ(judgement.verdict, Verdict::doubtful);
+  ASSERT_EQ(judgement.reasons.size(), 1U);
+  EXPECT_EQ(judgement.reasons[0],
+            "tracking was lost, and 2 other maps could not be joined with it, of 38 frames");
+}
+
 TEST(Verdict, GoesByDirectionsThatNoSurfaceConstrained) {
   MapEvidence evidence = good_evidence();
   evidence.degenerate = 10;

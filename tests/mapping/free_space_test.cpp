@@ -87,5 +87,18 @@ TEST_F(SeenThrough, SaysNothingWhereAKeyframeHasNoSurface) {
   EXPECT_TRUE(keeps({0.1, 0.1, 2}));
 }
 
+TEST_F(SeenThrough, IsNoneBetweenKeyframesOfOneRoomAndMuchWhereOneIsMisplaced) {
+  const auto share = [&](const Pose& placed) {
+    return free_space_violation_share({keyframes_[2].cloud.get(), placed},
+                                      {keyframes_[0].cloud.get(), keyframes_[0].world_from_camera},
+                                      small_camera(), margin_m);
+  };
+  const Pose right = keyframes_[2].world_from_camera;
+  EXPECT_LT(share(right), 0.01);
+  // Its far wall stands half a metre in front of the one that the other keyframe sees.
+  EXPECT_GT(share(moved_by({0, 0, 0}, {0, 0, -0.5}) * right), 0.3);
+  EXPECT_EQ(share(moved_by({0, 0, 0}, {0, 0, 50}) * right), 0) << "they see nothing in common";
+}
+
 }  // namespace
 }  // namespace tofmap

@@ -60,5 +60,29 @@ TEST(KeyframeGraph, HoldsAtLeastTheKeyframeItself) {
   EXPECT_EQ(graph[0].world_from_camera.translation().x(), 4);
 }
 
+TEST(KeyframeGraph, MovesAMapIntoAnotherOne) {
+  KeyframeGraph graph;
+  for (int id = 0; id < 4; ++id) {
+    graph.add({.id = id, .world_from_camera = at(id), .map = id / 2});
+  }
+  graph.join(1, 0, at(10));
+  const std::vector<double> expected_m{0, 1, 12, 13};
+  for (int id = 0; id < 4; ++id) {
+    EXPECT_EQ(graph[id].map, 0);
+    EXPECT_TRUE(graph[id].world_from_camera.isApprox(at(expected_m[id]))) << id;
+  }
+}
+
+TEST(KeyframeGraph, ForgetsTheNewestKeyframes) {
+  KeyframeGraph graph;
+  for (int id = 0; id < 4; ++id) graph.add({.id = id, .world_from_camera = at(id)});
+  graph.connect(0, 1);
+  graph.connect(2, 3);
+  graph.shrink(2);
+  EXPECT_EQ(graph.size(), 2);
+  graph.add({.id = 2, .world_from_camera = at(2)});
+  EXPECT_EQ(ids(graph.around(2, at(2), 5, {1, 1})), std::vector{2}) << "it has no connections yet";
+}
+
 }  // namespace
 }  // namespace tofmap

@@ -177,7 +177,7 @@ class Turning : public testing::Test {
 
 /// How far the frame is off at the end, from where the path began.
 double last_error_m(const RoomMapper& mapper, const Pose& truth) {
-  return (truth.inverse() * mapper.trajectory().back().world_from_camera).translation().norm();
+  return (truth.inverse() * mapper.trajectory(0).back().world_from_camera).translation().norm();
 }
 
 TEST_F(Turning, ClosesTheLoop) {
@@ -189,7 +189,7 @@ TEST_F(Turning, ClosesTheLoop) {
     EXPECT_LT(loop.from_frame, 20);
     EXPECT_TRUE(loop.is_used);
   }
-  ASSERT_EQ(mapper.trajectory().size(), static_cast<std::size_t>(frames));
+  ASSERT_EQ(mapper.trajectory(0).size(), static_cast<std::size_t>(frames));
   loops_.close = false;
   RoomMapper open(wide_camera(), {}, {}, loops_, {});
   run(open);
@@ -203,10 +203,10 @@ TEST_F(Turning, NeedsNoNewKeyframesWhereAPlaceIsSeenAgain) {
   run(once, 100);
   RoomMapper thrice(wide_camera(), {}, {}, loops_, {});
   run(thrice, 216);
-  const std::size_t keyframes = once.keyframe_trajectory().size();
+  const std::size_t keyframes = once.keyframe_trajectory(0).size();
   EXPECT_LT(keyframes, 50U);
-  EXPECT_EQ(thrice.keyframe_trajectory().size(), keyframes);
-  EXPECT_EQ(thrice.trajectory().size(), 216U);
+  EXPECT_EQ(thrice.keyframe_trajectory(0).size(), keyframes);
+  EXPECT_EQ(thrice.trajectory(0).size(), 216U);
   EXPECT_LT(last_error_m(thrice, camera_at(0).inverse() * camera_at(215)), 2e-3);
 }
 
@@ -216,7 +216,7 @@ TEST_F(Turning, MovesPathAndMapTogether) {
   run(mapper);
   // As if all frames had been integrated where they are believed to be in the end.
   SurfaceMap anew(every_point);
-  const Trajectory trajectory = mapper.trajectory();
+  const Trajectory trajectory = mapper.trajectory(0);
   for (int i = 0; i < frames; ++i) {
     anew.integrate(test::box_cloud(wide_camera(), box_min_, box_max_, camera_at(i)),
                    trajectory[static_cast<std::size_t>(i)].world_from_camera);
@@ -232,7 +232,7 @@ TEST_F(Turning, MovesPathAndMapTogether) {
     }
     return off / static_cast<double>(map.size());
   };
-  const MapCloud map = mapper.surface();
+  const MapCloud map = mapper.surface(0);
   EXPECT_GT(map.size(), 5000U);
   // Voxels of parts are averages: at the borders between voxels they may fall into others.
   EXPECT_LT(share_off_walls(map), share_off_walls(anew.extract()) + 0.02);

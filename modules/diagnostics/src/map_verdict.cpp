@@ -22,11 +22,18 @@ Judgement judge(const MapEvidence& evidence) {
   };
   if (evidence.is_empty) hold_against(Verdict::bad, "the map is empty");
   if (!evidence.is_unwrapped) hold_against(Verdict::bad, "nothing was unwrapped");
-  const double registered_percent = percent_of_frames(evidence, evidence.registered);
+  const double registered_percent =
+      percent_of_frames(evidence, evidence.registered + evidence.separate);
   if (registered_percent < nearly_all_percent) {
     hold_against(
         registered_percent < half_percent ? Verdict::bad : Verdict::doubtful,
         fmt::format("{:.0f} % of the frames could not be registered", 100 - registered_percent));
+  }
+  if (evidence.separate_maps > 0) {
+    hold_against(Verdict::doubtful,
+                 fmt::format("tracking was lost, and {} could not be joined with it, of {}",
+                             counted(static_cast<std::size_t>(evidence.separate_maps), "other map"),
+                             counted(static_cast<std::size_t>(evidence.separate), "frame")));
   }
   const Verdict of_surface = evidence.accuracy_m
                                  ? verdict_on_accuracy(*evidence.accuracy_m, evidence.voxel_m)

@@ -3,96 +3,75 @@
 
 #include "tofmap/mapping/free_space.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
+#include "keyframe_view.hpp"
+
 #include <vector>
 
 namespace tofmap {
 namespace {
 
-/// A keyframe, prepared for testing many points.
-class View {
- public:
-  View(const Keyframe& keyframe, const CameraModel& camera, double margin_m)
-      : camera_from_world_(keyframe.world_from_camera.inverse()),
-        cloud_(*keyframe.cloud),
-        camera_(camera),
-        margin_m_(margin_m) {
-    for (const SurfacePoint& point : cloud_.points) {
-      if (point.has_normal()) farthest_m_ = std::max(farthest_m_, point.z);
-    }
-  }
-
-  enum class Observation { nothing, agrees, sees_through };
-
-  Observation judge(const Eigen::Vector3d& world_m) const {
-    const Eigen::Vector3d point_m = camera_from_world_ * world_m;
-    if (point_m.z() <= 0 || point_m.z() > farthest_m_ + margin_m_) return Observation::nothing;
-    const std::optional<Eigen::Vector2d> pixel = project(camera_, point_m);
-    if (!pixel) return Observation::nothing;
-    const double u = std::round(pixel->x());
-    const double v = std::round(pixel->y());
-    if (!(u >= 1 && v >= 1 && u + 1 < cloud_.width && v + 1 < cloud_.height)) {
-      return Observation::nothing;
-    }
-    const int col = static_cast<int>(u);
-    const int row = static_cast<int>(v);
-    const Eigen::Vector3f at_m = point_m.cast<float>();
-    const std::optional<float> before = share_before(row, col, at_m);
-    if (!before) return Observation::nothing;
-    if (std::abs(*before) <= 1) return Observation::agrees;
-    if (*before < 0) return Observation::nothing;  // the point is occluded
-    // At the outline of an object, a small error of the pose makes a point project onto the
-    // background. So the point must be in front of the surfaces around as well.
-    for (int r = row - 1; r <= row + 1; ++r) {
-      for (int c = col - 1; c <= col + 1; ++c) {
-        const std::optional<float> beside = share_before(r, c, at_m);
-        if (!beside || *beside <= 1) return Observation::nothing;
-      }
-    }
-    return Observation::sees_through;
-  }
-
- private:
-  /// Distance of a point in front of the surface at a pixel, divided by the tolerance; negative if
-  /// the point is behind the surface. Empty if the pixel has no surface.
-  std::optional<float> share_before(int row, int col, const Eigen::Vector3f& point_m) const {
-    constexpr float sigmas = 3;
-    const SurfacePoint& surface = cloud_.at(col, row);
-    if (!surface.has_normal()) return std::nullopt;
-    const Eigen::Vector3f normal = surface.getNormalVector3fMap();
-    const Eigen::Vector3f at_m = surface.getVector3fMap();
-    const float sigma_m = surface.sigma_m * std::abs(normal.dot(at_m.normalized()));
-    const float tolerated_m = static_cast<float>(margin_m_) + sigmas * sigma_m;
-    return normal.dot(point_m - at_m) / tolerated_m;
-  }
-
-  Pose camera_from_world_;
-  const SurfaceCloud& cloud_;
-  const CameraModel& camera_;
-  double margin_m_;
-  float farthest_m_ = 0;
-};
-
-bool violates_free_space(const MapPoint& point, const std::vector<View>& views) {
+bool violates_free_space(const MapPoint& point, const std::vector<KeyframeView>& views) {
   constexpr int least = 2;
   int free_space_violation = 0;
   int agreeing = 0;
-  for (const View& view : views) {
-    const View::Observation observation = view.judge(point.getVector3fMap().cast<double>());
-    free_space_violation += observation == View::Observation::sees_through ? 1 : 0;
-    agreeing += observation == View::Observation::agrees ? 1 : 0;
+  for (const KeyframeView& view : views) {
+    const Observation observation = view.judge(point.getVector3fMap().cast<double>());
+    free_space_violation += observation == Observation::sees_through ? 1 : 0;
+    agreeing += observation == Observation::agrees ? 1 : 0;
   }
   return free_space_violation >= least && free_space_violation > agreeing;
 }
 
+/// How many points of a cloud a view agrees with, and how many it sees through.
+struct Agreement {
+  int agreeing = 0;
+  int violating = 0;
+};
+
+Agreement operator+(const Agreement& a, const Agreement& b) {
+  return {a.agreeing + b.agreeing, a.violating + b.violating};
+}
+
+Agreement compare(const RegistrationTarget& one, const RegistrationTarget& other,
+                  const CameraModel& camera, double margin_m) {
+  constexpr std::size_t stride = 3;
+  const KeyframeView view(*other.cloud, other.world_from_camera, camera, margin_m);
+  Agreement agreement;
+  for (std::size_t i = 0; i < one.cloud->points.size(); i += stride) {
+    const SurfacePoint& point = one.cloud->points[i];
+    if (!point.has_normal()) continue;
+    const Observation observation =
+        view.judge(one.world_from_camera * point.getVector3fMap().cast<double>());
+    agreement.agreeing += observation == Observation::agrees ? 1 : 0;
+    agreement.violating += observation == Observation::sees_through ? 1 : 0;
+  }
+  return agreement;
+}
+
 }  // namespace
+
+double free_space_violation_share(const RegistrationTarget& one, const RegistrationTarget& other,
+                                  const CameraModel& camera, double margin_m) {
+  const Agreement sum =
+      compare(one, other, camera, margin_m) + compare(other, one, camera, margin_m);
+  const int all = sum.agreeing + sum.violating;
+  return all > 0 ? static_cast<double>(sum.violating) / all : 0;
+}
+
+bool contradicts_free_space(const SurfaceCloud& cloud, const Pose& world_from_camera,
+                            const RegistrationTarget& target, const CameraModel& camera) {
+  constexpr double most_violations = 0.05;
+  constexpr double pose_error_m = 0.03;
+  return free_space_violation_share({&cloud, world_from_camera}, target, camera, pose_error_m) >=
+         most_violations;
+}
 
 MapCloud without_free_space_violations(const MapCloud& map, std::span<const Keyframe> keyframes,
                                        const CameraModel& camera, double margin_m) {
-  std::vector<View> views;
-  for (const Keyframe& keyframe : keyframes) views.emplace_back(keyframe, camera, margin_m);
+  std::vector<KeyframeView> views;
+  for (const Keyframe& keyframe : keyframes) {
+    views.emplace_back(*keyframe.cloud, keyframe.world_from_camera, camera, margin_m);
+  }
   std::vector<char> goes(map.size());
   const auto count = static_cast<std::ptrdiff_t>(map.size());
 #pragma omp parallel for schedule(dynamic, 256)

@@ -12,7 +12,8 @@ std::vector<RegistrationTarget> targets_around(const Keyframe& keyframe,
   std::vector<RegistrationTarget> targets;
   const int last = std::min(static_cast<int>(keyframes.size()) - 1, keyframe.id + 1);
   for (int id = std::max(0, keyframe.id - 1); id <= last; ++id) {
-    targets.push_back(target_of(keyframes[static_cast<std::size_t>(id)]));
+    const Keyframe& other = keyframes[static_cast<std::size_t>(id)];
+    if (other.map == keyframe.map) targets.push_back(target_of(other));
   }
   return targets;
 }

@@ -35,6 +35,19 @@ void KeyframeGraph::set_pose(int id, const Pose& world_from_camera) {
   keyframes_[static_cast<std::size_t>(id)].world_from_camera = world_from_camera;
 }
 
+void KeyframeGraph::join(int map, int into, const Pose& into_from_map) {
+  for (Keyframe& keyframe : keyframes_) {
+    if (keyframe.map != map) continue;
+    keyframe.map = into;
+    keyframe.world_from_camera = into_from_map * keyframe.world_from_camera;
+  }
+}
+
+void KeyframeGraph::shrink(int size) {
+  keyframes_.resize(static_cast<std::size_t>(size));
+  neighbours_.resize(static_cast<std::size_t>(size));
+}
+
 std::vector<const Keyframe*> KeyframeGraph::around(int id, const Pose& pose, int count,
                                                    const KeyframeSpacing& steps) const {
   const auto steps_away = [&](int other) {

@@ -32,6 +32,7 @@ std::vector<const Keyframe*> earlier_around(const Keyframe& keyframe,
   const Pose& pose = keyframe.world_from_camera;
   for (const Keyframe& other : keyframes) {
     if (other.id + options.min_keyframes > keyframe.id) break;
+    if (other.map != keyframe.map) continue;
     if ((pose.translation() - other.world_from_camera.translation()).norm() < options.radius_m &&
         rotation_angle_rad(pose, other.world_from_camera) < options.max_rotation_rad) {
       earlier.push_back(&other);

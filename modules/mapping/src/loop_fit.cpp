@@ -42,20 +42,6 @@ bool agree(const PoseEdge& one, const PoseEdge& other, std::span<const Keyframe>
   return prior_deviation_sigmas(prior, found(other)) < most_sigmas;
 }
 
-/// The loop that agrees with most others, together with these others.
-Loops most_that_agree(const Loops& loops, std::span<const Keyframe> keyframes,
-                      const LoopOptions& options) {
-  Loops most;
-  for (const PoseEdge* one : loops) {
-    Loops agreeing;
-    std::ranges::copy_if(loops, std::back_inserter(agreeing), [&](const PoseEdge* other) {
-      return other == one || agree(*one, *other, keyframes, options);
-    });
-    if (agreeing.size() > most.size()) most = std::move(agreeing);
-  }
-  return most;
-}
-
 /// Edges for the second fit: `loops`, and the edges of odometry with covariances increased so that
 /// they add up to the drift of the whole path.
 std::vector<PoseEdge> with_drift(std::span<const PoseEdge> edges, const Loops& loops,
@@ -73,6 +59,20 @@ std::vector<PoseEdge> with_drift(std::span<const PoseEdge> edges, const Loops& l
 }
 
 }  // namespace
+
+std::vector<const PoseEdge*> most_that_agree(const std::vector<const PoseEdge*>& loops,
+                                             std::span<const Keyframe> keyframes,
+                                             const LoopOptions& options) {
+  Loops most;
+  for (const PoseEdge* one : loops) {
+    Loops agreeing;
+    std::ranges::copy_if(loops, std::back_inserter(agreeing), [&](const PoseEdge* other) {
+      return other == one || agree(*one, *other, keyframes, options);
+    });
+    if (agreeing.size() > most.size()) most = std::move(agreeing);
+  }
+  return most;
+}
 
 PoseGraphResult fit_loops(std::span<const Keyframe> keyframes, std::span<const PoseEdge> edges,
                           const LoopOptions& options) {

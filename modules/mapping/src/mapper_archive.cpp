@@ -45,14 +45,14 @@ void serialize(Archive& archive, tofmap::SurfaceCloud& cloud, unsigned version) 
 template <class Archive>
 void save(Archive& archive, const tofmap::Keyframe& keyframe, unsigned) {
   archive << keyframe.id << keyframe.frame_index << keyframe.timestamp_s;
-  archive << keyframe.world_from_camera << keyframe.path_m << *keyframe.cloud;
+  archive << keyframe.world_from_camera << keyframe.path_m << keyframe.map << *keyframe.cloud;
 }
 
 template <class Archive>
 void load(Archive& archive, tofmap::Keyframe& keyframe, unsigned) {
   archive >> keyframe.id >> keyframe.frame_index >> keyframe.timestamp_s;
   auto cloud = std::make_shared<tofmap::SurfaceCloud>();
-  archive >> keyframe.world_from_camera >> keyframe.path_m >> *cloud;
+  archive >> keyframe.world_from_camera >> keyframe.path_m >> keyframe.map >> *cloud;
   keyframe.place = tofmap::PlaceDescriptor(*cloud);
   keyframe.cloud = std::move(cloud);
 }
@@ -60,6 +60,23 @@ void load(Archive& archive, tofmap::Keyframe& keyframe, unsigned) {
 template <class Archive>
 void serialize(Archive& archive, tofmap::Keyframe& keyframe, unsigned version) {
   split_free(archive, keyframe, version);
+}
+
+template <class Archive>
+void save(Archive& archive, const tofmap::NewFrame& frame, unsigned) {
+  archive << frame.index << frame.timestamp_s << *frame.cloud;
+}
+
+template <class Archive>
+void load(Archive& archive, tofmap::NewFrame& frame, unsigned) {
+  auto cloud = std::make_shared<tofmap::SurfaceCloud>();
+  archive >> frame.index >> frame.timestamp_s >> *cloud;
+  frame.cloud = std::move(cloud);
+}
+
+template <class Archive>
+void serialize(Archive& archive, tofmap::NewFrame& frame, unsigned version) {
+  split_free(archive, frame, version);
 }
 
 template <class Archive>
@@ -84,7 +101,7 @@ void MotionUncertainty::serialize(Archive& archive, unsigned) {
 template <class Archive>
 void Odometry::serialize(Archive& archive, unsigned) {
   archive& last_& before_last_& frames_since_registered_& recent_periods_s_& last_timestamp_s_;
-  archive& uncertainty_& usual_support_;
+  archive& uncertainty_& usual_support_& usual_inlier_ratio_;
 }
 
 template <class Archive>
@@ -99,13 +116,14 @@ void SurfaceMap::serialize(Archive& archive, unsigned) {
 
 template <class Archive>
 void RoomMapper::RegisteredFrame::serialize(Archive& archive, unsigned) {
-  archive& timestamp_s& keyframe& keyframe_from_camera;
+  archive& timestamp_s& keyframe& keyframe_from_camera& index;
 }
 
 template <class Archive>
 void RoomMapper::serialize(Archive& archive, unsigned) {
   archive& odometry_& keyframes_& frames_& edges_& loops_;
-  archive& unfitted_loops_& last_fit_& current_& lost_frames_& searched_;
+  archive& unfitted_loops_& last_fit_& current_& map_& begun_maps_& lost_frames_& searched_;
+  archive& held_& recognitions_;
 }
 
 void RoomMapper::save(std::ostream& out) const {

@@ -3,6 +3,7 @@
 
 #include "tofmap/mapping/odometry.hpp"
 
+#include "tofmap/mapping/free_space.hpp"
 #include "tofmap/mapping/rotation_search.hpp"
 
 #include <algorithm>
@@ -52,6 +53,12 @@ constexpr std::size_t most_rotations = 4;
 /// grid, and a translation that at `max_prior_sigmas` allows half a metre a frame.
 constexpr double turned_sigma_rad = 0.07;
 constexpr double turned_sigma_m = 0.06;
+
+std::vector<RegistrationTarget> targets_of(const std::vector<const Keyframe*>& keyframes) {
+  std::vector<RegistrationTarget> targets;
+  for (const Keyframe* keyframe : keyframes) targets.push_back(target_of(*keyframe));
+  return targets;
+}
 
 bool has_surface(const SurfaceCloud& cloud, int min_points) {
   int count = 0;
@@ -123,18 +130,21 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
   }
   Attempt attempt = register_as_predicted(timestamp_s, cloud, around);
   double periods = std::max(1.0, periods_since_registered(timestamp_s));
+  result.status = judge(attempt, timestamp_s);
   if (is_suspect(attempt)) {
     const auto turned = register_turned(periods, cloud, around);
-    if (turned && (judge(attempt, timestamp_s) != TrackingStatus::tracked ||
+    if (turned && (result.status != TrackingStatus::tracked ||
                    is_clearly_better(turned->registration, attempt.registration))) {
       attempt = *turned;
+      result.status = judge(attempt, timestamp_s);
       // The motion changed by more than the prior allows, as it may over that many frames.
       periods = std::max(periods, prior_deviation_sigmas(predict(timestamp_s),
                                                          attempt.registration.world_from_camera));
+    } else if (contradicts_targets(attempt, cloud)) {
+      result.status = TrackingStatus::lost;
     }
   }
-  result.status = judge(attempt, timestamp_s);
-  result.targets = std::move(attempt.targets);
+  for (const Keyframe* target : attempt.targets) result.targets.push_back(target->id);
   result.registration = attempt.registration;
   if (result.status != TrackingStatus::tracked) return result;
   result.world_from_camera = result.registration.world_from_camera;
@@ -144,8 +154,8 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
                      result.registration.surface_information);
   result.pose_covariance = uncertainty_.of_pose();
   constexpr double share_of_newest = 0.1;
-  const double newest = support(result.registration);
-  usual_support_ += share_of_newest * (newest - usual_support_);
+  usual_support_ += share_of_newest * (support(result.registration) - usual_support_);
+  usual_inlier_ratio_ += share_of_newest * (result.registration.inlier_ratio - usual_inlier_ratio_);
   accept({timestamp_s, result.world_from_camera});
   return result;
 }
@@ -154,15 +164,15 @@ Odometry::Attempt Odometry::register_from(const MotionPrior& prior, const Surfac
                                           std::span<const Keyframe* const> around) const {
   Attempt attempt;
   attempt.prior = prior;
-  const std::vector<RegistrationTarget> targets =
-      choose_targets(cloud, prior.world_from_camera, around, attempt);
+  attempt.targets = choose_targets(cloud, prior.world_from_camera, around);
   RegistrationOptions registration = registration_;
   // A distant initial pose takes more iterations.
   constexpr int times = 3;
   if (prior.translation_sigma_m > periods_of_steady_tracking * options_.prior_translation_sigma_m) {
     registration.max_iterations *= times;
   }
-  attempt.registration = register_to_targets(cloud, targets, camera_, prior, registration);
+  attempt.registration =
+      register_to_targets(cloud, targets_of(attempt.targets), camera_, prior, registration);
   return attempt;
 }
 
@@ -192,10 +202,12 @@ std::optional<Odometry::Attempt> Odometry::register_turned(
        search_rotations(cloud, around, last_->world_from_camera, reach_rad, most_rotations)) {
     Attempt attempt;
     attempt.prior = {pose, turned_sigma_rad, periods * turned_sigma_m};
-    const std::vector<RegistrationTarget> targets = choose_targets(cloud, pose, around, attempt);
-    attempt.registration =
-        register_from_afar(cloud, targets, camera_, attempt.prior, registration_);
-    if (is_verified(attempt.registration, recognition_)) verified.push_back(std::move(attempt));
+    attempt.targets = choose_targets(cloud, pose, around);
+    attempt.registration = register_from_afar(cloud, targets_of(attempt.targets), camera_,
+                                              attempt.prior, registration_);
+    if (is_verified(attempt.registration, recognition_) && !contradicts_targets(attempt, cloud)) {
+      verified.push_back(std::move(attempt));
+    }
   }
   if (verified.empty()) return std::nullopt;
   const auto best = std::ranges::max_element(
@@ -208,17 +220,39 @@ std::optional<Odometry::Attempt> Odometry::register_turned(
 }
 
 /// Whether the camera may have moved otherwise than expected: registration failed or did not
-/// converge, or the result is far from the predicted pose, or it fits worse than is usual.
+/// converge, or the result is far from the predicted pose, or it fits worse than is usual, or the
+/// frame before was not registered. PCL's methods are compared by their results as they are.
 bool Odometry::is_suspect(const Attempt& attempt) const {
-  return attempt.registration.status != RegistrationStatus::converged ||
+  if (registration_.method != RegistrationMethod::projective) return false;
+  return frames_since_registered_ > 1 ||
+         attempt.registration.status != RegistrationStatus::converged ||
          prior_deviation_sigmas(attempt.prior, attempt.registration.world_from_camera) >
              suspect_sigmas ||
          support(attempt.registration) < suspect_share * usual_support_;
 }
 
+/// Whether a result fits the surfaces nearly as well as is usual. Of a frame that sees much that is
+/// new, few points fit, but those that have a correspondence do.
+bool Odometry::is_credible(const RegistrationResult& result) const {
+  constexpr double least_share = 0.5;
+  constexpr double least_inlier_share = 0.95;
+  const double share = support(result) / usual_support_;
+  if (result.status != RegistrationStatus::converged) return share >= suspect_share;
+  return share >= least_share || result.inlier_ratio >= least_inlier_share * usual_inlier_ratio_;
+}
+
+/// Whether a successful registration contradicts the free space of the keyframe that it overlaps
+/// most.
+bool Odometry::contradicts_targets(const Attempt& attempt, const SurfaceCloud& cloud) const {
+  return !attempt.targets.empty() &&
+         contradicts_free_space(cloud, attempt.registration.world_from_camera,
+                                target_of(*attempt.targets.front()), camera_);
+}
+
 TrackingStatus Odometry::judge(const Attempt& attempt, double timestamp_s) const {
   const RegistrationResult& found = attempt.registration;
   if (!succeeded(found.status)) return TrackingStatus::lost;
+  if (is_suspect(attempt) && !is_credible(found)) return TrackingStatus::lost;
   if (is_after_gap(timestamp_s) && !(found.overlap >= recognition_.min_overlap &&
                                      found.inlier_ratio >= recognition_.min_inlier_ratio)) {
     return TrackingStatus::lost;
@@ -230,15 +264,6 @@ TrackingStatus Odometry::judge(const Attempt& attempt, double timestamp_s) const
 
 bool Odometry::is_after_gap(double timestamp_s) const {
   return periods_since_registered(timestamp_s) > periods_of_steady_tracking;
-}
-
-bool Odometry::is_within_reach(double timestamp_s, const Pose& pose) const {
-  constexpr double most_sigmas = 4;
-  if (!last_) return false;
-  MotionPrior prior = predict(timestamp_s);
-  if (prior_deviation_sigmas(prior, pose) <= most_sigmas) return true;
-  prior.world_from_camera = last_->world_from_camera;
-  return prior_deviation_sigmas(prior, pose) <= most_sigmas;
 }
 
 void Odometry::note_frame(double timestamp_s) {
@@ -286,11 +311,10 @@ MotionPrior Odometry::predict(double timestamp_s) const {
   return prior;
 }
 
-/// The keyframes that overlap the frame most at an expected pose. Writes their ids to `attempt`.
-std::vector<RegistrationTarget> Odometry::choose_targets(const SurfaceCloud& cloud,
-                                                         const Pose& expected,
-                                                         std::span<const Keyframe* const> around,
-                                                         Attempt& attempt) const {
+/// The keyframes that overlap the frame most at an expected pose.
+std::vector<const Keyframe*> Odometry::choose_targets(
+    const SurfaceCloud& cloud, const Pose& expected,
+    std::span<const Keyframe* const> around) const {
   struct Candidate {
     double overlap;
     const Keyframe* keyframe;
@@ -309,20 +333,20 @@ std::vector<RegistrationTarget> Odometry::choose_targets(const SurfaceCloud& clo
   // Reversed before a stable sort, so that of equal overlaps the most recent keyframe comes first.
   std::ranges::reverse(candidates);
   std::ranges::stable_sort(candidates, std::ranges::greater(), &Candidate::overlap);
-  std::vector<RegistrationTarget> targets;
+  std::vector<const Keyframe*> targets;
   for (const Candidate& candidate : candidates) {
     if (static_cast<int>(targets.size()) == options_.targets) break;
-    targets.push_back(target_of(*candidate.keyframe));
-    attempt.targets.push_back(candidate.keyframe->id);
+    targets.push_back(candidate.keyframe);
   }
   return targets;
 }
 
-void Odometry::restart(const StampedPose& pose) {
-  last_ = pose;
+void Odometry::start_anew() {
+  last_.reset();
   before_last_.reset();
   uncertainty_.reset();
   usual_support_ = expected_support;
+  usual_inlier_ratio_ = expected_inlier_ratio;
   frames_since_registered_ = 0;
 }
 

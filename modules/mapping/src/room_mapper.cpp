@@ -5,8 +5,13 @@
 
 #include "tofmap/mapping/free_space.hpp"
 #include "tofmap/mapping/loop_fit.hpp"
+#include "tofmap/mapping/map_join.hpp"
+#include "tofmap/mapping/place_recognition.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <map>
+#include <utility>
 
 #include <tofmap/core/timed.hpp>
 
@@ -17,12 +22,15 @@ namespace {
 /// fitted together.
 constexpr int keyframes_between_fits = 10;
 
-/// Number of failed frames after which tracking is taken to be lost. A single one may be a bad
+/// Number of failed frames with a surface after which a new map begins. A single one may be a bad
 /// frame.
-constexpr int frames_until_lost = 3;
+constexpr std::size_t frames_until_lost = 3;
 
 /// Number of failed frames after which the motion before no longer predicts the camera's pose.
 constexpr int frames_until_given_up = 15;
+
+/// Smallest number of frames of a map. Fewer show something that passed in front of the camera.
+constexpr std::ptrdiff_t least_frames_of_map = 3;
 
 /// A keyframe with more than this many newer ones belongs to an earlier visit. New keyframes are
 /// taken at twice the distance there.
@@ -53,29 +61,90 @@ AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
     return added;
   }
   added.tracking = timed(added.register_ms, [&] { return track(frame); });
-  if (!added.tracking.registered()) return added;
-  timed(added.integrate_ms, [&] { integrate(*frame.cloud); });
+  if (!added.tracking.registered()) {
+    if (held_.size() < frames_until_lost) return added;
+    added.late = timed(added.register_ms, [&] { return start_map(); });
+    added.tracking = added.late.back().tracking;
+    added.late.pop_back();
+    if (!added.tracking.registered()) return added;
+  } else {
+    timed(added.integrate_ms, [&] { integrate(*frame.cloud); });
+  }
+  const int map_before = map_;
   timed(added.loop_ms, [&] { close_loops(); });
+  if (map_ != map_before) {
+    added.tracking.status = TrackingStatus::relocalised;
+    added.tracking.world_from_camera = pose_of(frames_.back());
+  }
   return added;
 }
 
 /// Finds the pose of a frame, and decides whether it becomes a keyframe.
 TrackingResult RoomMapper::track(const NewFrame& frame) {
   const std::vector<const Keyframe*> around = keyframes_around();
-  TrackingResult result = find_camera(frame.timestamp_s, *frame.cloud, around);
+  TrackingResult result;
+  // After some time the camera may be anywhere, and odometry may register it with a wrong place
+  // that looks similar.
+  if (lost_frames_ < frames_until_given_up) {
+    result = odometry_.track(frame.timestamp_s, *frame.cloud, around);
+  }
   odometry_.note_frame(frame.timestamp_s);
-  if (!frames_.empty()) lost_frames_ = result.registered() ? 0 : lost_frames_ + 1;
-  if (!result.registered()) return result;
-  result.is_keyframe = result.status != TrackingStatus::relocalised &&
-                       wants_keyframe(result.world_from_camera, around);
+  if (!result.registered()) {
+    if (!frames_.empty()) ++lost_frames_;
+    if (result.status != TrackingStatus::no_surface) held_.push_back(frame);
+    return result;
+  }
+  lost_frames_ = 0;
+  held_.clear();
+  result.is_keyframe = wants_keyframe(result.world_from_camera, around);
   if (result.is_keyframe) {
     add_keyframe(frame, around, result);
   } else if (!result.targets.empty()) {
     current_ = result.targets.front();
   }
   frames_.push_back({frame.timestamp_s, current_,
-                     keyframes_[current_].world_from_camera.inverse() * result.world_from_camera});
+                     keyframes_[current_].world_from_camera.inverse() * result.world_from_camera,
+                     frame.index});
   return result;
+}
+
+/// Begins a map with the frames that could not be registered, in order. Returns what became of
+/// them, and of the frames of a map before that was too small to keep.
+std::vector<LateFrame> RoomMapper::start_map() {
+  std::vector<LateFrame> late = drop_fragment();
+  map_ = begun_maps_++;
+  odometry_.start_anew();
+  lost_frames_ = 0;
+  for (const NewFrame& frame : std::exchange(held_, {})) {
+    LateFrame& result = late.emplace_back(LateFrame{frame.index, track(frame)});
+    if (result.tracking.registered()) integrate(*frame.cloud);
+  }
+  return late;
+}
+
+/// Removes the newest map if it has too few frames to be of use. Nothing refers to it then but
+/// what was added last.
+std::vector<LateFrame> RoomMapper::drop_fragment() {
+  const auto is_of_newest = [&](const RegisteredFrame& frame) {
+    return keyframes_[frame.keyframe].map == map_;
+  };
+  const auto first = std::ranges::find_if(frames_, is_of_newest);
+  if (map_ + 1 != begun_maps_ || frames_.end() - first >= least_frames_of_map) return {};
+  std::vector<LateFrame> dropped;
+  for (auto frame = first; frame != frames_.end(); ++frame) {
+    dropped.push_back({frame->index, TrackingResult{}});
+  }
+  frames_.erase(first, frames_.end());
+  const auto is_kept = [&](const Keyframe& keyframe) { return keyframe.map != map_; };
+  const auto kept = static_cast<int>(std::ranges::count_if(keyframes_.all(), is_kept));
+  const auto refers_to_dropped = [&](const PoseEdge& edge) { return edge.to >= kept; };
+  std::erase_if(edges_, refers_to_dropped);
+  std::erase_if(recognitions_, refers_to_dropped);
+  std::erase_if(submaps_, [&](const Submap& submap) { return submap.anchor >= kept; });
+  submap_of_.resize(static_cast<std::size_t>(kept));
+  keyframes_.shrink(kept);
+  searched_ = std::min(searched_, kept);
+  return dropped;
 }
 
 KeyframeSpacing RoomMapper::keyframe_spacing() const {
@@ -83,43 +152,13 @@ KeyframeSpacing RoomMapper::keyframe_spacing() const {
 }
 
 std::vector<const Keyframe*> RoomMapper::keyframes_around() const {
-  if (frames_.empty()) return {};
-  const RegisteredFrame& last = frames_.back();
-  const Pose pose = keyframes_[last.keyframe].world_from_camera * last.keyframe_from_camera;
-  return keyframes_.around(last.keyframe, pose, odometry_options_.keyframes_around,
-                           keyframe_spacing());
+  if (frames_.empty() || keyframes_[frames_.back().keyframe].map != map_) return {};
+  return keyframes_.around(frames_.back().keyframe, pose_of(frames_.back()),
+                           odometry_options_.keyframes_around, keyframe_spacing());
 }
 
-TrackingResult RoomMapper::find_camera(double timestamp_s, const SurfaceCloud& cloud,
-                                       std::span<const Keyframe* const> around) {
-  // After some time the camera may be anywhere, and odometry may register it with a wrong place
-  // that looks similar. So all keyframes are tried first.
-  if (lost_frames_ >= frames_until_lost) {
-    const TrackingResult found = relocalised(timestamp_s, cloud);
-    if (found.registered() || lost_frames_ >= frames_until_given_up) return found;
-  }
-  return odometry_.track(timestamp_s, cloud, around);
-}
-
-TrackingResult RoomMapper::relocalised(double timestamp_s, const SurfaceCloud& cloud) {
-  TrackingResult result;
-  const auto found = relocalise(cloud, keyframes_.all(), camera_, loop_options_, registration_);
-  if (!found) return result;
-  // Many places look alike: a place that the camera can hardly have reached must match better.
-  constexpr double sure_support = 0.85;
-  constexpr double sure_support_within_reach = 0.6;
-  const RegistrationResult& there = found->registration;
-  const bool is_within_reach = odometry_.is_within_reach(timestamp_s, there.world_from_camera);
-  if (there.overlap * there.inlier_ratio <
-      (is_within_reach ? sure_support_within_reach : sure_support)) {
-    return result;
-  }
-  result.status = TrackingStatus::relocalised;
-  result.world_from_camera = found->registration.world_from_camera;
-  result.registration = found->registration;
-  result.targets = {found->keyframe};
-  odometry_.restart({timestamp_s, result.world_from_camera});
-  return result;
+Pose RoomMapper::pose_of(const RegisteredFrame& frame) const {
+  return keyframes_[frame.keyframe].world_from_camera * frame.keyframe_from_camera;
 }
 
 /// Adds the surface of the latest registered frame to the submap of its keyframe.
@@ -131,42 +170,94 @@ void RoomMapper::integrate(const SurfaceCloud& cloud) {
   submap.surface.integrate(cloud, anchor_from_keyframe * frames_.back().keyframe_from_camera);
 }
 
-/// Searches for a loop of the newest keyframe, once per keyframe, and fits the pose graph if there
-/// are new loops and the last fit was long enough ago.
+/// Searches for a loop of the newest keyframe and recognises its place in other maps, once per
+/// keyframe. Fits the pose graph if there are new loops and the last fit was long enough ago.
 void RoomMapper::close_loops() {
-  if (!loop_options_.close || searched_ == keyframes_.size()) return;
+  if (searched_ == keyframes_.size()) return;
   searched_ = keyframes_.size();
+  recognise_place();
+  if (!loop_options_.close) return;
   const Keyframe& keyframe = keyframes_[keyframes_.size() - 1];
   const LoopCandidate candidate =
       find_loop(keyframe, keyframes_.all(), camera_, loop_options_, registration_);
   if (candidate.edge) {
-    edges_.push_back(*candidate.edge);
     const Pose& found = candidate.registration.world_from_camera;
-    loops_.push_back(
-        {.from_frame = keyframes_[candidate.from].frame_index,
-         .to_frame = keyframe.frame_index,
-         .error_m = (found.translation() - keyframe.world_from_camera.translation()).norm()});
-    ++unfitted_loops_;
+    add_loop(*candidate.edge,
+             (found.translation() - keyframe.world_from_camera.translation()).norm());
   }
   if (unfitted_loops_ > 0 && keyframe.id - last_fit_ >= keyframes_between_fits) fit();
+}
+
+void RoomMapper::add_loop(const PoseEdge& edge, double error_m) {
+  edges_.push_back(edge);
+  loops_.push_back({.from_frame = keyframes_[edge.from].frame_index,
+                    .to_frame = keyframes_[edge.to].frame_index,
+                    .error_m = error_m});
+  ++unfitted_loops_;
+}
+
+/// Searches for the place of the newest keyframe in other maps, and joins maps if enough keyframes
+/// agree.
+void RoomMapper::recognise_place() {
+  const Keyframe& keyframe = keyframes_[keyframes_.size() - 1];
+  std::vector<const Keyframe*> candidates;
+  for (const Keyframe& other : keyframes_.all()) {
+    if (other.map != map_) candidates.push_back(&other);
+  }
+  if (candidates.empty()) return;
+  const auto found = recognise(keyframe, std::move(candidates), keyframes_.all(), camera_,
+                               loop_options_, registration_);
+  if (!found) return;
+  recognitions_.push_back(edge_of(keyframes_[found->from], keyframe.id,
+                                  found->registration.world_from_camera,
+                                  found->registration.covariance));
+  recognitions_.back().may_be_wrong = true;
+  join_maps();
+}
+
+void RoomMapper::join_maps() {
+  const auto join = find_join(recognitions_, map_, keyframes_.all(), loop_options_);
+  if (!join) return;
+  keyframes_.join(join->map, join->into, join->into_from_map);
+  odometry_.move(join->into_from_map);
+  map_ = join->into;
+  for (const PoseEdge& edge : join->edges) {
+    const Pose found = keyframes_[edge.from].world_from_camera * edge.from_from_to;
+    const Pose& believed = keyframes_[edge.to].world_from_camera;
+    add_loop(edge, (found.translation() - believed.translation()).norm());
+  }
+  std::erase_if(recognitions_, [&](const PoseEdge& edge) {
+    return keyframes_[edge.from].map == keyframes_[edge.to].map;
+  });
+  fit();
 }
 
 void RoomMapper::finish() {
   if (unfitted_loops_ > 0) fit();
 }
 
-Trajectory RoomMapper::trajectory() const {
+std::vector<int> RoomMapper::maps() const {
+  std::map<int, int> frames_of;
+  for (const RegisteredFrame& frame : frames_) ++frames_of[keyframes_[frame.keyframe].map];
+  std::vector<int> maps;
+  for (const auto& [map, frames] : frames_of) maps.push_back(map);
+  std::ranges::stable_sort(maps, std::ranges::greater(), [&](int map) { return frames_of[map]; });
+  return maps;
+}
+
+Trajectory RoomMapper::trajectory(int map) const {
   Trajectory trajectory;
   for (const RegisteredFrame& frame : frames_) {
-    const Pose& world_from_keyframe = keyframes_[frame.keyframe].world_from_camera;
-    trajectory.push_back({frame.timestamp_s, world_from_keyframe * frame.keyframe_from_camera});
+    if (keyframes_[frame.keyframe].map != map) continue;
+    trajectory.push_back({frame.timestamp_s, pose_of(frame)});
   }
   return trajectory;
 }
 
-Trajectory RoomMapper::keyframe_trajectory() const {
+Trajectory RoomMapper::keyframe_trajectory(int map) const {
   Trajectory trajectory;
   for (const Keyframe& keyframe : keyframes_.all()) {
+    if (keyframe.map != map) continue;
     trajectory.push_back({keyframe.timestamp_s, keyframe.world_from_camera});
   }
   return trajectory;
@@ -178,14 +269,18 @@ std::size_t RoomMapper::voxel_count() const {
   return count;
 }
 
-MapCloud RoomMapper::surface() const {
+MapCloud RoomMapper::surface(int map) const {
   SurfaceMap whole(surface_options_);
   for (const Submap& submap : submaps_) {
-    whole.add(submap.surface, keyframes_[submap.anchor].world_from_camera);
+    const Keyframe& anchor = keyframes_[submap.anchor];
+    if (anchor.map == map) whole.add(submap.surface, anchor.world_from_camera);
   }
-  const MapCloud map = whole.extract();
-  if (!surface_options_.drop_free_space_violations) return map;
-  return without_free_space_violations(map, keyframes_.all(), camera_, surface_options_.voxel_m);
+  const MapCloud surface = whole.extract();
+  if (!surface_options_.drop_free_space_violations) return surface;
+  std::vector<Keyframe> seen_by;
+  std::ranges::copy_if(keyframes_.all(), std::back_inserter(seen_by),
+                       [&](const Keyframe& keyframe) { return keyframe.map == map; });
+  return without_free_space_violations(surface, seen_by, camera_, surface_options_.voxel_m);
 }
 
 bool RoomMapper::wants_keyframe(const Pose& pose, std::span<const Keyframe* const> around) const {
@@ -201,13 +296,16 @@ void RoomMapper::add_keyframe(const NewFrame& frame, std::span<const Keyframe* c
   const int id = keyframes_.size();
   double path_m = 0;
   if (id > 0) {
-    const Pose& last = keyframes_[id - 1].world_from_camera;
-    path_m = keyframes_[id - 1].path_m +
-             (result.world_from_camera.translation() - last.translation()).norm();
+    const Keyframe& last = keyframes_[id - 1];
+    path_m = last.path_m;
+    if (last.map == map_) {
+      path_m +=
+          (result.world_from_camera.translation() - last.world_from_camera.translation()).norm();
+    }
   }
   submap_of_.push_back(submap_for(id, result.world_from_camera, around));
   keyframes_.add({id, frame.index, frame.timestamp_s, result.world_from_camera, frame.cloud, path_m,
-                  PlaceDescriptor(*frame.cloud)});
+                  PlaceDescriptor(*frame.cloud), map_});
   // One registration with all targets gives several edges, each with an equal share of its
   // information.
   const auto shares = static_cast<double>(result.targets.size());

@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <optional>
+#include <ranges>
 
 #include <omp.h>
 
@@ -86,18 +88,6 @@ FrameRecord prepared_record(const PreparedFrame& frame) {
   return record;
 }
 
-/// Adds a frame to the map and returns its record.
-FrameRecord mapped(const PreparedFrame& frame, RoomMapper& mapper) {
-  FrameRecord record = prepared_record(frame);
-  AddedFrame added = mapper.add_frame(
-      {.index = frame.index, .timestamp_s = frame.timestamp_s, .cloud = frame.cloud});
-  record.tracking = std::move(added.tracking);
-  record.times.register_ms = added.register_ms;
-  record.times.map_ms = added.integrate_ms;
-  record.times.loop_ms = added.loop_ms;
-  return record;
-}
-
 /// Tells the mapper about a frame that repeats the frame before it, and returns its record.
 FrameRecord repeated(const SourcedFrame& frame, RoomMapper& mapper) {
   FrameRecord record = plain_record(frame);
@@ -138,10 +128,19 @@ int RoomMap::degenerate() const {
   }));
 }
 
+int RoomMap::separate() const {
+  return std::accumulate(separate_maps.begin(), separate_maps.end(), 0,
+                         [](int sum, const SeparateMap& one) {
+                           return sum + static_cast<int>(one.trajectory.size());
+                         });
+}
+
 MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options) {
   return {.frames = static_cast<int>(map.frames.size()),
           .registered = static_cast<int>(map.trajectory.size()),
           .degenerate = map.degenerate(),
+          .separate = map.separate(),
+          .separate_maps = static_cast<int>(map.separate_maps.size()),
           .is_empty = map.surface.empty(),
           .is_interrupted = map.interrupted,
           .is_unwrapped = options.unwrap.method != UnwrapMethod::none,
@@ -226,12 +225,28 @@ void MapRun::advance(FrameSource& source, const MapHooks& hooks) {
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (prepared[i]) {
         if (hooks.on_frame) hooks.on_frame(*frames[i].frame, *prepared[i]);
-        frames_.push_back(mapped(*prepared[i], mapper_));
+        add(*prepared[i]);
       } else {
         frames_.push_back(repeats[i] ? repeated(frames[i], mapper_) : plain_record(frames[i]));
       }
     }
   }
+}
+
+/// Adds a frame to the map, and its record.
+void MapRun::add(const PreparedFrame& frame) {
+  AddedFrame added = mapper_.add_frame(
+      {.index = frame.index, .timestamp_s = frame.timestamp_s, .cloud = frame.cloud});
+  for (LateFrame& late : added.late) {
+    const auto record =
+        std::ranges::find(frames_ | std::views::reverse, late.index, &FrameRecord::index);
+    record->tracking = std::move(late.tracking);
+  }
+  FrameRecord& record = frames_.emplace_back(prepared_record(frame));
+  record.tracking = std::move(added.tracking);
+  record.times.register_ms = added.register_ms;
+  record.times.map_ms = added.integrate_ms;
+  record.times.loop_ms = added.loop_ms;
 }
 
 /// For each of the frames, whether it has the same phases as the frame before it.
@@ -258,9 +273,17 @@ std::vector<SourcedFrame> MapRun::take_next(FrameSource& source) {
 RoomMap MapRun::finish() {
   mapper_.finish();
   RoomMap map;
-  map.trajectory = mapper_.trajectory();
-  map.keyframes = mapper_.keyframe_trajectory();
-  map.surface = mapper_.surface();
+  for (const int number : mapper_.maps()) {
+    SeparateMap one{mapper_.trajectory(number), mapper_.keyframe_trajectory(number),
+                    mapper_.surface(number)};
+    if (map.trajectory.empty()) {
+      map.trajectory = std::move(one.trajectory);
+      map.keyframes = std::move(one.keyframes);
+      map.surface = std::move(one.surface);
+    } else {
+      map.separate_maps.push_back(std::move(one));
+    }
+  }
   map.loops = mapper_.loops();
   map.frames = std::move(frames_);
   map.errors = errors_.survey();

@@ -15,6 +15,8 @@ struct MapEvidence {
   int frames = 0;                    ///< frames of the recording, including damaged ones
   int registered = 0;                ///< frames whose pose was found
   int degenerate = 0;                ///< frames with a degenerate direction of motion
+  int separate = 0;                  ///< frames that are registered in separate maps
+  int separate_maps = 0;             ///< maps that could not be joined with this one
   bool is_empty = false;             ///< the map has no points
   bool is_interrupted = false;       ///< the run was ended early
   bool is_unwrapped = true;          ///< false for method `none`

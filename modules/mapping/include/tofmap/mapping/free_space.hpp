@@ -23,4 +23,16 @@ namespace tofmap {
 MapCloud without_free_space_violations(const MapCloud& map, std::span<const Keyframe> keyframes,
                                        const CameraModel& camera, double margin_m);
 
+/// Share of free-space violations between two clouds: of those points of each that the other one
+/// agrees with or sees through, as defined above, the share that it sees through. Every third point
+/// is tested. 0 if neither sees anything of the other.
+double free_space_violation_share(const RegistrationTarget& one, const RegistrationTarget& other,
+                                  const CameraModel& camera, double margin_m);
+
+/// Whether a cloud at a pose that registration has found contradicts the free space of a target: of
+/// what both see of each other, they see through at least 5 % (free_space_violation_share()).
+/// Errors of the pose of 3 cm are tolerated.
+bool contradicts_free_space(const SurfaceCloud& cloud, const Pose& world_from_camera,
+                            const RegistrationTarget& target, const CameraModel& camera);
+
 }  // namespace tofmap

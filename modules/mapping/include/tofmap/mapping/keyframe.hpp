@@ -23,6 +23,7 @@ struct Keyframe {
   std::shared_ptr<const SurfaceCloud> cloud = {};  ///< in the camera's frame; not null
   double path_m = 0;           ///< length of the path through all keyframes up to this one
   PlaceDescriptor place = {};  ///< of the cloud
+  int map = 0;                 ///< the map that the pose refers to; see RoomMapper
 };
 
 /// A keyframe as a target of registration. The keyframe must outlive the target.
@@ -30,8 +31,8 @@ inline RegistrationTarget target_of(const Keyframe& keyframe) {
   return {keyframe.cloud.get(), keyframe.world_from_camera};
 }
 
-/// A keyframe and the ones directly before and after it, as targets. `keyframes` are in the order
-/// of their ids, from 0, and must outlive the targets.
+/// A keyframe and the ones directly before and after it, if they are of the same map, as targets.
+/// `keyframes` are in the order of their ids, from 0, and must outlive the targets.
 std::vector<RegistrationTarget> targets_around(const Keyframe& keyframe,
                                                std::span<const Keyframe> keyframes);
 

@@ -42,6 +42,13 @@ class KeyframeGraph {
   /// Sets the pose of a keyframe.
   void set_pose(int id, const Pose& world_from_camera);
 
+  /// Moves all keyframes of a map into another one.
+  void join(int map, int into, const Pose& into_from_map);
+
+  /// Removes the newest keyframes, those with an id of at least `size`. None of the others may be
+  /// connected with one of them.
+  void shrink(int size);
+
   /// At most `count` keyframes around a pose: keyframe `id`, and those nearest to the pose among
   /// the keyframes that at most five registrations connect with `id`. Keyframe `id` comes last, the
   /// others come in the order of their ids. `steps` is the unit of distance. The pointers are valid

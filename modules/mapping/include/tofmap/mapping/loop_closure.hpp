@@ -57,14 +57,14 @@ struct LoopCandidate {
 
 /// Searches for an earlier keyframe that sees the same place as `keyframe`.
 ///
-/// Candidates are keyframes with an id that is smaller by at least `min_keyframes`, whose cameras
-/// are within `radius_m` and `max_rotation_rad` of the camera of `keyframe`. First, `keyframe` is
-/// registered with the three candidates that overlap it most, together, from its current pose with
-/// drift_prior() along the path since. If the result is not verified, the drift may have been
-/// larger: then `keyframe` is registered with the candidate that looks most similar, from the pose
-/// of that candidate, and the result is accepted if it is within three standard deviations of
-/// drift. A loop is found if is_verified(). `keyframes` are in the order of their ids, from 0, and
-/// hold all earlier keyframes; later ones are ignored.
+/// Candidates are keyframes of the same map with an id that is smaller by at least `min_keyframes`,
+/// whose cameras are within `radius_m` and `max_rotation_rad` of the camera of `keyframe`. First,
+/// `keyframe` is registered with the three candidates that overlap it most, together, from its
+/// current pose with drift_prior() along the path since. If the result is not verified, the drift
+/// may have been larger: then `keyframe` is registered with the candidate that looks most similar,
+/// from the pose of that candidate, and the result is accepted if it is within three standard
+/// deviations of drift. A loop is found if is_verified(). `keyframes` are in the order of their
+/// ids, from 0, and hold all earlier keyframes; later ones are ignored.
 LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyframes,
                         const CameraModel& camera, const LoopOptions& options,
                         const RegistrationOptions& registration);

@@ -3,12 +3,21 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include <tofmap/mapping/keyframe.hpp>
 #include <tofmap/mapping/loop_closure.hpp>
 #include <tofmap/registration/pose_graph.hpp>
 
 namespace tofmap {
+
+/// The loop that agrees with most others, and these others, in the given order. Two loops agree if
+/// the correction of the path by one of them moves the later keyframe of the other one to where
+/// that one puts it, within two standard deviations of the drift between both. `keyframes` are in
+/// the order of their ids, from 0. Empty if there are no loops.
+std::vector<const PoseEdge*> most_that_agree(const std::vector<const PoseEdge*>& loops,
+                                             std::span<const Keyframe> keyframes,
+                                             const LoopOptions& options);
 
 /// Optimises the poses of keyframes over all edges between them (optimise_pose_graph()).
 ///

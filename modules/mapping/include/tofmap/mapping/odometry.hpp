@@ -94,7 +94,8 @@ struct TrackingResult {
 /// predicted pose, or fits the surfaces clearly worse than the frames before, the frame is also
 /// registered from the rotations around the last pose that search_rotations() finds. The best of
 /// these results replaces the first one if it fits better, is verified as for a loop, and no other
-/// one fits as well.
+/// one fits as well. If none does, and the first one fits the surfaces far worse than is usual or
+/// contradicts the free space of the keyframes, the frame is lost.
 class Odometry {
  public:
   /// `recognition` says when a registration is trusted that does not follow from the motion of the
@@ -117,13 +118,8 @@ class Odometry {
   /// frames count as well. False if no frame was registered yet.
   bool is_after_gap(double timestamp_s) const;
 
-  /// Whether the camera can have moved to `pose` since the last registered frame: `pose` is within
-  /// four standard deviations of the predicted pose or of the last one. False if no frame was
-  /// registered yet.
-  bool is_within_reach(double timestamp_s, const Pose& pose) const;
-
-  /// Continues from a pose that was found elsewhere, with zero velocity.
-  void restart(const StampedPose& pose);
+  /// Forgets where the camera was: the next frame with a surface is the first one again.
+  void start_anew();
 
   /// Transforms the poses of the last frames when the pose graph has moved their keyframes.
   void move(const Pose& new_from_old_world);
@@ -136,7 +132,7 @@ class Odometry {
   /// A registration of the frame with some keyframes, and where it started.
   struct Attempt {
     MotionPrior prior;
-    std::vector<int> targets;  ///< ids of the keyframes, best overlap first
+    std::vector<const Keyframe*> targets;  ///< best overlap first
     RegistrationResult registration;
   };
 
@@ -148,11 +144,12 @@ class Odometry {
   std::optional<Attempt> register_turned(double periods, const SurfaceCloud& cloud,
                                          std::span<const Keyframe* const> around) const;
   bool is_suspect(const Attempt& attempt) const;
+  bool is_credible(const RegistrationResult& result) const;
+  bool contradicts_targets(const Attempt& attempt, const SurfaceCloud& cloud) const;
   TrackingStatus judge(const Attempt& attempt, double timestamp_s) const;
   MotionPrior predict(double timestamp_s) const;
-  std::vector<RegistrationTarget> choose_targets(const SurfaceCloud& cloud, const Pose& expected,
-                                                 std::span<const Keyframe* const> around,
-                                                 Attempt& attempt) const;
+  std::vector<const Keyframe*> choose_targets(const SurfaceCloud& cloud, const Pose& expected,
+                                              std::span<const Keyframe* const> around) const;
   void accept(const StampedPose& pose);
 
   CameraModel camera_;
@@ -166,8 +163,10 @@ class Odometry {
   double last_timestamp_s_ = 0;           ///< of the last frame passed to note_frame()
   MotionUncertainty uncertainty_;         ///< of the last registered pose
   static constexpr double expected_support = 0.8;  ///< before any frame was registered
+  static constexpr double expected_inlier_ratio = 0.9;
   /// Share of a frame's points that fit the surfaces, averaged over recent registered frames.
   double usual_support_ = expected_support;
+  double usual_inlier_ratio_ = expected_inlier_ratio;  ///< averaged likewise
 };
 
 }  // namespace tofmap

@@ -9,7 +9,6 @@
 #include <tofmap/mapping/keyframe_graph.hpp>
 #include <tofmap/mapping/loop_closure.hpp>
 #include <tofmap/mapping/odometry.hpp>
-#include <tofmap/mapping/relocalisation.hpp>
 #include <tofmap/mapping/surface_map.hpp>
 
 namespace boost::serialization {
@@ -35,12 +34,19 @@ struct NewFrame {
   bool repeats = false;                       ///< whether it has the phases of the frame before it
 };
 
+/// A frame that could not be registered when it came, but was later.
+struct LateFrame {
+  int index = 0;  ///< NewFrame::index
+  TrackingResult tracking;
+};
+
 /// What became of a frame, and the wall-clock times of the steps.
 struct AddedFrame {
   TrackingResult tracking;
-  double register_ms = 0;   ///< tracking or relocalisation
-  double integrate_ms = 0;  ///< adding the surface to the map
-  double loop_ms = 0;       ///< loop search and pose graph
+  std::vector<LateFrame> late;  ///< frames before it whose result has changed
+  double register_ms = 0;       ///< tracking or relocalisation
+  double integrate_ms = 0;      ///< adding the surface to the map
+  double loop_ms = 0;           ///< loop search and pose graph
 };
 
 /// Tracks the camera, closes loops, and keeps trajectory and map consistent.
@@ -53,9 +59,12 @@ struct AddedFrame {
 /// edges of odometry and loops. Submaps and frames move with their keyframes, so no frame is
 /// integrated again.
 ///
-/// When tracking has been lost for three frames, the camera is searched for among all keyframes
-/// before odometry is tried. After 15 frames, only among all keyframes. Frames that are not
-/// registered do not enter the map.
+/// When tracking is lost, a new map begins: once three frames with a surface could not be
+/// registered, the first of them is the origin of a map of its own, and the others are tracked in
+/// it. Every keyframe of the newest map is compared with those of the other maps; when three
+/// keyframes recognise places of another map and agree, both maps are joined. Maps that never are
+/// stay maps of their own. A map of fewer than three frames is dropped again when the next one
+/// begins.
 class RoomMapper {
  public:
   RoomMapper(const CameraModel& camera, const OdometryOptions& odometry,
@@ -73,12 +82,16 @@ class RoomMapper {
   /// the last frame.
   void finish();
 
-  /// Poses of all registered frames, from the current poses of their keyframes.
-  Trajectory trajectory() const;
-  /// Current poses of all keyframes.
-  Trajectory keyframe_trajectory() const;
-  /// The map: all submaps in the world frame, without free-space violations if the options say so.
-  MapCloud surface() const;
+  /// The maps, by their numbers, the one with most registered frames first. Empty if no frame was
+  /// registered.
+  std::vector<int> maps() const;
+  /// Poses of all registered frames of a map, from the current poses of their keyframes.
+  Trajectory trajectory(int map) const;
+  /// Current poses of all keyframes of a map.
+  Trajectory keyframe_trajectory(int map) const;
+  /// The surface of a map: all of its submaps in its world frame, without free-space violations if
+  /// the options say so.
+  MapCloud surface(int map) const;
   /// Number of voxels in all submaps, including those with too few points for surface().
   std::size_t voxel_count() const;
   /// All verified loops so far, in the order in which they were found.
@@ -100,6 +113,7 @@ class RoomMapper {
     double timestamp_s = 0;
     int keyframe = 0;  ///< id of the keyframe that the frame belongs to
     Pose keyframe_from_camera = Pose::Identity();
+    int index = 0;  ///< NewFrame::index
 
     template <class Archive>
     void serialize(Archive& archive, unsigned version);
@@ -112,12 +126,15 @@ class RoomMapper {
   };
 
   TrackingResult track(const NewFrame& frame);
+  std::vector<LateFrame> start_map();
+  std::vector<LateFrame> drop_fragment();
   void integrate(const SurfaceCloud& cloud);
   void close_loops();
-  TrackingResult find_camera(double timestamp_s, const SurfaceCloud& cloud,
-                             std::span<const Keyframe* const> around);
-  TrackingResult relocalised(double timestamp_s, const SurfaceCloud& cloud);
+  void recognise_place();
+  void join_maps();
+  void add_loop(const PoseEdge& edge, double error_m);
   KeyframeSpacing keyframe_spacing() const;
+  Pose pose_of(const RegisteredFrame& frame) const;
   std::vector<const Keyframe*> keyframes_around() const;
   bool wants_keyframe(const Pose& pose, std::span<const Keyframe* const> around) const;
   void add_keyframe(const NewFrame& frame, std::span<const Keyframe* const> around,
@@ -138,10 +155,14 @@ class RoomMapper {
   std::vector<PoseEdge> edges_;
   std::vector<Loop> loops_;  ///< in the order of their edges
   int unfitted_loops_ = 0;
-  int last_fit_ = 0;     ///< id of the newest keyframe in the last fit
-  int current_ = 0;      ///< id of the keyframe that the latest frame belongs to
-  int lost_frames_ = 0;  ///< number of frames since the last registered one
-  int searched_ = 0;     ///< number of keyframes for which loops were searched
+  int last_fit_ = 0;            ///< id of the newest keyframe in the last fit
+  int current_ = 0;             ///< id of the keyframe that the latest frame belongs to
+  int map_ = 0;                 ///< the map that frames are added to
+  int begun_maps_ = 1;          ///< number of maps so far, with those that were joined or dropped
+  int lost_frames_ = 0;         ///< number of frames since the last registered one
+  int searched_ = 0;            ///< number of keyframes for which loops were searched
+  std::vector<NewFrame> held_;  ///< frames with a surface since the last registered one
+  std::vector<PoseEdge> recognitions_;  ///< from a keyframe of another map to one of `map_`
 };
 
 }  // namespace tofmap

@@ -106,20 +106,31 @@ struct FrameRecord {
   bool is_prepared() const { return damage.empty() && !repeats; }
 };
 
-/// A map of a room, with the records of all frames. World coordinates are those of the first
-/// registered camera.
+/// A map that could not be joined with the others of its recording, because no place of them was
+/// recognised for sure. World coordinates are those of its first camera.
+struct SeparateMap {
+  Trajectory trajectory;  ///< world_from_camera of every frame registered in it
+  Trajectory keyframes;   ///< world_from_camera of the keyframes
+  MapCloud surface;
+};
+
+/// A map of a room, with the records of all frames. World coordinates are those of its first
+/// camera. If tracking was lost and the maps before and after could not be joined, it is the map
+/// with most frames.
 struct RoomMap {
-  Trajectory trajectory;            ///< world_from_camera of every registered frame
-  Trajectory keyframes;             ///< world_from_camera of the keyframes
-  MapCloud surface;                 ///< in world coordinates
-  std::vector<Loop> loops;          ///< all loops that were found, used or not
-  std::vector<FrameRecord> frames;  ///< all frames, in order
-  ErrorSurvey errors;               ///< MapRun::errors at the end of the run
-  bool interrupted = false;         ///< a hook ended the run early
+  Trajectory trajectory;                   ///< world_from_camera of every registered frame
+  Trajectory keyframes;                    ///< world_from_camera of the keyframes
+  MapCloud surface;                        ///< in world coordinates
+  std::vector<SeparateMap> separate_maps;  ///< the other maps, the one with most frames first
+  std::vector<Loop> loops;                 ///< all loops that were found, used or not
+  std::vector<FrameRecord> frames;         ///< all frames, in order
+  ErrorSurvey errors;                      ///< MapRun::errors at the end of the run
+  bool interrupted = false;                ///< a hook ended the run early
 
   int damaged() const;     ///< number of frames that could not be read
   int repeated() const;    ///< number of frames that repeat the frame before them
   int degenerate() const;  ///< number of frames with a degenerate direction of motion
+  int separate() const;    ///< number of frames that are registered in separate maps
 };
 
 /// The evidence that the frames and the surface of a map give for its verdict. The accuracy is
@@ -177,6 +188,7 @@ class MapRun {
  private:
   std::vector<SourcedFrame> take_next(FrameSource& source);
   std::vector<bool> find_repeats(const std::vector<SourcedFrame>& frames);
+  void add(const PreparedFrame& frame);
 
   SensorModel sensor_;
   PipelineOptions options_;

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <tofmap/core/camera.hpp>
+#include <tofmap/mapping/keyframe.hpp>
+#include <tofmap/mapping/loop_closure.hpp>
+#include <tofmap/registration/projective_icp.hpp>
+
+namespace tofmap {
+
+/// A place that was recognised: the pose of a keyframe in the map of another one, found without
+/// knowledge of the camera's motion.
+struct Recognition {
+  int from = 0;                     ///< id of the keyframe that the place was recognised by
+  RegistrationResult registration;  ///< with that keyframe and its neighbours, in their map
+};
+
+/// Recognises the place that a keyframe sees among keyframes of other maps.
+///
+/// The keyframe is registered with each of the five candidates that look most similar, from the
+/// pose of that candidate (register_near()). A result counts if it is verified as for a loop
+/// (is_verified()) and does not contradict the free space of the candidate
+/// (contradicts_free_space()). Of these results, the one with the largest product of overlap and
+/// inlier ratio is returned. Empty if no result counts, or if one of another place reaches more
+/// than 90 % of that product. `keyframes` are all keyframes in the order of their ids, from 0, and
+/// must outlive the candidates, which are some of them.
+std::optional<Recognition> recognise(const Keyframe& keyframe,
+                                     std::vector<const Keyframe*> candidates,
+                                     std::span<const Keyframe> keyframes, const CameraModel& camera,
+                                     const LoopOptions& options,
+                                     const RegistrationOptions& registration);
+
+}  // namespace tofmap

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include <tofmap/core/camera.hpp>
+#include <tofmap/mapping/keyframe.hpp>
+
+namespace tofmap {
+
+/// What a point in the world is to a keyframe.
+enum class Observation {
+  nothing,       ///< out of view, occluded, or at a pixel without a surface around it
+  agrees,        ///< on the surface
+  sees_through,  ///< in front of the surface
+};
+
+/// A keyframe, prepared for testing many points against free space. Must not outlive the keyframe's
+/// cloud.
+class KeyframeView {
+ public:
+  /// `margin_m` is added to three standard deviations of a surface, along its normal.
+  KeyframeView(const SurfaceCloud& cloud, const Pose& world_from_camera, const CameraModel& camera,
+               double margin_m);
+
+  Observation judge(const Eigen::Vector3d& world_m) const;
+
+ private:
+  std::optional<float> share_before(int row, int col, const Eigen::Vector3f& point_m) const;
+
+  Pose camera_from_world_;
+  const SurfaceCloud& cloud_;
+  const CameraModel& camera_;
+  double margin_m_;
+  float farthest_m_ = 0;
+};
+
+}  // namespace tofmap

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/mapping/map_join.hpp"
+
+#include "tofmap/mapping/loop_fit.hpp"
+
+#include <map>
+#include <set>
+
+namespace tofmap {
+namespace {
+
+/// Number of keyframes that must recognise the same place.
+constexpr std::size_t least_agreeing = 3;
+
+std::size_t recognised_keyframes(const std::vector<const PoseEdge*>& edges) {
+  std::set<int> keyframes;
+  for (const PoseEdge* edge : edges) keyframes.insert(edge->to);
+  return keyframes.size();
+}
+
+}  // namespace
+
+std::optional<MapJoin> find_join(std::span<const PoseEdge> recognitions, int map,
+                                 std::span<const Keyframe> keyframes, const LoopOptions& options) {
+  const auto at = [&](int id) -> const Keyframe& {
+    return keyframes[static_cast<std::size_t>(id)];
+  };
+  std::map<int, std::vector<const PoseEdge*>> by_map;
+  for (const PoseEdge& edge : recognitions) {
+    if (at(edge.to).map == map) by_map[at(edge.from).map].push_back(&edge);
+  }
+  std::optional<MapJoin> best;
+  for (const auto& [into, edges] : by_map) {
+    const auto agreeing = most_that_agree(edges, keyframes, options);
+    const bool is_sure =
+        recognised_keyframes(agreeing) >= least_agreeing && 2 * agreeing.size() > edges.size();
+    if (!is_sure || (best && agreeing.size() <= best->edges.size())) continue;
+    const PoseEdge& first = *agreeing.front();
+    best = MapJoin{.into = into,
+                   .map = map,
+                   .into_from_map = at(first.from).world_from_camera * first.from_from_to *
+                                    at(first.to).world_from_camera.inverse(),
+                   .edges = {}};
+    for (const PoseEdge* edge : agreeing) best->edges.push_back(*edge);
+  }
+  return best;
+}
+
+}  // namespace tofmap

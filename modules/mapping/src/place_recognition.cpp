@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/mapping/place_recognition.hpp"
+
+#include "tofmap/mapping/free_space.hpp"
+
+#include <algorithm>
+
+namespace tofmap {
+namespace {
+
+constexpr std::size_t most_candidates = 5;
+
+/// The best place is ambiguous if another place has more than this share of its support.
+constexpr double sure_share = 0.9;
+
+/// Share of the cloud's points that fit the surfaces of a place.
+double support(const Recognition& place) {
+  return place.registration.overlap * place.registration.inlier_ratio;
+}
+
+bool is_same_place(const Recognition& one, const Recognition& other,
+                   std::span<const Keyframe> keyframes) {
+  const auto map_of = [&](const Recognition& place) {
+    return keyframes[static_cast<std::size_t>(place.from)].map;
+  };
+  const Pose& pose = one.registration.world_from_camera;
+  const Pose& other_pose = other.registration.world_from_camera;
+  return map_of(one) == map_of(other) &&
+         (pose.translation() - other_pose.translation()).norm() < recognition_reach_m / 2 &&
+         rotation_angle_rad(pose, other_pose) < recognition_reach_rad / 2;
+}
+
+}  // namespace
+
+std::optional<Recognition> recognise(const Keyframe& keyframe,
+                                     std::vector<const Keyframe*> candidates,
+                                     std::span<const Keyframe> keyframes, const CameraModel& camera,
+                                     const LoopOptions& options,
+                                     const RegistrationOptions& registration) {
+  std::vector<Recognition> found;
+  for (const Keyframe* candidate :
+       most_alike(keyframe.place, std::move(candidates), most_candidates)) {
+    const RegistrationResult result =
+        register_near(*candidate, *keyframe.cloud, keyframes, camera, registration);
+    if (!is_verified(result, options)) continue;
+    if (contradicts_free_space(*keyframe.cloud, result.world_from_camera, target_of(*candidate),
+                               camera)) {
+      continue;
+    }
+    found.push_back({candidate->id, result});
+  }
+  if (found.empty()) return std::nullopt;
+  std::ranges::stable_sort(found, std::ranges::greater(), support);
+  const Recognition& best = found.front();
+  const bool is_ambiguous = std::ranges::any_of(found, [&](const Recognition& other) {
+    return support(other) > sure_share * support(best) && !is_same_place(best, other, keyframes);
+  });
+  return is_ambiguous ? std::nullopt : std::optional(best);
+}
+
+}  // namespace tofmap

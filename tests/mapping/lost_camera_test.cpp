@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "support/scenery.hpp"
+
+#include <memory>
+#include <sstream>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <tofmap/mapping/room_mapper.hpp>
+
+namespace tofmap {
+namespace {
+
+using test::Scenery;
+
+/// A camera that is followed, covered for a second, and seen again elsewhere.
+class LostCamera : public testing::Test {
+ protected:
+  static constexpr int first = 100;
+  static constexpr int frames = 60;
+
+  LostCamera() : mapper_(room_.camera(), {}, {}, {}, {}) {
+    for (int i = 0; i < frames; ++i) {
+      EXPECT_TRUE(add(room_.view(first + i)).tracking.registered()) << i;
+    }
+    const auto nothing = std::make_shared<const SurfaceCloud>();
+    for (int i = 0; i < 15; ++i) EXPECT_FALSE(add(nothing).tracking.registered());
+  }
+
+  AddedFrame add(const std::shared_ptr<const SurfaceCloud>& cloud) {
+    const int index = added_++;
+    return mapper_.add_frame({index, index / 15.0, cloud});
+  }
+
+  Scenery room_{"room"};
+  RoomMapper mapper_;
+  int added_ = 0;
+};
+
+TEST_F(LostCamera, BeginsAMapThatIsJoinedWhereItRecognisesTheFirstOne) {
+  // The camera comes back to its path near the beginning, where it was long before.
+  const auto there = [&](int i) { return first + 6 + i; };
+  EXPECT_FALSE(add(room_.view(there(0))).tracking.registered());
+  EXPECT_FALSE(add(room_.view(there(1))).tracking.registered());
+  const AddedFrame third = add(room_.view(there(2)));
+  EXPECT_EQ(third.tracking.status, TrackingStatus::tracked);
+  ASSERT_EQ(third.late.size(), 2U);
+  EXPECT_EQ(third.late[0].tracking.status, TrackingStatus::first);
+  EXPECT_EQ(third.late[1].tracking.status, TrackingStatus::tracked);
+  EXPECT_EQ(third.late[1].index, added_ - 2);
+  int relocalised = 0;
+  for (int i = 3; i < 40; ++i) {
+    const TrackingResult next = add(room_.view(there(i))).tracking;
+    ASSERT_TRUE(next.registered()) << i;
+    relocalised += next.status == TrackingStatus::relocalised ? 1 : 0;
+  }
+  EXPECT_EQ(relocalised, 1);
+  mapper_.finish();
+  ASSERT_EQ(mapper_.maps(), std::vector{0});
+  const Trajectory trajectory = mapper_.trajectory(0);
+  ASSERT_EQ(trajectory.size(), frames + 40U) << "nothing that was seen is lost";
+  for (int i = 0; i < 40; ++i) {
+    const Pose truth = room_.pose(first).inverse() * room_.pose(there(i));
+    const Pose& found = trajectory[static_cast<std::size_t>(frames + i)].world_from_camera;
+    EXPECT_LT((truth.inverse() * found).translation().norm(), 0.02) << i;
+  }
+}
+
+TEST_F(LostCamera, KeepsTheMapOfAnotherBuildingApart) {
+  const Scenery flat("flat");
+  RoomMapper alone(flat.camera(), {}, {}, {}, {});
+  constexpr int frames_there = 40;
+  for (int i = 0; i < frames_there; ++i) {
+    const auto view = flat.view(50 + i);
+    add(view);
+    alone.add_frame({i, i / 15.0, view});
+  }
+  mapper_.finish();
+  ASSERT_EQ(mapper_.maps(), (std::vector{0, 1}));
+  EXPECT_EQ(mapper_.trajectory(0).size(), std::size_t{frames});
+  const Trajectory there = mapper_.trajectory(1);
+  const Trajectory expected = alone.trajectory(0);
+  ASSERT_EQ(there.size(), std::size_t{frames_there});
+  for (std::size_t i = 0; i < there.size(); ++i) {
+    EXPECT_TRUE(there[i].world_from_camera.isApprox(expected[i].world_from_camera, 1e-9)) << i;
+  }
+  EXPECT_EQ(mapper_.surface(1).size(), alone.surface(0).size());
+}
+
+TEST_F(LostCamera, DropsWhatPassesInFrontOfIt) {
+  // Three frames that have nothing to do with each other, three times over.
+  const Scenery flat("flat");
+  for (const int start : {20, 100, 180}) {
+    for (int i = 0; i < 3; ++i) add(flat.view(start + 25 * i));
+  }
+  EXPECT_LE(mapper_.maps().size(), 2U);
+}
+
+TEST_F(LostCamera, IsFoundAfterAnInterruptionAsWithoutOne) {
+  const auto there = [&](int i) { return first + 6 + i; };
+  add(room_.view(there(0)));
+  add(room_.view(there(1)));  // both are held
+  std::stringstream state;
+  mapper_.save(state);
+  RoomMapper resumed(room_.camera(), {}, {}, {}, {});
+  resumed.load(state);
+  for (int i = 2; i < 40; ++i) {
+    const auto view = room_.view(there(i));
+    resumed.add_frame({added_, added_ / 15.0, view});
+    add(view);
+  }
+  mapper_.finish();
+  resumed.finish();
+  const Trajectory expected = mapper_.trajectory(0);
+  const Trajectory found = resumed.trajectory(0);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(found[i].world_from_camera.matrix(), expected[i].world_from_camera.matrix()) << i;
+  }
+}
+
+TEST(CameraAfterAGap, IsFollowedOn) {
+  constexpr int first = 100;
+  const Scenery room("room");
+  for (const int gap : {6, 10, 15}) {
+    RoomMapper mapper(room.camera(), {}, {}, {}, {});
+    for (int i = 0; i < 60; ++i) {
+      if (i >= 30 && i < 30 + gap) continue;
+      EXPECT_TRUE(mapper.add_frame({i, i / 15.0, room.view(first + i)}).tracking.registered()) << i;
+    }
+    const Pose truth = room.pose(first).inverse() * room.pose(first + 59);
+    const Pose found = mapper.trajectory(0).back().world_from_camera;
+    EXPECT_LT((truth.inverse() * found).translation().norm(), 0.02) << gap;
+  }
+}
+
+}  // namespace
+}  // namespace tofmap
