@@ -74,7 +74,7 @@ TEST(GuessAlignments, HasNoneFromMatchesThatAreAllInOnePlace) {
   for (int i = 0; i < 100; ++i) places.push_back(random_vector(random, 0.05F));
   const std::vector<Eigen::Vector3f> normals(100, Eigen::Vector3f::UnitZ());
   const PointSearch search(places);
-  const OrientedCloud cloud(places, normals, 0.1, search);
+  const OrientedCloud cloud{places, normals, 0.1, search};
   std::vector<FeatureMatch> matches;
   for (int i = 0; i < 100; ++i) matches.push_back({i, (i * 37 + 11) % 100});
   EXPECT_TRUE(guess_alignments(cloud, cloud, matches).empty());

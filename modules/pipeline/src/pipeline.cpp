@@ -10,7 +10,6 @@
 #include <iterator>
 #include <numeric>
 #include <optional>
-#include <ranges>
 
 #include <omp.h>
 
@@ -239,7 +238,7 @@ void MapRun::add(const PreparedFrame& frame) {
       {.index = frame.index, .timestamp_s = frame.timestamp_s, .cloud = frame.cloud});
   for (LateFrame& late : added.late) {
     const auto record =
-        std::ranges::find(frames_ | std::views::reverse, late.index, &FrameRecord::index);
+        std::ranges::find(frames_.rbegin(), frames_.rend(), late.index, &FrameRecord::index);
     record->tracking = std::move(late.tracking);
   }
   FrameRecord& record = frames_.emplace_back(prepared_record(frame));
