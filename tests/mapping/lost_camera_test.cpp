@@ -90,6 +90,15 @@ TEST_F(LostCamera, KeepsTheMapOfAnotherBuildingApart) {
   EXPECT_EQ(mapper_.surface(1).size(), alone.surface(0).size());
 }
 
+TEST_F(LostCamera, BeginsNoMapWhileItIsCovered) {
+  const auto nothing = std::make_shared<const SurfaceCloud>();
+  for (int i = 0; i < 20; ++i) {
+    const AddedFrame covered = add(nothing);
+    EXPECT_EQ(covered.tracking.status, TrackingStatus::no_surface) << i;
+    EXPECT_TRUE(covered.late.empty()) << i;
+  }
+}
+
 TEST_F(LostCamera, DropsWhatPassesInFrontOfIt) {
   // Three frames that have nothing to do with each other, three times over.
   const Scenery flat("flat");

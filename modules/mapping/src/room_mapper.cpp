@@ -64,7 +64,7 @@ AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
   if (!added.tracking.registered()) {
     if (held_.size() < frames_until_lost) return added;
     added.late = timed(added.register_ms, [&] { return start_map(); });
-    added.tracking = added.late.back().tracking;
+    added.tracking = added.late.back().tracking;  // this frame was held last
     added.late.pop_back();
     if (!added.tracking.registered()) return added;
   } else {
@@ -81,13 +81,11 @@ AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
 
 /// Finds the pose of a frame, and decides whether it becomes a keyframe.
 TrackingResult RoomMapper::track(const NewFrame& frame) {
-  const std::vector<const Keyframe*> around = keyframes_around();
-  TrackingResult result;
   // After some time the camera may be anywhere, and odometry may register it with a wrong place
   // that looks similar.
-  if (lost_frames_ < frames_until_given_up) {
-    result = odometry_.track(frame.timestamp_s, *frame.cloud, around);
-  }
+  std::vector<const Keyframe*> around;
+  if (lost_frames_ < frames_until_given_up) around = keyframes_around();
+  TrackingResult result = odometry_.track(frame.timestamp_s, *frame.cloud, around);
   odometry_.note_frame(frame.timestamp_s);
   if (!result.registered()) {
     if (!frames_.empty()) ++lost_frames_;
@@ -139,6 +137,8 @@ std::vector<LateFrame> RoomMapper::drop_fragment() {
   const auto kept = static_cast<int>(std::ranges::count_if(keyframes_.all(), is_kept));
   const auto refers_to_dropped = [&](const PoseEdge& edge) { return edge.to >= kept; };
   std::erase_if(edges_, refers_to_dropped);
+  loops_.resize(static_cast<std::size_t>(std::ranges::count_if(edges_, &PoseEdge::may_be_wrong)));
+  unfitted_loops_ = std::min(unfitted_loops_, static_cast<int>(loops_.size()));
   std::erase_if(recognitions_, refers_to_dropped);
   std::erase_if(submaps_, [&](const Submap& submap) { return submap.anchor >= kept; });
   submap_of_.resize(static_cast<std::size_t>(kept));

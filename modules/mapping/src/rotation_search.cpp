@@ -113,7 +113,7 @@ std::vector<Pose> search_rotations(const SurfaceCloud& cloud,
                                    std::span<const Keyframe* const> keyframes, const Pose& expected,
                                    double reach_rad, std::size_t most) {
   const std::vector<RangedPoint> points = thinned(cloud);
-  if (points.empty()) return {};
+  if (points.empty() || keyframes.empty()) return {};
   const SphericalView seen = panorama(keyframes, expected);
   std::vector<ScoredRotation> rotations = rotations_within(reach_rad);
   const int count = static_cast<int>(rotations.size());
