@@ -56,11 +56,8 @@ def positions(clouds, align):
 
 
 def ate_m(path, truth):
-    """The absolute trajectory error (RMSE) after the best rigid alignment (Umeyama 1991)."""
-    centred, wanted = path - path.mean(0), truth - truth.mean(0)
-    u, _, vt = numpy.linalg.svd(wanted.T @ centred)
-    flip = numpy.diag([1, 1, numpy.sign(numpy.linalg.det(u @ vt))])
-    return numpy.sqrt(numpy.mean(numpy.sum((wanted - centred @ (u @ flip @ vt).T) ** 2, axis=1)))
+    """The absolute trajectory error (RMSE)."""
+    return numpy.sqrt(numpy.mean(recording.position_errors_m(path, truth) ** 2))
 
 
 def truth_at(sequence, times):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Functions of the benchmarks that read recordings."""
+"""Functions of the benchmarks that read recordings and score trajectories."""
 import numpy
 import yaml
 
@@ -19,3 +19,12 @@ def frames(sequence):
     """The columns of each line of frames.txt: the timestamp, then the files of the frame."""
     with open(f"{sequence}/frames.txt", encoding="utf-8") as file:
         return [line.split() for line in file if line.strip() and not line.startswith("#")]
+
+
+def position_errors_m(path, truth):
+    """Errors of the positions of a path after the rigid alignment that fits it best to the truth
+    (Umeyama 1991). Both have a row of three coordinates for each frame."""
+    centred, wanted = path - path.mean(axis=0), truth - truth.mean(axis=0)
+    u, _, vt = numpy.linalg.svd(wanted.T @ centred)
+    flip = numpy.diag([1, 1, numpy.sign(numpy.linalg.det(u @ vt))])
+    return numpy.linalg.norm(wanted - centred @ (u @ flip @ vt).T, axis=1)

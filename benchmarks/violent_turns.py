@@ -18,6 +18,8 @@ import subprocess
 import numpy
 from scipy.spatial.transform import Rotation, Slerp
 
+import recording
+
 FRAMES = 300
 FRAME_RATE_HZ = 15
 STEPS = numpy.array([1, 3 / 4, 1 / 2, 1 / 3])
@@ -59,14 +61,10 @@ def write_trajectory(file, positions, rotations):
 
 
 def position_errors_m(truth, found):
-    """Errors of the positions found, after the rigid alignment that fits them best."""
+    """Errors of the positions found, which need not be there for all frames of the truth."""
     by_time = {round(row[0], 4): row[1:4] for row in truth}
     true_m = numpy.array([by_time[round(row[0], 4)] for row in found])
-    a = found[:, 1:4] - found[:, 1:4].mean(axis=0)
-    b = true_m - true_m.mean(axis=0)
-    u, _, vt = numpy.linalg.svd(b.T @ a)
-    rotation = u @ numpy.diag([1, 1, numpy.linalg.det(u @ vt)]) @ vt
-    return numpy.linalg.norm(a @ rotation.T - b, axis=1)
+    return recording.position_errors_m(found[:, 1:4], true_m)
 
 
 def measure(tofmap, out, scene, seed, largest_turn_deg):

@@ -49,7 +49,7 @@ TEST(Verdict, GoesByTheFramesThatWereRegistered) {
   EXPECT_EQ(verdict_on({}), Verdict::bad) << "no frame at all";
 }
 
-TEST(Verdict, DoubtsAMapThatIsNotTheOnlyOne) {
+TEST(Verdict, SaysToCheckAMapThatIsNotTheOnlyOne) {
   MapEvidence evidence = good_evidence();
   evidence.registered = 60;
   evidence.separate = 38;

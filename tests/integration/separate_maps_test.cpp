@@ -51,7 +51,7 @@ class CarriedCamera : public testing::Test {
   const std::filesystem::path out_ = folder_.path() / "map";
 };
 
-TEST_F(CarriedCamera, GetsAMapOfEachRoomAndADoubtfulVerdict) {
+TEST_F(CarriedCamera, GetsAMapOfEachRoomAndIsToBeChecked) {
   const test::Finished run = test::run_program({"map", sequence_, "--out", out_});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_THAT(test::names_in(out_), IsSupersetOf({"map.ply", "map_2.ply", "trajectory.txt",

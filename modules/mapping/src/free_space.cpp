@@ -35,7 +35,7 @@ Agreement operator+(const Agreement& a, const Agreement& b) {
 Agreement compare(const RegistrationTarget& one, const RegistrationTarget& other,
                   const CameraModel& camera, double margin_m) {
   constexpr std::size_t stride = 3;
-  const KeyframeView view(*other.cloud, other.world_from_camera, camera, margin_m);
+  const KeyframeView view(other, camera, margin_m);
   Agreement agreement;
   for (std::size_t i = 0; i < one.cloud->points.size(); i += stride) {
     const SurfacePoint& point = one.cloud->points[i];
@@ -58,19 +58,18 @@ double free_space_violation_share(const RegistrationTarget& one, const Registrat
   return all > 0 ? static_cast<double>(sum.violating) / all : 0;
 }
 
-bool contradicts_free_space(const SurfaceCloud& cloud, const Pose& world_from_camera,
-                            const RegistrationTarget& target, const CameraModel& camera) {
+bool contradicts_free_space(const RegistrationTarget& placed, const RegistrationTarget& target,
+                            const CameraModel& camera) {
   constexpr double most_violations = 0.05;
   constexpr double pose_error_m = 0.03;
-  return free_space_violation_share({&cloud, world_from_camera}, target, camera, pose_error_m) >=
-         most_violations;
+  return free_space_violation_share(placed, target, camera, pose_error_m) >= most_violations;
 }
 
 MapCloud without_free_space_violations(const MapCloud& map, std::span<const Keyframe> keyframes,
                                        const CameraModel& camera, double margin_m) {
   std::vector<KeyframeView> views;
   for (const Keyframe& keyframe : keyframes) {
-    views.emplace_back(*keyframe.cloud, keyframe.world_from_camera, camera, margin_m);
+    views.emplace_back(target_of(keyframe), camera, margin_m);
   }
   std::vector<char> goes(map.size());
   const auto count = static_cast<std::ptrdiff_t>(map.size());

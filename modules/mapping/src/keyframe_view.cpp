@@ -8,10 +8,10 @@
 
 namespace tofmap {
 
-KeyframeView::KeyframeView(const SurfaceCloud& cloud, const Pose& world_from_camera,
-                           const CameraModel& camera, double margin_m)
-    : camera_from_world_(world_from_camera.inverse()),
-      cloud_(cloud),
+KeyframeView::KeyframeView(const RegistrationTarget& seen, const CameraModel& camera,
+                           double margin_m)
+    : camera_from_world_(seen.world_from_camera.inverse()),
+      cloud_(*seen.cloud),
       camera_(camera),
       margin_m_(margin_m) {
   for (const SurfacePoint& point : cloud_.points) {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include <tofmap/core/camera.hpp>
-#include <tofmap/mapping/keyframe.hpp>
+#include <tofmap/registration/projective_icp.hpp>
 
 namespace tofmap {
 
@@ -16,13 +16,12 @@ enum class Observation {
   sees_through,  ///< in front of the surface
 };
 
-/// A keyframe, prepared for testing many points against free space. Must not outlive the keyframe's
-/// cloud.
+/// A cloud whose pose is known, prepared for testing many points against free space. Must outlive
+/// neither the cloud nor the camera.
 class KeyframeView {
  public:
   /// `margin_m` is added to three standard deviations of a surface, along its normal.
-  KeyframeView(const SurfaceCloud& cloud, const Pose& world_from_camera, const CameraModel& camera,
-               double margin_m);
+  KeyframeView(const RegistrationTarget& seen, const CameraModel& camera, double margin_m);
 
   Observation judge(const Eigen::Vector3d& world_m) const;
 

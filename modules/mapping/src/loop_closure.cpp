@@ -143,6 +143,10 @@ MotionPrior drift_prior(const Pose& expected, double path_m, const LoopOptions& 
           .translation_sigma_m = std::hypot(least_prior_m, drift_m)};
 }
 
+double support(const RegistrationResult& result) {
+  return succeeded(result.status) ? result.overlap * result.inlier_ratio : 0;
+}
+
 bool is_verified(const RegistrationResult& result, const LoopOptions& options) {
   return result.status == RegistrationStatus::converged && result.overlap >= options.min_overlap &&
          result.inlier_ratio >= options.min_inlier_ratio && result.degenerate_directions == 0;

@@ -17,11 +17,6 @@ namespace {
 /// to have kept its motion.
 constexpr double periods_of_steady_tracking = 3.5;
 
-/// Share of the frame's points that fit the targets. 0 if registration failed.
-double support(const RegistrationResult& result) {
-  return succeeded(result.status) ? result.overlap * result.inlier_ratio : 0;
-}
-
 /// Share by which the support of a registration must exceed that of another one that ends
 /// elsewhere.
 constexpr double clear_share = 1.1;
@@ -245,7 +240,7 @@ bool Odometry::is_credible(const RegistrationResult& result) const {
 /// most.
 bool Odometry::contradicts_targets(const Attempt& attempt, const SurfaceCloud& cloud) const {
   return !attempt.targets.empty() &&
-         contradicts_free_space(cloud, attempt.registration.world_from_camera,
+         contradicts_free_space({&cloud, attempt.registration.world_from_camera},
                                 target_of(*attempt.targets.front()), camera_);
 }
 

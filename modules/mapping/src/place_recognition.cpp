@@ -15,10 +15,7 @@ constexpr std::size_t most_candidates = 5;
 /// The best place is ambiguous if another place has more than this share of its support.
 constexpr double sure_share = 0.9;
 
-/// Share of the cloud's points that fit the surfaces of a place.
-double support(const Recognition& place) {
-  return place.registration.overlap * place.registration.inlier_ratio;
-}
+double support_of(const Recognition& place) { return support(place.registration); }
 
 bool is_same_place(const Recognition& one, const Recognition& other,
                    std::span<const Keyframe> keyframes) {
@@ -45,17 +42,16 @@ std::optional<Recognition> recognise(const Keyframe& keyframe,
     const RegistrationResult result =
         register_near(*candidate, *keyframe.cloud, keyframes, camera, registration);
     if (!is_verified(result, options)) continue;
-    if (contradicts_free_space(*keyframe.cloud, result.world_from_camera, target_of(*candidate),
-                               camera)) {
-      continue;
-    }
+    const RegistrationTarget placed{keyframe.cloud.get(), result.world_from_camera};
+    if (contradicts_free_space(placed, target_of(*candidate), camera)) continue;
     found.push_back({candidate->id, result});
   }
   if (found.empty()) return std::nullopt;
-  std::ranges::stable_sort(found, std::ranges::greater(), support);
+  std::ranges::stable_sort(found, std::ranges::greater(), support_of);
   const Recognition& best = found.front();
   const bool is_ambiguous = std::ranges::any_of(found, [&](const Recognition& other) {
-    return support(other) > sure_share * support(best) && !is_same_place(best, other, keyframes);
+    return support_of(other) > sure_share * support_of(best) &&
+           !is_same_place(best, other, keyframes);
   });
   return is_ambiguous ? std::nullopt : std::optional(best);
 }

@@ -29,10 +29,10 @@ MapCloud without_free_space_violations(const MapCloud& map, std::span<const Keyf
 double free_space_violation_share(const RegistrationTarget& one, const RegistrationTarget& other,
                                   const CameraModel& camera, double margin_m);
 
-/// Whether a cloud at a pose that registration has found contradicts the free space of a target: of
-/// what both see of each other, they see through at least 5 % (free_space_violation_share()).
+/// Whether a cloud at the pose that registration has found contradicts the free space of a target:
+/// of what both see of each other, they see through at least 5 % (free_space_violation_share()).
 /// Errors of the pose of 3 cm are tolerated.
-bool contradicts_free_space(const SurfaceCloud& cloud, const Pose& world_from_camera,
-                            const RegistrationTarget& target, const CameraModel& camera);
+bool contradicts_free_space(const RegistrationTarget& placed, const RegistrationTarget& target,
+                            const CameraModel& camera);
 
 }  // namespace tofmap

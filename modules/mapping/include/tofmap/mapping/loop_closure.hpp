@@ -88,6 +88,10 @@ RegistrationResult register_near(const Keyframe& keyframe, const SurfaceCloud& c
                                  std::span<const Keyframe> keyframes, const CameraModel& camera,
                                  const RegistrationOptions& registration);
 
+/// Share of a cloud's points that fit the surfaces: the product of overlap and inlier ratio. 0 if
+/// registration failed.
+double support(const RegistrationResult& result);
+
 /// Whether a registration that does not follow from the motion of the camera can be trusted: it
 /// converged, reaches `min_overlap` and `min_inlier_ratio`, and has no degenerate direction.
 bool is_verified(const RegistrationResult& result, const LoopOptions& options);

@@ -53,12 +53,12 @@ struct OdometryOptions {
 
 /// What became of a frame.
 enum class TrackingStatus {
-  first,        ///< the first frame with a surface: its camera is the origin of the world
+  first,        ///< the first frame of a map: its camera is the origin of the map's world
   tracked,      ///< registered with the keyframes around
   no_surface,   ///< the frame has too few points with normals
   lost,         ///< registration failed or was rejected
   implausible,  ///< registration ended farther from the predicted pose than motion allows
-  relocalised,  ///< registered with an earlier keyframe after tracking was lost
+  relocalised,  ///< tracked, and its map was joined with an earlier one (RoomMapper)
   repeated,     ///< the frame repeats the one before it, and was not registered
 };
 
