@@ -75,7 +75,8 @@ void register_frame(benchmark::State& state) {
   const Example& e = example();
   for (auto _ : state) {
     state.PauseTiming();
-    Odometry odometry(e.simulator.sensor().camera, e.options.odometry, e.options.registration);
+    Odometry odometry(e.simulator.sensor().camera, e.options.odometry, e.options.registration,
+                      e.options.loops);
     odometry.track(e.prepared.timestamp_s, *e.prepared.cloud, {});
     const Keyframe keyframe{0, 0, e.prepared.timestamp_s, Pose::Identity(), e.prepared.cloud};
     const Keyframe* const around = &keyframe;

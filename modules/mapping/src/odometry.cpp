@@ -87,6 +87,10 @@ std::vector<OptionField<OdometryOptions>> OdometryOptions::fields() {
       {"max_prior_sigmas", &O::max_prior_sigmas, 1, 1000, "",
        "largest difference from the predicted pose, in standard deviations; a pose that differs "
        "more is rejected"},
+      {"check_poses", &O::check_poses, 0, 1, "",
+       "tries other rotations for a frame whose pose is unlikely, and rejects a pose that fits far "
+       "worse than is usual or contradicts free space; always off without unwrapping and with "
+       "PCL's methods"},
   };
 }
 
@@ -218,7 +222,7 @@ std::optional<Odometry::Attempt> Odometry::register_turned(
 /// converge, or the result is far from the predicted pose, or it fits worse than is usual, or the
 /// frame before was not registered. PCL's methods are compared by their results as they are.
 bool Odometry::is_suspect(const Attempt& attempt) const {
-  if (registration_.method != RegistrationMethod::projective) return false;
+  if (!options_.check_poses || registration_.method != RegistrationMethod::projective) return false;
   return frames_since_registered_ > 1 ||
          attempt.registration.status != RegistrationStatus::converged ||
          prior_deviation_sigmas(attempt.prior, attempt.registration.world_from_camera) >

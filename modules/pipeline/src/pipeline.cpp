@@ -63,6 +63,14 @@ void look_ahead(const std::vector<SourcedFrame>& first, FrameMeasurer& measurer)
   measurer.look_ahead(frames);
 }
 
+/// The baseline without unwrapping is mapped as far as it goes: wrapped surfaces contradict each
+/// other, so that checks of poses would leave nothing to compare.
+OdometryOptions odometry_of(const PipelineOptions& options) {
+  OdometryOptions odometry = options.odometry;
+  if (options.unwrap.method == UnwrapMethod::none) odometry.check_poses = false;
+  return odometry;
+}
+
 /// The record of a frame that was not unwrapped.
 FrameRecord plain_record(const SourcedFrame& frame) {
   FrameRecord record;
@@ -202,7 +210,8 @@ MapRun::MapRun(const SensorModel& sensor, const PipelineOptions& options)
     : sensor_(sensor),
       options_(options),
       rays_(pixel_rays(sensor.camera)),
-      mapper_(sensor.camera, options.odometry, options.registration, options.loops, options.map),
+      mapper_(sensor.camera, odometry_of(options), options.registration, options.loops,
+              options.map),
       measurer_(sensor, options.unwrap),
       unwrappers_(one_a_thread(Unwrapper(sensor, options.unwrap))) {}
 

@@ -47,6 +47,9 @@ struct OdometryOptions {
   /// Largest difference between the registered and the predicted pose, in standard deviations of
   /// the prior, 1 … 1000. A pose that differs more is rejected.
   double max_prior_sigmas = 8;
+  /// Whether unlikely poses are checked: other rotations are tried, and a pose that fits the
+  /// surfaces far worse than is usual, or contradicts their free space, is rejected.
+  bool check_poses = true;
 
   static std::vector<OptionField<OdometryOptions>> fields();
 };
@@ -90,12 +93,12 @@ struct TrackingResult {
 /// surface gets the identity as its pose. A frame that cannot be registered only increases the time
 /// since the last registered frame.
 ///
-/// The camera may move faster than the prior allows. If registration fails, ends far from the
-/// predicted pose, or fits the surfaces clearly worse than the frames before, the frame is also
-/// registered from the rotations around the last pose that search_rotations() finds. The best of
-/// these results replaces the first one if it fits better, is verified as for a loop, and no other
-/// one fits as well. If none does, and the first one fits the surfaces far worse than is usual or
-/// contradicts the free space of the keyframes, the frame is lost.
+/// The camera may move faster than the prior allows. With `check_poses`, if registration fails,
+/// ends far from the predicted pose, or fits the surfaces clearly worse than the frames before, the
+/// frame is also registered from the rotations around the last pose that search_rotations() finds.
+/// The best of these results replaces the first one if it fits better, is verified as for a loop,
+/// and no other one fits as well. If none does, and the first one fits the surfaces far worse than
+/// is usual or contradicts the free space of the keyframes, the frame is lost.
 class Odometry {
  public:
   /// `recognition` says when a registration is trusted that does not follow from the motion of the
