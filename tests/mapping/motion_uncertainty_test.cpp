@@ -65,6 +65,15 @@ TEST(MotionUncertainty, OfVelocityEndsWithASecondKnownPose) {
   EXPECT_LT(std::sqrt(uncertainty.of_pose()(3, 3)), 1.1 * translation_sigma);
 }
 
+TEST(MotionUncertainty, RestartsFromAPlaceWithTheVelocityAsUncertainAsBefore) {
+  MotionUncertainty moving = after_blind(10, {rotation_sigma, translation_sigma});
+  moving.restart();
+  EXPECT_TRUE(moving.of_pose().isZero(0));
+  moving.learn(1, Covariance::Zero());
+  // Ten changes of velocity before, and one since.
+  EXPECT_NEAR(moving.of_pose()(3, 3), 11 * translation_sigma * translation_sigma, 1e-9);
+}
+
 TEST(MotionUncertainty, RotatesWithTheWorld) {
   MotionUncertainty uncertainty(rotation_sigma, translation_sigma);
   Covariance information = Covariance::Zero();

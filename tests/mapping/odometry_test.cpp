@@ -4,6 +4,7 @@
 #include "support/box_room.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -81,6 +82,31 @@ TEST(Odometry, FollowsASmoothMotion) {
   }
   // 2.2 cm and 0.6° a frame: a new keyframe every 0.25 m.
   EXPECT_GE(camera.keyframe_count(), 2U);
+}
+
+TEST(Odometry, KnowsWhichKeyframeHoldsTheCamera) {
+  // The newer keyframe sees the far wall alone. Along it, the frame is known from the older one.
+  const CameraModel camera = test::small_camera();
+  const auto corner = view(0);
+  const auto wall = std::make_shared<const SurfaceCloud>(
+      test::box_cloud(camera, {-50, -50, -50}, {50, 50, room_max.z()}, Pose::Identity()));
+  const Keyframe older{0, 0, 0, Pose::Identity(), corner};
+  const Keyframe newer{1, 1, 1 / 15.0, Pose::Identity(), wall};
+  const std::vector<const Keyframe*> around{&older, &newer};
+  Odometry odometry(camera, {}, {}, {});
+  odometry.track(0, *corner, {});
+  odometry.note_keyframe(1);
+  const TrackingResult result = odometry.track(1 / 15.0, *view(1), around);
+  ASSERT_EQ(result.status, TrackingStatus::tracked);
+  ASSERT_EQ(result.targets.size(), 2U);
+  ASSERT_EQ(result.target_covariances.size(), 2U);
+  const std::size_t of_older = result.targets[0] == 0 ? 0 : 1;
+  const auto sideways_m = [&](std::size_t target) {
+    return std::sqrt(result.target_covariances[target](3, 3));
+  };
+  EXPECT_LT(sideways_m(of_older), 0.005);
+  // One frame of unknown motion since the newer one: the prior of the motion.
+  EXPECT_NEAR(sideways_m(1 - of_older), OdometryOptions{}.prior_translation_sigma_m, 0.005);
 }
 
 TEST(Odometry, FollowsWithPclsMethods) {

@@ -133,6 +133,25 @@ TEST(DegenerateDirections, AreThoseThatThePriorKnowsBetter) {
       << "twice the noise-induced information is more than there is";
 }
 
+TEST(SurfaceInformation, IsAllOfItWithoutNoiseOfNormals) {
+  const NormalEquations equations = build_equations(cube(2), 3);
+  const Matrix6d information = surface_information(observability(equations, 2), equations);
+  EXPECT_LT((information - equations.information).norm(), 1e-9 * equations.information.norm());
+}
+
+TEST(SurfaceInformation, IsThatOfASolutionWhoseGradientIsNoisier) {
+  NormalEquations equations = build_equations(cube(2), 3);
+  constexpr double share = 0.3;
+  equations.noise_induced = share * equations.information;
+  const Matrix6d information = surface_information(observability(equations, 2), equations);
+  // H / (H - 2 N)² is the variance.
+  const double expected = (1 - 2 * share) * (1 - 2 * share);
+  EXPECT_LT((information - expected * equations.information).norm(),
+            1e-9 * equations.information.norm());
+  equations.noise_induced = 0.6 * equations.information;
+  EXPECT_TRUE(surface_information(observability(equations, 2), equations).isZero(0));
+}
+
 TEST(RemoveInformation, LeavesNothingAlongADirectionAndTheOthersAsTheyAre) {
   NormalEquations equations = build_equations(cube(2), 3);
   equations.gradient << 1, 2, 3, 4, 5, 6;
@@ -153,7 +172,7 @@ TEST(NoiseInducedInformation, IsWhatTiltedNormalsAddOnAverage) {
   constexpr double sigma_rad = 0.05;
   Correspondence pair = pair_at({0.7, -0.4, 2.1}, Vector3d(0.3, 0.5, -0.8).normalized());
   pair.normal_sigma_rad = sigma_rad;
-  const NormalEquations predicted = build_equations({pair}, 3);
+  const NormalEquations predicted = build_equations(std::vector{pair}, 3);
   std::mt19937 random(6);
   std::normal_distribution<double> tilt(0, sigma_rad);
   Matrix6d added = Matrix6d::Zero();

@@ -108,9 +108,30 @@ TEST(Registration, IsNotMovedByTheNoiseOfABareWallsNormals) {
     EXPECT_NEAR(result.world_from_camera.translation().x(), 0.1, 0.002) << seed;
     EXPECT_NEAR(result.world_from_camera.translation().y(), 0.05, 0.002) << seed;
     EXPECT_NEAR(result.world_from_camera.translation().z(), 0.04, 0.002) << seed;
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> told(result.surface_information);
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> told(result.target_information.front());
     EXPECT_LT(told.eigenvalues()[2], 1e-6 * told.eigenvalues()[3]) << seed;
   }
+}
+
+TEST(Registration, TellsWhichTargetConstrainsTheCamera) {
+  const CameraModel camera = test::small_camera();
+  const SurfaceCloud corner = test::box_cloud(camera, box_min, box_max, Pose::Identity());
+  // The same far wall without the side walls, floor and ceiling.
+  const SurfaceCloud wall =
+      test::box_cloud(camera, {-50, -50, -50}, {50, 50, box_max.z()}, Pose::Identity());
+  const std::array<RegistrationTarget, 2> targets{
+      {{&wall, Pose::Identity()}, {&corner, Pose::Identity()}}};
+  const Pose truth = test::moved_by({0, 0, 0}, {0.05, -0.03, 0.02});
+  const SurfaceCloud source = test::box_cloud(camera, box_min, box_max, truth);
+  const RegistrationResult result = register_to_targets(source, targets, camera, loose_prior(), {});
+  ASSERT_EQ(result.degenerate_directions, 0);
+  ASSERT_EQ(result.target_information.size(), 2U);
+  const Matrix6d& of_wall = result.target_information[0];
+  const Matrix6d& of_corner = result.target_information[1];
+  for (const int sideways : {3, 4}) {
+    EXPECT_LT(of_wall(sideways, sideways), 1e-3 * of_corner(sideways, sideways)) << sideways;
+  }
+  EXPECT_GT(of_wall(5, 5), 0.1 * of_corner(5, 5)) << "towards the wall";
 }
 
 TEST(Registration, FailsWithoutOverlap) {

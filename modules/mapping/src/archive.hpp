@@ -60,14 +60,14 @@ template <class Archive>
 void serialize(Archive& archive, tofmap::RegistrationResult& result, unsigned) {
   archive& result.status& result.world_from_camera& result.iterations& result.correspondences;
   archive& result.overlap& result.inlier_ratio& result.rmse_m& result.residual_scale;
-  archive& result.covariance& result.surface_information;
+  archive& result.covariance& result.target_information;
   archive& result.degenerate_directions& result.direction_shares;
 }
 
 template <class Archive>
 void serialize(Archive& archive, tofmap::TrackingResult& result, unsigned) {
   archive& result.status& result.world_from_camera& result.is_keyframe& result.targets;
-  archive& result.registration& result.pose_covariance;
+  archive& result.registration& result.target_covariances;
 }
 
 }  // namespace boost::serialization

@@ -9,9 +9,9 @@ namespace tofmap {
 
 std::vector<RegistrationTarget> targets_around(const Keyframe& keyframe,
                                                std::span<const Keyframe> keyframes) {
-  std::vector<RegistrationTarget> targets;
-  const int last = std::min(static_cast<int>(keyframes.size()) - 1, keyframe.id + 1);
-  for (int id = std::max(0, keyframe.id - 1); id <= last; ++id) {
+  std::vector<RegistrationTarget> targets{target_of(keyframe)};
+  for (const int id : {keyframe.id - 1, keyframe.id + 1}) {
+    if (id < 0 || id >= static_cast<int>(keyframes.size())) continue;
     const Keyframe& other = keyframes[static_cast<std::size_t>(id)];
     if (other.map == keyframe.map) targets.push_back(target_of(other));
   }

@@ -152,6 +152,15 @@ bool is_verified(const RegistrationResult& result, const LoopOptions& options) {
          result.inlier_ratio >= options.min_inlier_ratio && result.degenerate_directions == 0;
 }
 
+Eigen::Matrix<double, 6, 6> covariance_of(const Eigen::Matrix<double, 6, 6>& information) {
+  constexpr double unseen_rad = 0.5;
+  constexpr double unseen_m = 1;
+  Eigen::Matrix<double, 6, 6> sum = information;
+  sum.diagonal().head<3>().array() += 1 / (unseen_rad * unseen_rad);
+  sum.diagonal().tail<3>().array() += 1 / (unseen_m * unseen_m);
+  return sum.inverse();
+}
+
 PoseEdge edge_of(const Keyframe& from, int to, const Pose& world_from_camera,
                  const Eigen::Matrix<double, 6, 6>& covariance) {
   PoseEdge edge;
@@ -208,7 +217,7 @@ LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyf
   }
   const Keyframe& from = keyframes[static_cast<std::size_t>(candidate.from)];
   candidate.edge = edge_of(from, keyframe.id, candidate.registration.world_from_camera,
-                           candidate.registration.covariance);
+                           covariance_of(candidate.registration.target_information.front()));
   candidate.edge->may_be_wrong = true;
   return candidate;
 }

@@ -101,7 +101,7 @@ void MotionUncertainty::serialize(Archive& archive, unsigned) {
 template <class Archive>
 void Odometry::serialize(Archive& archive, unsigned) {
   archive& last_& before_last_& frames_since_registered_& recent_periods_s_& last_timestamp_s_;
-  archive& uncertainty_& usual_support_& usual_inlier_ratio_;
+  archive& uncertainty_& reference_& usual_support_& usual_inlier_ratio_;
 }
 
 template <class Archive>

@@ -30,6 +30,11 @@ void MotionUncertainty::learn(int frames, const Covariance& information) {
 
 void MotionUncertainty::reset() { joint_.setZero(); }
 
+void MotionUncertainty::restart() {
+  joint_.topRows<6>().setZero();
+  joint_.leftCols<6>().setZero();
+}
+
 void MotionUncertainty::rotate(const Eigen::Matrix3d& new_from_old) {
   Joint rotation = Joint::Zero();
   for (int i = 0; i < rotation.rows(); i += 3) rotation.block<3, 3>(i, i) = new_from_old;

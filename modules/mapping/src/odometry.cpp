@@ -147,11 +147,7 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
   result.registration = attempt.registration;
   if (result.status != TrackingStatus::tracked) return result;
   result.world_from_camera = result.registration.world_from_camera;
-  // The covariance of this registration includes the prior of one frame only. It would be too small
-  // where frames before it had degenerate directions, too.
-  uncertainty_.learn(static_cast<int>(std::lround(periods)),
-                     result.registration.surface_information);
-  result.pose_covariance = uncertainty_.of_pose();
+  result.target_covariances = learn_covariances(periods, attempt);
   constexpr double share_of_newest = 0.1;
   usual_support_ += share_of_newest * (support(result.registration) - usual_support_);
   usual_inlier_ratio_ += share_of_newest * (result.registration.inlier_ratio - usual_inlier_ratio_);
@@ -340,10 +336,35 @@ std::vector<const Keyframe*> Odometry::choose_targets(
   return targets;
 }
 
+/// Covariances of the pose relative to each target. Frames since the latest keyframe tell of the
+/// motion since then, where its own surfaces do not.
+std::vector<Eigen::Matrix<double, 6, 6>> Odometry::learn_covariances(double periods,
+                                                                     const Attempt& attempt) {
+  using Covariance = MotionUncertainty::Covariance;
+  const auto& information = attempt.registration.target_information;
+  Covariance of_reference = Covariance::Zero();
+  for (std::size_t i = 0; i < attempt.targets.size(); ++i) {
+    if (attempt.targets[i]->id == reference_) of_reference = information[i];
+  }
+  uncertainty_.learn(static_cast<int>(std::lround(periods)), of_reference);
+  std::vector<Covariance> covariances;
+  for (std::size_t i = 0; i < attempt.targets.size(); ++i) {
+    covariances.push_back(attempt.targets[i]->id == reference_ ? uncertainty_.of_pose()
+                                                               : covariance_of(information[i]));
+  }
+  return covariances;
+}
+
+void Odometry::note_keyframe(int id) {
+  reference_ = id;
+  uncertainty_.restart();
+}
+
 void Odometry::start_anew() {
   last_.reset();
   before_last_.reset();
   uncertainty_.reset();
+  reference_ = -1;
   usual_support_ = expected_support;
   usual_inlier_ratio_ = expected_inlier_ratio;
   frames_since_registered_ = 0;

@@ -103,6 +103,8 @@ TrackingResult RoomMapper::track(const NewFrame& frame) {
   frames_.push_back({frame.timestamp_s, current_,
                      keyframes_[current_].world_from_camera.inverse() * result.world_from_camera,
                      frame.index});
+  result.target_covariances.clear();
+  result.registration.target_information.clear();
   return result;
 }
 
@@ -210,7 +212,7 @@ void RoomMapper::recognise_place() {
   if (!found) return;
   recognitions_.push_back(edge_of(keyframes_[found->from], keyframe.id,
                                   found->registration.world_from_camera,
-                                  found->registration.covariance));
+                                  covariance_of(found->registration.target_information.front())));
   recognitions_.back().may_be_wrong = true;
   join_maps();
 }
@@ -306,16 +308,13 @@ void RoomMapper::add_keyframe(const NewFrame& frame, std::span<const Keyframe* c
   submap_of_.push_back(submap_for(id, result.world_from_camera, around));
   keyframes_.add({id, frame.index, frame.timestamp_s, result.world_from_camera, frame.cloud, path_m,
                   PlaceDescriptor(*frame.cloud), map_});
-  // One registration with all targets gives several edges, each with an equal share of its
-  // information.
-  const auto shares = static_cast<double>(result.targets.size());
-  for (const int target : result.targets) {
-    PoseEdge edge =
-        edge_of(keyframes_[target], id, result.world_from_camera, result.pose_covariance);
-    edge.covariance *= shares;
-    edges_.push_back(edge);
+  for (std::size_t i = 0; i < result.targets.size(); ++i) {
+    const int target = result.targets[i];
+    edges_.push_back(
+        edge_of(keyframes_[target], id, result.world_from_camera, result.target_covariances[i]));
     keyframes_.connect(target, id);
   }
+  odometry_.note_keyframe(id);
   current_ = id;
 }
 

@@ -114,10 +114,12 @@ Correspondences find_correspondences(const std::vector<const SurfacePoint*>& poi
     found[i] = pair;
   }
   Correspondences out;
+  out.of_target.assign(targets.size(), 0);
   std::vector<bool> is_matched(points.size(), false);
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (!found[i]) continue;
     out.pairs.push_back(*found[i]);
+    ++out.of_target[i / points.size()];
     is_matched[i % points.size()] = true;
   }
   const auto matched = static_cast<double>(std::ranges::count(is_matched, true));

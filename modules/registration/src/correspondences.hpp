@@ -26,8 +26,9 @@ std::vector<const SurfacePoint*> select_points(const SurfaceCloud& source, int s
 
 /// All correspondences at one pose.
 struct Correspondences {
-  std::vector<Correspondence> pairs;  ///< ordered by target, then by source point
-  double overlap = 0;                 ///< share of the source points in at least one pair
+  std::vector<Correspondence> pairs;   ///< ordered by target, then by source point
+  std::vector<std::size_t> of_target;  ///< number of pairs of each target
+  double overlap = 0;                  ///< share of the source points in at least one pair
 };
 
 /// Projects source points into all targets. A point may have one correspondence per target. The

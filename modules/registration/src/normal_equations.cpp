@@ -86,7 +86,7 @@ class TiltInformation {
 
 }  // namespace
 
-NormalEquations build_equations(const std::vector<Correspondence>& pairs, double kernel_width) {
+NormalEquations build_equations(std::span<const Correspondence> pairs, double kernel_width) {
   NormalEquations equations;
   TiltInformation tilts;
   for (const Correspondence& pair : pairs) {
@@ -149,6 +149,19 @@ std::vector<int> degenerate_directions(const Observability& seen, const NormalEq
     if (of_surfaces < of_prior) degenerate.push_back(i);
   }
   return degenerate;
+}
+
+Matrix6d surface_information(const Observability& seen, const NormalEquations& equations) {
+  Matrix6d information = Matrix6d::Zero();
+  for (int i = 0; i < seen.directions.cols(); ++i) {
+    const Vector6d twist = seen.scale.cwiseProduct(seen.directions.col(i));
+    const double all = twist.dot(equations.information * twist);
+    const double of_surfaces = all - 2 * twist.dot(equations.noise_induced * twist);
+    if (of_surfaces <= 0) continue;
+    const Vector6d direction = seen.directions.col(i).cwiseQuotient(seen.scale);
+    information += of_surfaces * of_surfaces / all * direction * direction.transpose();
+  }
+  return information;
 }
 
 void remove_information(NormalEquations& equations, const Observability& seen,

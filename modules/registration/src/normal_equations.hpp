@@ -42,7 +42,7 @@ double robust_scale(const std::vector<Correspondence>& pairs);
 double geman_mcclure_weight(double normalised_residual, double width);
 
 /// The system of all correspondences. `kernel_width` is a normalised residual.
-NormalEquations build_equations(const std::vector<Correspondence>& pairs, double kernel_width);
+NormalEquations build_equations(std::span<const Correspondence> pairs, double kernel_width);
 
 /// An inlier is a correspondence whose kernel weight is at least one half. `kernel_scale` is copied
 /// to the result.
@@ -72,6 +72,15 @@ Observability observability(const NormalEquations& equations, double lever_m);
 /// left out of the solution. There the limit is an eigenvalue to be chosen; here it is the prior.
 std::vector<int> degenerate_directions(const Observability& seen, const NormalEquations& equations,
                                        const Vector6d& prior_sigmas);
+
+/// The information that the surfaces give about the pose that solves the equations: the inverse
+/// covariance of the solution, without the noise of normals.
+///
+/// Noise-induced information N does not restore the pose, but adds to the noise of the gradient.
+/// Along each of the directions of `seen`, the solution of a system with the information H
+/// therefore has the variance H / (H − N)², where 1 / H would claim too little. As in
+/// degenerate_directions(), N is taken twice.
+Matrix6d surface_information(const Observability& seen, const NormalEquations& equations);
 
 /// Removes all information about these directions from the equations.
 void remove_information(NormalEquations& equations, const Observability& seen,

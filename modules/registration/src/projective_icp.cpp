@@ -70,33 +70,51 @@ struct System {
   NormalEquations equations;
   ResidualStatistics statistics;
   Observability seen;
-  int degenerate_directions = 0;            ///< number of degenerate directions
-  Matrix6d information = Matrix6d::Zero();  ///< from the surfaces, without the prior
+  std::vector<int> degenerate;  ///< directions, as columns of `seen.directions`
+  double kernel_width = 0;      ///< in predicted standard deviations of the residuals
+  double independent = 1;       ///< share of a correspondence in an independent observation
 };
+
+/// Points whose plane fits share pixels are not independent observations, and residuals above the
+/// predicted noise mean that there is less information than predicted.
+void count_independent(NormalEquations& equations, double independent) {
+  equations.information *= independent;
+  equations.gradient *= independent;
+  equations.weight_sum *= independent;
+  equations.noise_induced *= independent;
+}
 
 System build_system(const std::vector<Correspondence>& pairs, const Pose& pose, double lever_m,
                     const MotionPrior& prior, const RegistrationOptions& options) {
   System system;
   const double scale = robust_scale(pairs);
-  const double kernel_width = options.kernel_width * scale;
-  system.equations = build_equations(pairs, kernel_width);
-  system.statistics = residual_statistics(pairs, scale, kernel_width);
-  // Points whose plane fits share pixels are not independent observations, and residuals above the
-  // predicted noise mean that there is less information than predicted.
-  const double independent = 1 / (options.correlated_observations * scale * scale);
-  system.equations.information *= independent;
-  system.equations.gradient *= independent;
-  system.equations.weight_sum *= independent;
-  system.equations.noise_induced *= independent;
-
+  system.kernel_width = options.kernel_width * scale;
+  system.independent = 1 / (options.correlated_observations * scale * scale);
+  system.equations = build_equations(pairs, system.kernel_width);
+  system.statistics = residual_statistics(pairs, scale, system.kernel_width);
+  count_independent(system.equations, system.independent);
   system.seen = observability(system.equations, lever_m);
   const Vector6d sigmas = prior_sigmas(prior);
-  const std::vector<int> degenerate = degenerate_directions(system.seen, system.equations, sigmas);
-  remove_information(system.equations, system.seen, degenerate);
-  system.degenerate_directions = static_cast<int>(degenerate.size());
-  system.information = system.equations.information;
+  system.degenerate = degenerate_directions(system.seen, system.equations, sigmas);
+  remove_information(system.equations, system.seen, system.degenerate);
   add_prior(system.equations, twist_between(pose, prior.world_from_camera), sigmas);
   return system;
+}
+
+/// The information about the pose relative to each target, from the correspondences with that
+/// target alone. There is none along directions that are degenerate with all of them.
+std::vector<Matrix6d> information_by_target(const Correspondences& found, const System& system,
+                                            double lever_m) {
+  std::vector<Matrix6d> information;
+  std::span<const Correspondence> pairs = found.pairs;
+  for (const std::size_t count : found.of_target) {
+    NormalEquations equations = build_equations(pairs.first(count), system.kernel_width);
+    pairs = pairs.subspan(count);
+    count_independent(equations, system.independent);
+    remove_information(equations, system.seen, system.degenerate);
+    information.push_back(surface_information(observability(equations, lever_m), equations));
+  }
+  return information;
 }
 
 RegistrationStatus verdict(const RegistrationResult& result, bool has_converged,
@@ -114,29 +132,29 @@ RegistrationStatus descend(const std::vector<const SurfacePoint*>& points,
                            double tolerances, RegistrationResult& result) {
   const double lever_m = median_range_m(points);
   bool has_converged = false;
+  Correspondences found;
+  System system;
   while (result.iterations < options.max_iterations && !has_converged) {
-    Correspondences found =
-        find_correspondences(points, result.world_from_camera, targets, camera, options);
+    found = find_correspondences(points, result.world_from_camera, targets, camera, options);
     result.correspondences = static_cast<int>(found.pairs.size());
     if (result.correspondences < options.min_correspondences) {
       return RegistrationStatus::few_correspondences;
     }
-    const System system =
-        build_system(found.pairs, result.world_from_camera, lever_m, prior, options);
+    system = build_system(found.pairs, result.world_from_camera, lever_m, prior, options);
     const Eigen::LDLT<Matrix6d> solver(system.equations.information);
     const Vector6d twist = -solver.solve(system.equations.gradient);
     result.world_from_camera = moved(result.world_from_camera, twist);
     result.covariance = solver.solve(Matrix6d::Identity());
-    result.surface_information = system.information;
     result.overlap = found.overlap;
     result.inlier_ratio = system.statistics.inlier_ratio;
     result.rmse_m = system.statistics.rmse_m;
     result.residual_scale = system.statistics.scale;
     result.direction_shares = system.seen.shares;
-    result.degenerate_directions = system.degenerate_directions;
+    result.degenerate_directions = static_cast<int>(system.degenerate.size());
     has_converged = is_below_tolerance(twist, tolerances);
     ++result.iterations;
   }
+  result.target_information = information_by_target(found, system, lever_m);
   return verdict(result, has_converged, options);
 }
 

@@ -96,6 +96,11 @@ double support(const RegistrationResult& result);
 /// converged, reaches `min_overlap` and `min_inlier_ratio`, and has no degenerate direction.
 bool is_verified(const RegistrationResult& result, const LoopOptions& options);
 
+/// The covariance of a pose relative to a keyframe of whose surfaces a registration has this
+/// information. Along directions without information, the standard deviations are 1 m and 0.5 rad,
+/// farther than a registration would have found the keyframe from.
+Eigen::Matrix<double, 6, 6> covariance_of(const Eigen::Matrix<double, 6, 6>& information);
+
 /// The edge of the pose graph from a registration of keyframe `to` with keyframe `from`.
 /// `covariance` is that of the pose error, along the world's axes. The edge has it along the axes
 /// of `from`, increased by the errors that neighbouring frames share, which registration cannot

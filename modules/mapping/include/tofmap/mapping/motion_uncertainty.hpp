@@ -34,6 +34,10 @@ class MotionUncertainty {
   /// Sets all uncertainty to zero: the pose is known, and the camera stands still.
   void reset();
 
+  /// Sets the uncertainty of the pose to zero, as if it were measured from the camera's present
+  /// place from now on. That of the velocity remains.
+  void restart();
+
   /// Rotates the covariance into new axes of the world.
   void rotate(const Eigen::Matrix3d& new_from_old);
 

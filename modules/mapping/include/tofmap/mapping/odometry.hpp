@@ -74,11 +74,12 @@ struct TrackingResult {
   bool is_keyframe = false;                   ///< whether RoomMapper made the frame a keyframe
   std::vector<int> targets;  ///< ids of the keyframes it was registered with, best overlap first
   RegistrationResult registration;  ///< all defaults if registration was not tried
-  /// Covariance of the error of world_from_camera if the status is `tracked`, else zero: rotation
-  /// vector in radians, then translation in metres, along the axes of the world. It comes from a
-  /// filter over the frames so far (MotionUncertainty). It is not registration.covariance, which
-  /// treats the motion prior of this frame as independent of the frames before it.
-  Eigen::Matrix<double, 6, 6> pose_covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  /// Covariance of the error of the pose relative to each target if the status is `tracked`, else
+  /// empty: rotation vector in radians, then translation in metres, along the axes of the world.
+  /// It tells of the surfaces of that target, and for the latest keyframe of the motion since it
+  /// was taken. In directions that these do not constrain, it is large, even if other targets
+  /// constrain them. RoomMapper::add_frame() makes edges of them and removes them.
+  std::vector<Eigen::Matrix<double, 6, 6>> target_covariances;
 
   /// Whether the pose of the frame was found.
   bool registered() const {
@@ -121,6 +122,10 @@ class Odometry {
   /// frames count as well. False if no frame was registered yet.
   bool is_after_gap(double timestamp_s) const;
 
+  /// The last registered frame has become a keyframe. The uncertainty of the motion is that since
+  /// this frame from now on.
+  void note_keyframe(int id);
+
   /// Forgets where the camera was: the next frame with a surface is the first one again.
   void start_anew();
 
@@ -153,6 +158,8 @@ class Odometry {
   MotionPrior predict(double timestamp_s) const;
   std::vector<const Keyframe*> choose_targets(const SurfaceCloud& cloud, const Pose& expected,
                                               std::span<const Keyframe* const> around) const;
+  std::vector<Eigen::Matrix<double, 6, 6>> learn_covariances(double periods,
+                                                             const Attempt& attempt);
   void accept(const StampedPose& pose);
 
   CameraModel camera_;
@@ -164,7 +171,8 @@ class Odometry {
   int frames_since_registered_ = 0;
   std::vector<double> recent_periods_s_;  ///< times between successive frames, the newest last
   double last_timestamp_s_ = 0;           ///< of the last frame passed to note_frame()
-  MotionUncertainty uncertainty_;         ///< of the last registered pose
+  MotionUncertainty uncertainty_;         ///< of the last registered pose, relative to `reference_`
+  int reference_ = -1;                    ///< id of the latest keyframe; −1 before the first one
   static constexpr double expected_support = 0.8;  ///< before any frame was registered
   static constexpr double expected_inlier_ratio = 0.9;
   /// Share of a frame's points that fit the surfaces, averaged over recent registered frames.

@@ -4,6 +4,7 @@
 
 #include <iosfwd>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <tofmap/mapping/keyframe_graph.hpp>
@@ -96,6 +97,10 @@ class RoomMapper {
   std::size_t voxel_count() const;
   /// All verified loops so far, in the order in which they were found.
   const std::vector<Loop>& loops() const { return loops_; }
+  /// All keyframes with their current poses, in the order of their ids.
+  std::span<const Keyframe> keyframes() const { return keyframes_.all(); }
+  /// The measured relative poses between keyframes, by their ids.
+  std::span<const PoseEdge> edges() const { return edges_; }
 
   /// Writes the whole state. A mapper that was constructed with the same arguments and loads the
   /// state gives the same results to the bit. Only the build that wrote the state can read it.

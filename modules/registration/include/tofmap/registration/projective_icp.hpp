@@ -98,9 +98,11 @@ struct RegistrationResult {
   /// then translation, metres, both along the world's axes. Includes the prior.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
-  /// Information (inverse covariance) about the same twist from the surfaces alone, without the
-  /// prior. Zero along degenerate directions.
-  Eigen::Matrix<double, 6, 6> surface_information = Eigen::Matrix<double, 6, 6>::Zero();
+  /// Information (inverse covariance) about the same twist relative to each target, from its
+  /// surfaces alone, without the prior, other targets, and the noise of normals. Zero along
+  /// degenerate directions. A target that does not see a direction of motion tells nothing of it,
+  /// however well another target does. Empty if too few correspondences were found.
+  std::vector<Eigen::Matrix<double, 6, 6>> target_information;
 
   /// Number of degenerate directions of motion, of six: those in which the surfaces give less
   /// information than the prior, after noise-induced information was subtracted. The pose follows
