@@ -35,6 +35,12 @@ void KeyframeGraph::set_pose(int id, const Pose& world_from_camera) {
   keyframes_[static_cast<std::size_t>(id)].world_from_camera = world_from_camera;
 }
 
+void KeyframeGraph::set_cloud(int id, std::shared_ptr<const SurfaceCloud> cloud) {
+  Keyframe& keyframe = keyframes_[static_cast<std::size_t>(id)];
+  keyframe.place = PlaceDescriptor(*cloud);
+  keyframe.cloud = std::move(cloud);
+}
+
 void KeyframeGraph::join(int map, int into, const Pose& into_from_map) {
   for (Keyframe& keyframe : keyframes_) {
     if (keyframe.map != map) continue;

@@ -80,6 +80,11 @@ void serialize(Archive& archive, tofmap::NewFrame& frame, unsigned version) {
 }
 
 template <class Archive>
+void serialize(Archive& archive, tofmap::MovingPoint& point, unsigned) {
+  archive& point.world_m& point.age;
+}
+
+template <class Archive>
 void serialize(Archive& archive, tofmap::Loop& loop, unsigned) {
   archive& loop.from_frame& loop.to_frame& loop.error_m& loop.mahalanobis_distance& loop.is_used;
 }
@@ -120,8 +125,13 @@ void RoomMapper::RegisteredFrame::serialize(Archive& archive, unsigned) {
 }
 
 template <class Archive>
+void MovingRegions::serialize(Archive& archive, unsigned) {
+  archive& known_;
+}
+
+template <class Archive>
 void RoomMapper::serialize(Archive& archive, unsigned) {
-  archive& odometry_& keyframes_& frames_& edges_& loops_;
+  archive& odometry_& moving_& keyframes_& frames_& edges_& loops_;
   archive& unfitted_loops_& last_fit_& current_& map_& begun_maps_& lost_frames_& searched_;
   archive& held_& recognitions_;
 }

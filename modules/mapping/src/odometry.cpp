@@ -91,6 +91,9 @@ std::vector<OptionField<OdometryOptions>> OdometryOptions::fields() {
        "tries other rotations for a frame whose pose is unlikely, and rejects a pose that fits far "
        "worse than is usual or contradicts free space; always off without unwrapping and with "
        "PCL's methods"},
+      {"leave_out_moving", &O::leave_out_moving, 0, 1, "",
+       "finds people and other things that move, and leaves them out of registration and map; "
+       "always off without unwrapping and with PCL's methods"},
   };
 }
 
@@ -282,6 +285,10 @@ double Odometry::periods_since_registered(double timestamp_s) const {
   }
   constexpr double for_ever = 1000;
   return std::min(periods, for_ever);
+}
+
+Pose Odometry::expected_pose(double timestamp_s) const {
+  return last_ ? predict(timestamp_s).world_from_camera : Pose::Identity();
 }
 
 MotionPrior Odometry::predict(double timestamp_s) const {

@@ -51,7 +51,8 @@ RoomMapper::RoomMapper(const CameraModel& camera, const OdometryOptions& odometr
       registration_(registration),
       loop_options_(loops),
       surface_options_(surface),
-      odometry_(camera, odometry, registration, loops) {}
+      odometry_(camera, odometry, registration, loops),
+      moving_(camera) {}
 
 AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
   AddedFrame added;
@@ -60,7 +61,8 @@ AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
     added.tracking.status = TrackingStatus::repeated;
     return added;
   }
-  added.tracking = timed(added.register_ms, [&] { return track(frame); });
+  NewFrame still = frame;
+  added.tracking = timed(added.register_ms, [&] { return track(still); });
   if (!added.tracking.registered()) {
     if (held_.size() < frames_until_lost) return added;
     added.late = timed(added.register_ms, [&] { return start_map(); });
@@ -68,7 +70,7 @@ AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
     added.late.pop_back();
     if (!added.tracking.registered()) return added;
   } else {
-    timed(added.integrate_ms, [&] { integrate(*frame.cloud); });
+    timed(added.integrate_ms, [&] { integrate(*still.cloud); });
   }
   const int map_before = map_;
   timed(added.loop_ms, [&] { close_loops(); });
@@ -79,13 +81,14 @@ AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
   return added;
 }
 
-/// Finds the pose of a frame, and decides whether it becomes a keyframe.
-TrackingResult RoomMapper::track(const NewFrame& frame) {
+/// Finds the pose of a frame, takes what moves out of its cloud, and decides whether it becomes a
+/// keyframe.
+TrackingResult RoomMapper::track(NewFrame& frame) {
   // After some time the camera may be anywhere, and odometry may register it with a wrong place
   // that looks similar.
   std::vector<const Keyframe*> around;
   if (lost_frames_ < frames_until_given_up) around = keyframes_around();
-  TrackingResult result = odometry_.track(frame.timestamp_s, *frame.cloud, around);
+  TrackingResult result = track_still(frame, around);
   odometry_.note_frame(frame.timestamp_s);
   if (!result.registered()) {
     if (!frames_.empty()) ++lost_frames_;
@@ -108,14 +111,46 @@ TrackingResult RoomMapper::track(const NewFrame& frame) {
   return result;
 }
 
+/// Registers a frame, then again without what moves in it and has moved in the keyframes around,
+/// which is taken out of their clouds and that of the frame.
+TrackingResult RoomMapper::track_still(NewFrame& frame, std::span<const Keyframe* const> around) {
+  if (!odometry_options_.leave_out_moving ||
+      registration_.method != RegistrationMethod::projective) {
+    return odometry_.track(frame.timestamp_s, *frame.cloud, around);
+  }
+  const Odometry before = odometry_;
+  const auto cloud = moving_.without_known(frame.cloud, odometry_.expected_pose(frame.timestamp_s));
+  const TrackingResult first = odometry_.track(frame.timestamp_s, *cloud, around);
+  if (first.status != TrackingStatus::tracked) return first;
+  // The oldest keyframe saw what was behind a thing that has moved since.
+  std::vector<const Keyframe*> compared;
+  for (const int id : first.targets) compared.push_back(&keyframes_[id]);
+  if (std::ranges::find(first.targets, around.front()->id) == first.targets.end()) {
+    compared.push_back(around.front());
+  }
+  const Motion motion = moving_.find(frame.cloud, first.world_from_camera, compared);
+  moving_.remember(motion);
+  if (motion.is_empty()) return first;
+  frame.cloud = motion.still;
+  for (const CleanedKeyframe& keyframe : motion.keyframes) {
+    keyframes_.set_cloud(keyframe.id, keyframe.cloud);
+  }
+  const Odometry after_first = std::exchange(odometry_, before);
+  const TrackingResult second = odometry_.track(frame.timestamp_s, *frame.cloud, around);
+  if (second.registered()) return second;
+  odometry_ = after_first;
+  return first;
+}
+
 /// Begins a map with the frames that could not be registered, in order. Returns what became of
 /// them, and of the frames of a map before that was too small to keep.
 std::vector<LateFrame> RoomMapper::start_map() {
   std::vector<LateFrame> late = drop_fragment();
   map_ = begun_maps_++;
   odometry_.start_anew();
+  moving_ = MovingRegions(camera_);
   lost_frames_ = 0;
-  for (const NewFrame& frame : std::exchange(held_, {})) {
+  for (NewFrame& frame : std::exchange(held_, {})) {
     LateFrame& result = late.emplace_back(LateFrame{frame.index, track(frame)});
     if (result.tracking.registered()) integrate(*frame.cloud);
   }
@@ -222,6 +257,7 @@ void RoomMapper::join_maps() {
   if (!join) return;
   keyframes_.join(join->map, join->into, join->into_from_map);
   odometry_.move(join->into_from_map);
+  moving_.move(join->into_from_map);
   map_ = join->into;
   for (const PoseEdge& edge : join->edges) {
     const Pose found = keyframes_[edge.from].world_from_camera * edge.from_from_to;
@@ -342,7 +378,9 @@ void RoomMapper::fit() {
   for (int id = 0; id < keyframes_.size(); ++id) {
     keyframes_.set_pose(id, fitted.poses[static_cast<std::size_t>(id)]);
   }
-  odometry_.move(keyframes_[current_].world_from_camera * current_before.inverse());
+  const Pose new_from_old_world = keyframes_[current_].world_from_camera * current_before.inverse();
+  odometry_.move(new_from_old_world);
+  moving_.move(new_from_old_world);
   auto loop = loops_.begin();
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     if (!edges_[i].may_be_wrong) continue;

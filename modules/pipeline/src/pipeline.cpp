@@ -64,10 +64,13 @@ void look_ahead(const std::vector<SourcedFrame>& first, FrameMeasurer& measurer)
 }
 
 /// The baseline without unwrapping is mapped as far as it goes: wrapped surfaces contradict each
-/// other, so that checks of poses would leave nothing to compare.
+/// other, as if they moved, so that checks of poses would leave nothing to compare.
 OdometryOptions odometry_of(const PipelineOptions& options) {
   OdometryOptions odometry = options.odometry;
-  if (options.unwrap.method == UnwrapMethod::none) odometry.check_poses = false;
+  if (options.unwrap.method == UnwrapMethod::none) {
+    odometry.check_poses = false;
+    odometry.leave_out_moving = false;
+  }
   return odometry;
 }
 

@@ -42,6 +42,9 @@ class KeyframeGraph {
   /// Sets the pose of a keyframe.
   void set_pose(int id, const Pose& world_from_camera);
 
+  /// Replaces the cloud of a keyframe, and with it the descriptor of its place.
+  void set_cloud(int id, std::shared_ptr<const SurfaceCloud> cloud);
+
   /// Moves all keyframes of a map into another one.
   void join(int map, int into, const Pose& into_from_map);
 

@@ -50,6 +50,8 @@ struct OdometryOptions {
   /// Whether unlikely poses are checked: other rotations are tried, and a pose that fits the
   /// surfaces far worse than is usual, or contradicts their free space, is rejected.
   bool check_poses = true;
+  /// Whether people and other things that move are found (MovingRegions) and left out.
+  bool leave_out_moving = true;
 
   static std::vector<OptionField<OdometryOptions>> fields();
 };
@@ -117,6 +119,9 @@ class Odometry {
   /// Must be called for every frame after registration was tried, whether here or elsewhere. The
   /// frame period of the camera is estimated from the timestamps.
   void note_frame(double timestamp_s);
+
+  /// Where the camera is expected at a time. The identity if no frame was registered yet.
+  Pose expected_pose(double timestamp_s) const;
 
   /// Whether the last registered frame is more than 3.5 frame periods before `timestamp_s`. Dropped
   /// frames count as well. False if no frame was registered yet.

@@ -9,6 +9,7 @@
 
 #include <tofmap/mapping/keyframe_graph.hpp>
 #include <tofmap/mapping/loop_closure.hpp>
+#include <tofmap/mapping/moving_regions.hpp>
 #include <tofmap/mapping/odometry.hpp>
 #include <tofmap/mapping/surface_map.hpp>
 
@@ -64,8 +65,9 @@ struct AddedFrame {
 /// registered, the first of them is the origin of a map of its own, and the others are tracked in
 /// it. Every keyframe of the newest map is compared with those of the other maps; when three
 /// keyframes recognise places of another map and agree, both maps are joined. Maps that never are
-/// stay maps of their own. A map of fewer than three frames is dropped again when the next one
-/// begins.
+/// stay maps of their own. People, doors and other things that move are found (MovingRegions); they
+/// have no part in registration, keyframes and surface. A map of fewer than three frames is dropped
+/// again when the next one begins.
 class RoomMapper {
  public:
   RoomMapper(const CameraModel& camera, const OdometryOptions& odometry,
@@ -130,7 +132,8 @@ class RoomMapper {
     SurfaceMap surface;
   };
 
-  TrackingResult track(const NewFrame& frame);
+  TrackingResult track(NewFrame& frame);
+  TrackingResult track_still(NewFrame& frame, std::span<const Keyframe* const> around);
   std::vector<LateFrame> start_map();
   std::vector<LateFrame> drop_fragment();
   void integrate(const SurfaceCloud& cloud);
@@ -153,6 +156,7 @@ class RoomMapper {
   LoopOptions loop_options_;
   SurfaceMapOptions surface_options_;
   Odometry odometry_;
+  MovingRegions moving_;  ///< at the last registered frame
   KeyframeGraph keyframes_;
   std::vector<Submap> submaps_;
   std::vector<int> submap_of_;  ///< for each keyframe, the index of the submap of its frames

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <tofmap/core/camera.hpp>
+#include <tofmap/mapping/keyframe.hpp>
+
+namespace boost::serialization {
+class access;
+}
+
+namespace tofmap {
+
+/// A keyframe in which something moved.
+struct CleanedKeyframe {
+  int id = 0;
+  std::shared_ptr<const SurfaceCloud> cloud;  ///< without normals at what moved
+};
+
+/// A point of something that moves.
+struct MovingPoint {
+  Eigen::Vector3d world_m;
+  int age = 0;  ///< number of frames since the last evidence that it moves
+};
+
+/// What moves in a frame, as regions of its image and of those of keyframes.
+struct Motion {
+  /// The frame's cloud without normals at what moves. The same object if nothing does.
+  std::shared_ptr<const SurfaceCloud> still;
+  std::vector<CleanedKeyframe> keyframes;  ///< those in which something moved since
+  std::vector<MovingPoint> points;         ///< one for each cell of the grid that moves
+
+  bool is_empty() const { return points.empty() && keyframes.empty(); }
+};
+
+/// Tells people, doors and other things that move from the room, region by region.
+///
+/// Where a keyframe saw through to a surface behind, there is something now that was not there
+/// before; where the frame sees through a surface of a keyframe, that surface is gone. Such points
+/// are the evidence. From them, regions grow over the image, as far as the depth is continuous and
+/// no keyframe agrees that the surface was there before. What moved in the frame before is expected
+/// to move still, for a second after the last evidence: somebody who walks ahead of the camera, at
+/// its pace, covers what keyframes could see through.
+///
+/// Regions are found on a coarse grid of about 1/32 rad; those of fewer than six of its cells are
+/// not believed. If more than half of what can be compared contradicts the keyframes,
+/// the pose is wrong rather than the room, and nothing is said to move.
+class MovingRegions {
+ public:
+  explicit MovingRegions(const CameraModel& camera) : camera_(camera) {}
+
+  /// A frame's cloud at its expected pose, without normals at what moved in the frame before. The
+  /// same object if nothing did.
+  std::shared_ptr<const SurfaceCloud> without_known(
+      const std::shared_ptr<const SurfaceCloud>& cloud, const Pose& world_from_camera) const;
+
+  /// What moves in a frame whose pose is known, compared with keyframes. The result is the same for
+  /// any number of threads.
+  Motion find(const std::shared_ptr<const SurfaceCloud>& cloud, const Pose& world_from_camera,
+              std::span<const Keyframe* const> keyframes) const;
+
+  /// Expects what moves in a frame to be near the same places in the next one.
+  void remember(const Motion& motion) { known_ = motion.points; }
+
+  /// Transforms the remembered places when the pose graph has moved the keyframes around.
+  void move(const Pose& new_from_old_world);
+
+ private:
+  friend class boost::serialization::access;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
+
+  CameraModel camera_;
+  std::vector<MovingPoint> known_;
+};
+
+}  // namespace tofmap

@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "support/box_room.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include <gtest/gtest.h>
+
+#include <tofmap/mapping/moving_regions.hpp>
+
+namespace tofmap {
+namespace {
+
+using Eigen::Vector3d;
+using CloudPointer = std::shared_ptr<const SurfaceCloud>;
+
+const Vector3d room_min(-2.0, -1.2, -1);
+const Vector3d room_max(2.0, 1.2, 4);
+
+/// A box on the floor, half a metre wide, as high as a person; the y axis points down.
+struct Person {
+  Vector3d min;
+  Vector3d max;
+};
+
+Person person_at(double x, double z) {
+  return {{x - 0.25, -0.5, z - 0.15}, {x + 0.25, room_max.y(), z + 0.15}};
+}
+
+/// Range at which a ray from the origin meets the box. Empty if it passes by.
+std::optional<double> range_of(const Person& person, const Vector3d& origin, const Vector3d& ray) {
+  double nearest = 0;
+  double farthest = 100;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double one = (person.min[axis] - origin[axis]) / ray[axis];
+    const double other = (person.max[axis] - origin[axis]) / ray[axis];
+    nearest = std::max(nearest, std::min(one, other));
+    farthest = std::min(farthest, std::max(one, other));
+  }
+  return nearest < farthest ? std::optional(nearest) : std::nullopt;
+}
+
+/// A view of the room, and which of its pixels see the person.
+struct View {
+  CloudPointer cloud;
+  std::vector<char> sees_person;
+};
+
+View view_of(const std::optional<Person>& person, const Pose& world_from_camera) {
+  const CameraModel camera = test::small_camera();
+  RangeImage image = test::box_ranges(camera, room_min, room_max, world_from_camera);
+  View view;
+  for (int v = 0; v < camera.height_px; ++v) {
+    for (int u = 0; u < camera.width_px; ++u) {
+      const Vector3d ray = world_from_camera.linear() * pixel_ray(camera, u, v);
+      const auto range =
+          person ? range_of(*person, world_from_camera.translation(), ray) : std::nullopt;
+      view.sees_person.push_back(range ? 1 : 0);
+      if (range) image.range_m(v, u) = static_cast<float>(*range);
+    }
+  }
+  view.cloud = std::make_shared<const SurfaceCloud>(surface_cloud(image, pixel_rays(camera), {}));
+  return view;
+}
+
+Keyframe keyframe_of(const View& view) { return {0, 0, 0, Pose::Identity(), view.cloud}; }
+
+/// Shares of the points with a normal that are left, of the person and of the room.
+struct Left {
+  double of_person = 0;
+  double of_room = 0;
+};
+
+Left left_in(const SurfaceCloud& cloud, const View& view) {
+  std::array<double, 2> before{};
+  std::array<double, 2> after{};
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const auto seen = static_cast<std::size_t>(view.sees_person[i]);
+    before[seen] += view.cloud->points[i].has_normal() ? 1 : 0;
+    after[seen] += cloud.points[i].has_normal() ? 1 : 0;
+  }
+  return {after[1] / std::max(1.0, before[1]), after[0] / std::max(1.0, before[0])};
+}
+
+Motion motion_between(const View& before, const View& now,
+                      const Pose& world_from_camera = Pose::Identity()) {
+  const Keyframe keyframe = keyframe_of(before);
+  const std::array<const Keyframe*, 1> keyframes{&keyframe};
+  return MovingRegions(test::small_camera()).find(now.cloud, world_from_camera, keyframes);
+}
+
+TEST(MovingRegions, AreEmptyInARoomWhereNothingMoves) {
+  const Pose moved = test::moved_by({0.02, -0.04, 0.01}, {0.1, -0.05, 0.08});
+  const View now = view_of(person_at(0.3, 2), moved);
+  const Motion motion = motion_between(view_of(person_at(0.3, 2), Pose::Identity()), now, moved);
+  EXPECT_TRUE(motion.is_empty());
+  EXPECT_EQ(motion.still, now.cloud);
+}
+
+TEST(MovingRegions, AreWhereSomebodyHasEnteredAnEmptyRoom) {
+  const Pose moved = test::moved_by({0, -0.04, 0}, {0.1, 0, 0.08});
+  const View now = view_of(person_at(0.3, 2), moved);
+  const Motion motion = motion_between(view_of({}, Pose::Identity()), now, moved);
+  EXPECT_TRUE(motion.keyframes.empty()) << "only what the person stands on is hidden";
+  const Left left = left_in(*motion.still, now);
+  EXPECT_LT(left.of_person, 0.02);
+  EXPECT_GT(left.of_room, 0.97);
+}
+
+TEST(MovingRegions, AreWhereSomebodyWasBefore) {
+  const View before = view_of(person_at(0.3, 2), Pose::Identity());
+  const View now = view_of({}, Pose::Identity());
+  const Motion motion = motion_between(before, now);
+  EXPECT_EQ(left_in(*motion.still, now).of_room, 1);
+  ASSERT_EQ(motion.keyframes.size(), 1U);
+  const Left left = left_in(*motion.keyframes[0].cloud, before);
+  EXPECT_LT(left.of_person, 0.02);
+  EXPECT_GT(left.of_room, 0.97);
+}
+
+TEST(MovingRegions, FollowSomebodyWhoWalksAwayFromTheCamera) {
+  // The keyframe does not see through what the person covers now; the frame sees where it was.
+  const View before = view_of(person_at(0, 2), Pose::Identity());
+  const View now = view_of(person_at(0, 2.15), Pose::Identity());
+  const Motion motion = motion_between(before, now);
+  EXPECT_LT(left_in(*motion.still, now).of_person, 0.1);
+  ASSERT_EQ(motion.keyframes.size(), 1U);
+  EXPECT_LT(left_in(*motion.keyframes[0].cloud, before).of_person, 0.1);
+}
+
+TEST(MovingRegions, ArePresumedToMoveOnForASecond) {
+  const CameraModel camera = test::small_camera();
+  const View now = view_of(person_at(0.3, 2), Pose::Identity());
+  MovingRegions regions(camera);
+  regions.remember(motion_between(view_of({}, Pose::Identity()), now));
+  const View next = view_of(person_at(0.35, 2), Pose::Identity());
+  EXPECT_LT(left_in(*regions.without_known(next.cloud, Pose::Identity()), next).of_person, 0.1);
+  // From then on the person stands, and the keyframes that are left know no other room.
+  const Keyframe keyframe = keyframe_of(next);
+  const std::array<const Keyframe*, 1> keyframes{&keyframe};
+  int frames = 0;
+  for (; frames < 100; ++frames) {
+    const Motion motion = regions.find(next.cloud, Pose::Identity(), keyframes);
+    if (motion.is_empty()) break;
+    regions.remember(motion);
+  }
+  EXPECT_EQ(frames, 15);
+}
+
+TEST(MovingRegions, DoNotExplainAWrongPose) {
+  const View before = view_of(person_at(0.3, 2), Pose::Identity());
+  const Pose wrong = test::moved_by({0, 0, 0}, {0, 0, -0.3});
+  EXPECT_TRUE(motion_between(before, before, wrong).is_empty());
+}
+
+TEST(MovingRegions, MoveWithTheWorld) {
+  MovingRegions regions(test::small_camera());
+  const View now = view_of(person_at(0.3, 2), Pose::Identity());
+  regions.remember(motion_between(view_of({}, Pose::Identity()), now));
+  const Pose new_from_old = test::moved_by({0, 1, 0}, {3, 0, 1});
+  regions.move(new_from_old);
+  EXPECT_LT(left_in(*regions.without_known(now.cloud, new_from_old), now).of_person, 0.1);
+  EXPECT_EQ(regions.without_known(now.cloud, Pose::Identity()), now.cloud);
+}
+
+}  // namespace
+}  // namespace tofmap
