@@ -267,6 +267,7 @@ void map_frames(MapRun& run, MapInput& input, FrameSample& sample, bool quiet, L
   hooks.on_frame = [&](const DualFrequencyFrame& frame, const PreparedFrame& prepared) {
     sample.add(frame, prepared);
   };
+  hooks.on_motion = [&](int index, const SurfaceCloud& still) { sample.drop_moving(index, still); };
   run.advance(input.frames(), hooks);
 }
 

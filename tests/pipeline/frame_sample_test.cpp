@@ -49,6 +49,35 @@ std::vector<int> kept_of(int total, int wanted, int width_px = 4) {
   return indices_of(sample);
 }
 
+TEST(FrameSample, DropsTheRangesOfWhatMovesInAFrame) {
+  const CameraModel camera = camera_of(4);
+  FrameSample sample(camera, 2, 2);
+  PreparedFrame prepared;
+  prepared.filtered.image = RangeImage(camera.height_px, camera.width_px);
+  prepared.filtered.image.range_m.setConstant(2);
+  prepared.filtered.image.reason.setZero();
+  for (const int index : {0, 1}) {
+    DualFrequencyFrame frame;
+    frame.index = index;
+    sample.add(frame, prepared);
+  }
+  SurfacePoint there{};
+  there.getVector3fMap().setConstant(1);
+  SurfacePoint gone = there;
+  gone.getVector3fMap().setConstant(std::numeric_limits<float>::quiet_NaN());
+  SurfaceCloud still(4, 4, there);
+  still.at(3, 1) = gone;
+  sample.drop_moving(1, still);
+  sample.drop_moving(7, still);
+  const auto valid = [&](int frame) {
+    return sample.frames()[static_cast<std::size_t>(frame)].filtered.range_m.array().isFinite();
+  };
+  EXPECT_EQ(valid(0).count(), 16);
+  EXPECT_EQ(valid(1).count(), 15);
+  EXPECT_EQ(sample.frames()[1].filtered.reason(1, 3),
+            static_cast<int>(InvalidReason::free_space_violation));
+}
+
 TEST(SpreadIndices, LieInTheMiddlesOfEqualParts) {
   EXPECT_THAT(spread_indices(9, 3), ElementsAre(1, 4, 7));
   EXPECT_THAT(spread_indices(3, 9), ElementsAre(0, 1, 2)) << "no more than there are";

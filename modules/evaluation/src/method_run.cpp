@@ -101,6 +101,7 @@ MethodResult run_down_to_map(const MethodRun& run, const SequenceReader& recordi
     result.frames.push_back(record_of_frame(prepared, recording, recorded));
     sample.add(frame, prepared);
   };
+  hooks.on_motion = [&](int index, const SurfaceCloud& still) { sample.drop_moving(index, still); };
   result.map = map_room(source, options, hooks);
   refuse_mostly_damaged(*result.map);
   result.interrupted = result.map->interrupted;

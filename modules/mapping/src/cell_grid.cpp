@@ -35,6 +35,16 @@ std::vector<std::size_t> neighbours(const CellGrid& grid, std::size_t cell) {
   return beside;
 }
 
+SurfacePoint no_point() {
+  constexpr float none = std::numeric_limits<float>::quiet_NaN();
+  SurfacePoint point{};
+  point.getVector3fMap().setConstant(none);
+  point.getNormalVector3fMap().setConstant(none);
+  point.sigma_m = none;
+  point.normal_sigma_rad = none;
+  return point;
+}
+
 bool is_in_region_beside(const SurfacePoint& point, int row, int col, const CellGrid& grid,
                          const Cells<int>& regions) {
   constexpr float same_range_m = 0.15F;
@@ -123,17 +133,16 @@ Cells<int> grow_regions(const CellGrid& grid, const Cells<int>& seeds, const Cel
   return regions;
 }
 
-std::shared_ptr<const SurfaceCloud> without_normals(const SurfaceCloud& cloud, const CellGrid& grid,
+std::shared_ptr<const SurfaceCloud> without_regions(const SurfaceCloud& cloud, const CellGrid& grid,
                                                     const Cells<int>& regions) {
   const auto out = std::make_shared<SurfaceCloud>(cloud);
-  constexpr float none = std::numeric_limits<float>::quiet_NaN();
   const int width = static_cast<int>(cloud.width);
   for (int row = 0; row < static_cast<int>(cloud.height); ++row) {
     for (int col = 0; col < width; ++col) {
       SurfacePoint& point = out->at(col, row);
-      if (!point.has_normal() || !is_in_region_beside(point, row, col, grid, regions)) continue;
-      point.getNormalVector3fMap().setConstant(none);
-      point.normal_sigma_rad = none;
+      if (point.has_position() && is_in_region_beside(point, row, col, grid, regions)) {
+        point = no_point();
+      }
     }
   }
   return out;

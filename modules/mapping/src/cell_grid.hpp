@@ -67,9 +67,9 @@ inline constexpr int growing = 0;
 /// seeds and result, `no_region` stands for all other cells.
 Cells<int> grow_regions(const CellGrid& grid, const Cells<int>& seeds, const Cells<char>& barred);
 
-/// A cloud without normals in regions: at pixels whose cell, or a cell beside it, is in a region
-/// and has nearly the same range.
-std::shared_ptr<const SurfaceCloud> without_normals(const SurfaceCloud& cloud, const CellGrid& grid,
+/// A cloud without the points of regions: those whose cell, or a cell beside it, is in a region and
+/// has nearly the same range. They become like those of pixels without a range.
+std::shared_ptr<const SurfaceCloud> without_regions(const SurfaceCloud& cloud, const CellGrid& grid,
                                                     const Cells<int>& regions);
 
 }  // namespace tofmap

@@ -114,7 +114,7 @@ std::optional<CleanedKeyframe> clean(const Keyframe& keyframe, const Comparison&
   }
   const Cells<int> regions = grow_regions(comparison.grid, seeds, is_still);
   if (std::ranges::count(regions, growing) == 0) return std::nullopt;
-  return CleanedKeyframe{keyframe.id, without_normals(*keyframe.cloud, comparison.grid, regions)};
+  return CleanedKeyframe{keyframe.id, without_regions(*keyframe.cloud, comparison.grid, regions)};
 }
 
 /// For each cell of a frame, for how many frames what is there has shown no motion; `no_region` for
@@ -145,7 +145,7 @@ CloudPointer MovingRegions::without_known(const CloudPointer& cloud,
   if (known_.empty()) return cloud;
   const CellGrid grid(*cloud, camera_);
   const Cells<int> regions = known_cells(known_, grid, world_from_camera, camera_);
-  return has_region(regions) ? without_normals(*cloud, grid, regions) : cloud;
+  return has_region(regions) ? without_regions(*cloud, grid, regions) : cloud;
 }
 
 Motion MovingRegions::find(const CloudPointer& cloud, const Pose& world_from_camera,
@@ -176,7 +176,7 @@ Motion MovingRegions::find(const CloudPointer& cloud, const Pose& world_from_cam
   }
   const Cells<int> regions = grow_regions(grid, evidence.seeds, evidence.is_still);
   if (!has_region(regions)) return motion;
-  motion.still = without_normals(*cloud, grid, regions);
+  motion.still = without_regions(*cloud, grid, regions);
   for (std::size_t i = 0; i < grid.size(); ++i) {
     if (regions[i] == no_region) continue;
     motion.points.push_back({world_from_camera * grid.point_m(i).cast<double>(), regions[i]});

@@ -63,6 +63,7 @@ AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
   }
   NewFrame still = frame;
   added.tracking = timed(added.register_ms, [&] { return track(still); });
+  added.still = still.cloud;
   if (!added.tracking.registered()) {
     if (held_.size() < frames_until_lost) return added;
     added.late = timed(added.register_ms, [&] { return start_map(); });

@@ -4,6 +4,7 @@
 #include "tofmap/pipeline/frame_sample.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -66,6 +67,22 @@ void FrameSample::add(const DualFrequencyFrame& recorded, const PreparedFrame& p
   kept->returns.amplitude_a.resize(0, 0);
   kept->returns.amplitude_b.resize(0, 0);
   if (!has_known_length_ && frames_.size() >= most_) drop_every_second();
+}
+
+void FrameSample::drop_moving(int index, const SurfaceCloud& still) {
+  const auto sampled = std::ranges::find(
+      frames_, index, [](const SampledFrame& frame) { return frame.recorded.index; });
+  if (sampled == frames_.end()) return;
+  RangeImage& image = sampled->filtered;
+  for (Eigen::Index row = 0; row < image.range_m.rows(); ++row) {
+    for (Eigen::Index col = 0; col < image.range_m.cols(); ++col) {
+      if (std::isnan(image.range_m(row, col))) continue;
+      const SurfacePoint& point = still.at(static_cast<int>(col), static_cast<int>(row));
+      if (!point.has_position()) {
+        image.invalidate(row, col, InvalidReason::free_space_violation);
+      }
+    }
+  }
 }
 
 bool FrameSample::wants(int index) const {

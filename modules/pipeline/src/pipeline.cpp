@@ -236,7 +236,7 @@ void MapRun::advance(FrameSource& source, const MapHooks& hooks) {
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (prepared[i]) {
         if (hooks.on_frame) hooks.on_frame(*frames[i].frame, *prepared[i]);
-        add(*prepared[i]);
+        add(*prepared[i], hooks);
       } else {
         frames_.push_back(repeats[i] ? repeated(frames[i], mapper_) : plain_record(frames[i]));
       }
@@ -245,7 +245,7 @@ void MapRun::advance(FrameSource& source, const MapHooks& hooks) {
 }
 
 /// Adds a frame to the map, and its record.
-void MapRun::add(const PreparedFrame& frame) {
+void MapRun::add(const PreparedFrame& frame, const MapHooks& hooks) {
   AddedFrame added = mapper_.add_frame(
       {.index = frame.index, .timestamp_s = frame.timestamp_s, .cloud = frame.cloud});
   for (LateFrame& late : added.late) {
@@ -258,6 +258,7 @@ void MapRun::add(const PreparedFrame& frame) {
   record.times.register_ms = added.register_ms;
   record.times.map_ms = added.integrate_ms;
   record.times.loop_ms = added.loop_ms;
+  if (hooks.on_motion && added.still != frame.cloud) hooks.on_motion(frame.index, *added.still);
 }
 
 /// For each of the frames, whether it has the same phases as the frame before it.

@@ -18,7 +18,7 @@ namespace tofmap {
 /// A keyframe in which something moved.
 struct CleanedKeyframe {
   int id = 0;
-  std::shared_ptr<const SurfaceCloud> cloud;  ///< without normals at what moved
+  std::shared_ptr<const SurfaceCloud> cloud;  ///< without the points of what moved
 };
 
 /// A point of something that moves.
@@ -29,7 +29,7 @@ struct MovingPoint {
 
 /// What moves in a frame, as regions of its image and of those of keyframes.
 struct Motion {
-  /// The frame's cloud without normals at what moves. The same object if nothing does.
+  /// The frame's cloud without the points of what moves. The same object if nothing does.
   std::shared_ptr<const SurfaceCloud> still;
   std::vector<CleanedKeyframe> keyframes;  ///< those in which something moved since
   std::vector<MovingPoint> points;         ///< one for each cell of the grid that moves
@@ -53,8 +53,8 @@ class MovingRegions {
  public:
   explicit MovingRegions(const CameraModel& camera) : camera_(camera) {}
 
-  /// A frame's cloud at its expected pose, without normals at what moved in the frame before. The
-  /// same object if nothing did.
+  /// A frame's cloud at its expected pose, without the points of what moved in the frame before.
+  /// The same object if nothing did.
   std::shared_ptr<const SurfaceCloud> without_known(
       const std::shared_ptr<const SurfaceCloud>& cloud, const Pose& world_from_camera) const;
 

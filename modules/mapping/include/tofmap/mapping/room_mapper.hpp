@@ -46,9 +46,11 @@ struct LateFrame {
 struct AddedFrame {
   TrackingResult tracking;
   std::vector<LateFrame> late;  ///< frames before it whose result has changed
-  double register_ms = 0;       ///< tracking or relocalisation
-  double integrate_ms = 0;      ///< adding the surface to the map
-  double loop_ms = 0;           ///< loop search and pose graph
+  /// The cloud without the points of what moves; NewFrame::cloud itself if nothing does.
+  std::shared_ptr<const SurfaceCloud> still;
+  double register_ms = 0;   ///< tracking or relocalisation
+  double integrate_ms = 0;  ///< adding the surface to the map
+  double loop_ms = 0;       ///< loop search and pose graph
 };
 
 /// Tracks the camera, closes loops, and keeps trajectory and map consistent.

@@ -40,6 +40,11 @@ class FrameSample {
   /// any order if the length of the run is known, otherwise in ascending order of their indices.
   void add(const DualFrequencyFrame& recorded, const PreparedFrame& prepared);
 
+  /// Invalidates the filtered ranges of what moves in a frame that was added (reason
+  /// `free_space_violation`). `still` is its cloud without the points of what moves. Ignored if the
+  /// frame is not kept.
+  void drop_moving(int index, const SurfaceCloud& still);
+
   /// Indices below `end` that belong to the sample, but whose frames were not added. Empty if the
   /// length of the run is unknown.
   std::vector<int> missing(int end) const;

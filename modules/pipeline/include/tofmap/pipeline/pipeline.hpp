@@ -150,6 +150,9 @@ struct MapHooks {
   std::function<bool(int frames_done)> keep_going;
   /// Called with every frame that was unwrapped, in order, before it is registered.
   std::function<void(const DualFrequencyFrame& recorded, const PreparedFrame&)> on_frame;
+  /// Called after a frame in which something moves was registered, with the index of the frame and
+  /// its cloud without the points of what moves.
+  std::function<void(int index, const SurfaceCloud& still)> on_motion;
 };
 
 /// A run that maps a room from frames. It can be interrupted, saved, and resumed later.
@@ -188,7 +191,7 @@ class MapRun {
  private:
   std::vector<SourcedFrame> take_next(FrameSource& source);
   std::vector<bool> find_repeats(const std::vector<SourcedFrame>& frames);
-  void add(const PreparedFrame& frame);
+  void add(const PreparedFrame& frame, const MapHooks& hooks);
 
   SensorModel sensor_;
   PipelineOptions options_;
