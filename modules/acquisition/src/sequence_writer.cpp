@@ -127,7 +127,8 @@ SequenceWriter::SequenceWriter(std::filesystem::path folder, const SensorModel& 
 void SequenceWriter::add(const DualFrequencyFrame& frame,
                          const std::optional<Pose>& world_from_camera,
                          const std::optional<ImageF>& range_truth_m,
-                         const std::optional<ImageU8>& label_truth) {
+                         const std::optional<ImageU8>& label_truth,
+                         const std::optional<ImageU8>& moving_truth) {
   // Rounded as in the file: timestamps that differ by less than a microsecond would read back
   // equal.
   const double timestamp_s = std::round(frame.timestamp_s * 1e6) / 1e6;
@@ -156,6 +157,7 @@ void SequenceWriter::add(const DualFrequencyFrame& frame,
   const std::string listed = line.str();
   if (range_truth_m) write("range_truth", *range_truth_m, range_pixels(*range_truth_m));
   if (label_truth) write("label_truth", *label_truth, *label_truth);
+  if (moving_truth) write("moving_truth", *moving_truth, *moving_truth);
 
   if (world_from_camera) {
     const std::filesystem::path file = folder_ / "groundtruth.txt";

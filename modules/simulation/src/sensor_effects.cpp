@@ -84,8 +84,9 @@ bool Lamp::shines_on(const Eigen::Vector3d& point_m) const {
          pixel->y() < camera.height_px - 0.5;
 }
 
-PixelLight indirect_light(const RayScene& scene, const Lamp& lamp, const Eigen::Vector3d& direction,
-                          const RayHit& hit, int rays, std::uint64_t key, double wavelength_m) {
+PixelLight indirect_light(const SceneAtTime& scene, const Lamp& lamp,
+                          const Eigen::Vector3d& direction, const RayHit& hit, int rays,
+                          std::uint64_t key, double wavelength_m) {
   const Eigen::Vector3d origin = lamp.world_from_camera.translation();
   const Eigen::Vector3d normal = hit.normal.dot(direction) < 0 ? hit.normal : -hit.normal;
   const Eigen::Vector3d point = origin + hit.range_m * direction + off_surface_m * normal;

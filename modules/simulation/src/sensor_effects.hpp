@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "scene_at_time.hpp"
+
 #include <array>
 #include <complex>
 #include <cstdint>
@@ -11,7 +13,6 @@
 #include <tofmap/core/camera.hpp>
 #include <tofmap/core/modulation.hpp>
 #include <tofmap/core/trajectory.hpp>
-#include <tofmap/simulation/ray_scene.hpp>
 
 namespace tofmap {
 
@@ -72,7 +73,8 @@ struct Lamp {
 /// pixel sees along `direction`, and from there to the pixel. It is the mean over `rays` directions
 /// in the hemisphere over that point, with a cosine-weighted distribution (docs/simulator.md,
 /// equation 7). `hit` is the point; `key` shifts the pattern of directions.
-PixelLight indirect_light(const RayScene& scene, const Lamp& lamp, const Eigen::Vector3d& direction,
-                          const RayHit& hit, int rays, std::uint64_t key, double wavelength_m);
+PixelLight indirect_light(const SceneAtTime& scene, const Lamp& lamp,
+                          const Eigen::Vector3d& direction, const RayHit& hit, int rays,
+                          std::uint64_t key, double wavelength_m);
 
 }  // namespace tofmap

@@ -5,9 +5,10 @@
 
 #include "noise.hpp"
 #include "pixel_signal.hpp"
+#include "scene_at_time.hpp"
 #include "sensor_effects.hpp"
 #include "sensor_readout.hpp"
-#include "systematic_errors.hpp"
+#include "simulator_options.hpp"
 
 #include <algorithm>
 #include <array>
@@ -25,26 +26,6 @@ namespace tofmap {
 namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
-/// Checks every option as the command line does, since callers may fill the struct in code. Throws
-/// UsageError.
-SimulatorOptions checked(SimulatorOptions options) {
-  OptionTable table;
-  SimulatorOptions copy = options;
-  table.bind("simulator", copy);
-  for (const OptionField<SimulatorOptions>& field : SimulatorOptions::fields()) {
-    if (const auto* whole = std::get_if<int SimulatorOptions::*>(&field.member)) {
-      table.set("simulator." + std::string(field.name), std::to_string(options.*(*whole)));
-    } else if (const auto* number = std::get_if<double SimulatorOptions::*>(&field.member)) {
-      const double value = options.*(*number);
-      if (!(value >= field.min && value <= field.max)) {
-        table.set("simulator." + std::string(field.name), std::to_string(value));
-      }
-    }
-  }
-  check_systematic_errors(options);
-  return options;
-}
 
 SensorModel sensor_model(const SimulatorOptions& options) {
   SensorModel sensor;
@@ -96,88 +77,14 @@ CameraMotion camera_motion(const Scene& scene, const SimulatorOptions& options) 
 
 }  // namespace
 
-std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
-  using S = SimulatorOptions;
-  return {
-      {"width_px", &S::width_px, 8, 4096, "px", "image width"},
-      {"height_px", &S::height_px, 8, 4096, "px", "image height"},
-      {"horizontal_fov_deg", &S::horizontal_fov_deg, 1, 150, "deg", "horizontal field of view"},
-      {"distortion_k1", &S::distortion_k1, -10, 10, "", "radial distortion, as OpenCV's k1"},
-      {"distortion_k2", &S::distortion_k2, -10, 10, "", "radial distortion, as OpenCV's k2"},
-      {"distortion_p1", &S::distortion_p1, -1, 1, "", "tangential distortion, as OpenCV's p1"},
-      {"distortion_p2", &S::distortion_p2, -1, 1, "", "tangential distortion, as OpenCV's p2"},
-      {"distortion_k3", &S::distortion_k3, -10, 10, "", "radial distortion, as OpenCV's k3"},
-      {"frequency_a_hz", &S::frequency_a_hz, 1e6, 1e9, "Hz", "modulation frequency of image A"},
-      {"frequency_b_hz", &S::frequency_b_hz, 1e6, 1e9, "Hz", "modulation frequency of image B"},
-      {"range_noise_m", &S::range_noise_m, 0, 10, "m",
-       "standard deviation of A's range at 5 m on a surface of reflectance 0.5 facing the camera"},
-      {"subpixels", &S::subpixels, 1, 16, "", "rays per pixel along each of its sides"},
-      {"wiggle_m", &S::wiggle_m, 0, 0.2, "m",
-       "amplitude of the wiggling of A's ranges, four periods per wavelength; B has the same phase "
-       "error"},
-      {"multipath_rays", &S::multipath_rays, 0, 4096, "",
-       "rays per pixel for light that arrives by way of one other surface; 0: no such light"},
-      {"dark_level", &S::dark_level, 0, 65535, "",
-       "charge of a sample without light, in units of the amplitude; it adds shot noise"},
-      {"full_well", &S::full_well, 0, 1e6, "",
-       "largest charge that a sample can hold, in units of the amplitude; 0: no limit"},
-      {"exposure_share", &S::exposure_share, 0, 1, "",
-       "duration of the four samples of an image, as a fraction of the frame period"},
-      {"offset_a_m", &S::offset_a_m, -0.2, 0.2, "m",
-       "constant error of A's ranges, measured minus true"},
-      {"offset_b_m", &S::offset_b_m, -0.2, 0.2, "m",
-       "constant error of B's ranges, measured minus true"},
-      {"periodic_a_m", &S::periodic_a_m, 0, 0.2, "m",
-       "largest periodic error of A's ranges, with two and four periods per wavelength"},
-      {"periodic_b_m", &S::periodic_b_m, 0, 0.2, "m",
-       "largest periodic error of B's ranges, with two and four periods per wavelength"},
-      {"amplitude_error_a_m", &S::amplitude_error_a_m, -0.2, 0.2, "m",
-       "error of A's ranges at an amplitude of 60; it falls with the logarithm of the amplitude, "
-       "to 0 at 60000"},
-      {"amplitude_error_b_m", &S::amplitude_error_b_m, -0.2, 0.2, "m",
-       "error of B's ranges at an amplitude of 60; it falls with the logarithm of the amplitude, "
-       "to 0 at 60000"},
-      {"fixed_pattern_m", &S::fixed_pattern_m, 0, 0.2, "m",
-       "standard deviation of the constant range errors of individual pixels, at A and at B"},
-      {"errors_seed", &S::errors_seed, 0, 2147483647, "",
-       "seed of the periodic errors and of the fixed pattern: it stands for the camera"},
-      {"ambient_noise", &S::ambient_noise, 1, 20, "",
-       "factor by which ambient light increases the noise where it falls; 1: no ambient light"},
-      {"ambient_left", &S::ambient_left, 0, 1, "",
-       "left edge of the rectangle with ambient light, as a fraction of the image width"},
-      {"ambient_top", &S::ambient_top, 0, 1, "",
-       "upper edge of the rectangle with ambient light, as a fraction of the image height"},
-      {"ambient_right", &S::ambient_right, 0, 1, "",
-       "right edge of the rectangle with ambient light, as a fraction of the image width"},
-      {"ambient_bottom", &S::ambient_bottom, 0, 1, "",
-       "lower edge of the rectangle with ambient light, as a fraction of the image height"},
-      {"phase_bits", &S::phase_bits, 0, 16, "",
-       "rounds phases to 2^bits steps per cycle, with 4 bits or more; 0: no rounding"},
-      {"b_delay_share", &S::b_delay_share, 0, 1, "",
-       "time from A to B, as a fraction of the frame period"},
-      {"frames", &S::frames, 0, 1000000, "",
-       "number of frames to record; 0: as many as the path needs"},
-      {"frame_rate_hz", &S::frame_rate_hz, 0.01, 10000, "Hz", "frames per second"},
-      {"max_translation_m", &S::max_translation_m, 0.001, 10, "m",
-       "largest translation of the camera from frame to frame"},
-      {"max_rotation_deg", &S::max_rotation_deg, 0.01, 90, "deg",
-       "largest rotation of the camera from frame to frame"},
-      // Truth images hold millimetres in 16 bits.
-      {"max_range_m", &S::max_range_m, 0, 65.5, "m",
-       "surfaces beyond return no signal, and the recording states this limit; 0: no limit"},
-      {"trajectory_file", &S::trajectory_file, 0, 0, "",
-       "file of camera poses in TUM format, one per frame; empty: the path of the scene"},
-      {"seed", &S::seed, 0, 2147483647, "", "seed of the noise, and of the scene random"},
-  };
-}
-
 Simulator::Simulator(Scene scene, const SimulatorOptions& options, std::function<bool()> keep_going)
     : scene_(std::move(scene)),
-      options_(checked(options)),
+      options_(checked_options(options)),
       sensor_(sensor_model(options_)),
       reach_m_(options_.max_range_m > 0 ? options_.max_range_m : scene_.max_range_m),
       ray_scene_(scene_.surface),
       motion_(camera_motion(scene_, options_)),
+      bodies_(ray_scene_, motion_.at_a, options_),
       rays_(subpixel_rays(sensor_.camera, options_.subpixels)),
       noise_sigma_(noise_strength(options_.range_noise_m, sensor_.modulation)),
       keep_going_(std::move(keep_going)) {}
@@ -194,8 +101,10 @@ std::optional<SourcedFrame> Simulator::next() {
 
 /// The poses of the camera while it takes one image, and what else rays depend on.
 struct Simulator::Exposure {
-  /// At each of the four samples. All are the same if the exposure takes no time.
+  // At each of the four samples. All are the same if the exposure takes no time.
+
   std::array<Pose, 4> world_from_camera;
+  std::array<SceneAtTime, 4> scene;
   bool stands_still = true;  ///< the four poses are the same
   double wavelength_m = 0;
   std::uint64_t noise_key = 0;  ///< seed of the directions of multipath rays
@@ -212,6 +121,7 @@ struct Simulator::Exposed {
 struct Simulator::Truth {
   ImageF range_m;
   ImageF cos_incidence;
+  ImageU8 moving;  ///< 255 where the ray meets what moves, otherwise 0
 };
 
 void Simulator::check_index(int index) const {
@@ -241,9 +151,10 @@ SimulatedFrame Simulator::simulate(int index) const {
   simulated.label =
       frame.phase_b.isNaN().select(static_cast<std::uint8_t>(PixelLabel::no_return), a.label);
   simulated.world_from_camera = at_a.world_from_camera;
-  Truth truth = cast_truth(at_a.world_from_camera);
+  Truth truth = cast_truth(index);
   simulated.range_truth_m = std::move(truth.range_m);
   simulated.cos_incidence = std::move(truth.cos_incidence);
+  if (!bodies_.is_none()) simulated.moving = std::move(truth.moving);
   return simulated;
 }
 
@@ -255,49 +166,73 @@ IdealFrame Simulator::ideal(int index) const {
           .signal_a = ideal_signals(exposure_a(index)),
           .signal_b = ideal_signals(exposure_b(index)),
           .world_from_camera = at_a.world_from_camera,
-          .range_truth_m = cast_truth(at_a.world_from_camera).range_m};
+          .range_truth_m = cast_truth(index).range_m};
 }
 
 Simulator::Exposure Simulator::exposure_a(int index) const {
-  return exposure_of(motion_.at_a, index, sensor_.modulation.wavelength_a_m(),
+  return exposure_of(motion_.at_a, index, 0, sensor_.modulation.wavelength_a_m(),
                      noise_key(options_, index, ImageOfFrame::a));
 }
 
 Simulator::Exposure Simulator::exposure_b(int index) const {
-  return exposure_of(motion_.at_b, index, sensor_.modulation.wavelength_b_m(),
+  return exposure_of(motion_.at_b, index, options_.b_delay_share,
+                     sensor_.modulation.wavelength_b_m(),
                      noise_key(options_, index, ImageOfFrame::b));
 }
 
-/// The exposure of one image. Its four samples are evenly spaced around the time of the image.
-Simulator::Exposure Simulator::exposure_of(const Trajectory& poses, int index, double wavelength_m,
-                                           std::uint64_t key) const {
+/// The time `share` of a frame period after the timestamp of a frame.
+double Simulator::time_s(int index, double share) const {
+  const Trajectory& poses = motion_.at_a;
+  const auto i = static_cast<std::size_t>(index);
+  if (poses.size() == 1) return poses[i].timestamp_s + share / options_.frame_rate_hz;
+  const std::size_t from = std::min(i, poses.size() - 2);
+  return poses[i].timestamp_s + share * (poses[from + 1].timestamp_s - poses[from].timestamp_s);
+}
+
+SceneAtTime Simulator::scene_at(double time_s) const {
+  if (bodies_.is_none()) return {&ray_scene_, nullptr};
+  const TriangleMesh surface = bodies_.surface_at(time_s);
+  if (surface.triangles.empty()) return {&ray_scene_, nullptr};
+  return {&ray_scene_, std::make_shared<const RayScene>(surface)};
+}
+
+/// The exposure of one image, which is taken `delay_share` of a frame period after the timestamp.
+/// Its four samples are evenly spaced around the time of the image.
+Simulator::Exposure Simulator::exposure_of(const Trajectory& poses, int index, double delay_share,
+                                           double wavelength_m, std::uint64_t key) const {
   Exposure exposure;
   exposure.wavelength_m = wavelength_m;
   exposure.noise_key = key;
   const auto i = static_cast<std::size_t>(index);
-  exposure.world_from_camera.fill(poses[i].world_from_camera);
-  if (options_.exposure_share == 0 || poses.size() == 1) return exposure;
+  if (options_.exposure_share == 0 || poses.size() == 1) {
+    exposure.world_from_camera.fill(poses[i].world_from_camera);
+    exposure.scene.fill(scene_at(time_s(index, delay_share)));
+    return exposure;
+  }
   exposure.stands_still = false;
   const bool is_last = i + 1 == poses.size();
   const Pose& from = poses[is_last ? i - 1 : i].world_from_camera;
   const Pose& to = poses[is_last ? i : i + 1].world_from_camera;
-  for (int k = 0; k < 4; ++k) {
-    const double share = (is_last ? 1 : 0) + options_.exposure_share * (k - 1.5) / 4;
-    exposure.world_from_camera[static_cast<std::size_t>(k)] = interpolate(from, to, share);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double off_share = options_.exposure_share * (static_cast<double>(k) - 1.5) / 4;
+    exposure.world_from_camera[k] = interpolate(from, to, (is_last ? 1 : 0) + off_share);
+    exposure.scene[k] = scene_at(time_s(index, delay_share + off_share));
   }
   return exposure;
 }
 
-/// The light that reaches one pixel at one pose. Sets the directions and hits of `rays`.
-PixelLight Simulator::light_of(std::size_t pixel, const Exposure& exposure,
-                               const Pose& world_from_camera, std::vector<SubRay>& rays) const {
+/// The light that reaches one pixel at one sample. Sets the directions and hits of `rays`.
+PixelLight Simulator::light_of(std::size_t pixel, const Exposure& exposure, std::size_t sample,
+                               std::vector<SubRay>& rays) const {
+  const Pose& world_from_camera = exposure.world_from_camera[sample];
+  const SceneAtTime& scene = exposure.scene[sample];
   const Eigen::Matrix3d turn = world_from_camera.linear();
   const Eigen::Vector3d origin = world_from_camera.translation();
   PixelLight light;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     SubRay& ray = rays[i];
     ray.direction = turn * rays_[pixel * rays.size() + i].cast<double>();
-    ray.hit = ray_scene_.cast(origin, ray.direction, reach_m_);
+    ray.hit = scene.cast(origin, ray.direction, reach_m_);
     if (!ray.hit) continue;
     const RayHit& hit = *ray.hit;
     const double strength =
@@ -309,8 +244,8 @@ PixelLight Simulator::light_of(std::size_t pixel, const Exposure& exposure,
   if (options_.multipath_rays > 0 && middle.hit) {
     const std::uint64_t key = mix(exposure.noise_key ^ mix(pixel));
     const Lamp lamp{sensor_.camera, world_from_camera, reach_m_};
-    light += indirect_light(ray_scene_, lamp, middle.direction, *middle.hit,
-                            options_.multipath_rays, key, exposure.wavelength_m);
+    light += indirect_light(scene, lamp, middle.direction, *middle.hit, options_.multipath_rays,
+                            key, exposure.wavelength_m);
   }
   return light;
 }
@@ -322,9 +257,9 @@ std::optional<std::complex<double>> Simulator::ideal_signal(std::size_t pixel,
                                                             const SensorEffects& effects,
                                                             std::vector<SubRay>& rays) const {
   std::array<PixelLight, 4> samples;
-  samples.fill(light_of(pixel, exposure, exposure.world_from_camera[0], rays));
+  samples.fill(light_of(pixel, exposure, 0, rays));
   for (std::size_t k = 1; k < samples.size() && !exposure.stands_still; ++k) {
-    samples[k] = light_of(pixel, exposure, exposure.world_from_camera[k], rays);
+    samples[k] = light_of(pixel, exposure, k, rays);
   }
   const bool any_hit =
       std::ranges::any_of(rays, [](const SubRay& ray) { return ray.hit.has_value(); }) ||
@@ -382,16 +317,19 @@ Simulator::Exposed Simulator::expose(const Exposure& exposure, const SensorReado
   return out;
 }
 
-Simulator::Truth Simulator::cast_truth(const Pose& world_from_camera) const {
+Simulator::Truth Simulator::cast_truth(int index) const {
+  const Pose& world_from_camera = motion_.at_a[static_cast<std::size_t>(index)].world_from_camera;
+  const SceneAtTime scene = scene_at(time_s(index, 0));
   const ImageF nothing = ImageF::Constant(sensor_.camera.height_px, sensor_.camera.width_px, nan);
-  Truth truth{nothing, nothing};
+  Truth truth{nothing, nothing, ImageU8::Zero(nothing.rows(), nothing.cols())};
   for (int v = 0; v < sensor_.camera.height_px && !is_stopped(); ++v) {
     for (int u = 0; u < sensor_.camera.width_px; ++u) {
       const Eigen::Vector3d ray = world_from_camera.linear() * pixel_ray(sensor_.camera, u, v);
-      const auto hit = ray_scene_.cast(world_from_camera.translation(), ray, reach_m_);
+      const auto hit = scene.cast(world_from_camera.translation(), ray, reach_m_);
       if (!hit) continue;
       truth.range_m(v, u) = static_cast<float>(hit->range_m);
       truth.cos_incidence(v, u) = static_cast<float>(hit->cos_incidence);
+      truth.moving(v, u) = hit->is_moving ? 255 : 0;
     }
   }
   return truth;
@@ -407,7 +345,8 @@ int simulate_sequence(const Simulator& simulator, const std::filesystem::path& f
     const SimulatedFrame simulated = simulator.simulate(i);
     if (simulator.is_stopped()) break;
     writer.add(simulated.frame, simulated.world_from_camera, simulated.range_truth_m,
-               simulated.label);
+               simulated.label,
+               simulator.bodies().is_none() ? std::nullopt : std::optional(simulated.moving));
   }
   return writer.count();
 }

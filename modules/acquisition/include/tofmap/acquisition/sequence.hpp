@@ -96,7 +96,8 @@ class SequenceWriter {
   /// Throws InputError, which names the file, if a file cannot be written.
   void add(const DualFrequencyFrame& frame, const std::optional<Pose>& world_from_camera = {},
            const std::optional<ImageF>& range_truth_m = {},
-           const std::optional<ImageU8>& label_truth = {});
+           const std::optional<ImageU8>& label_truth = {},
+           const std::optional<ImageU8>& moving_truth = {});
 
   /// Number of frames written.
   int count() const { return count_; }

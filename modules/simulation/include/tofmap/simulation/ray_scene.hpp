@@ -18,6 +18,7 @@ struct RayHit {
   double reflectance = 0;    ///< 0 … 1
   /// Unit normal of the surface, world frame. It may point to either side.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  bool is_moving = false;  ///< whether the surface belongs to what moves in the scene
 };
 
 /// A mesh prepared for exact ray casting (Embree). Queries may come from several threads at the

@@ -13,6 +13,7 @@
 #include <tofmap/acquisition/frame_source.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/simulation/ideal_frame.hpp>
+#include <tofmap/simulation/moving_bodies.hpp>
 #include <tofmap/simulation/ray_scene.hpp>
 #include <tofmap/simulation/scenes.hpp>
 
@@ -133,8 +134,17 @@ struct SimulatorOptions {
   /// the path of the scene.
   std::string trajectory_file;
 
-  /// Seed of the noise, 0 or larger. The program and the device also use it for the room of the
-  /// scene `random`.
+  // What moves.
+
+  /// Number of people, 0 … 8. They walk to and fro ahead of the camera and keep its pace.
+  int people = 0;
+
+  /// Mean horizontal range from the camera to the first person, 0.8 … 10 m. Each further person
+  /// walks 30 % of it farther away.
+  double people_range_m = 1.7;
+
+  /// Seed of the noise and of people, 0 or larger. The program and the device also use it for the
+  /// room of the scene `random`.
   int seed = 1;
 
   static std::vector<OptionField<SimulatorOptions>> fields();
@@ -152,9 +162,12 @@ struct SimulatedFrame {
   ImageF range_truth_m;    ///< along the ray of the pixel's centre; NaN if it meets no surface
   ImageF cos_incidence;    ///< of that ray at the surface, 0 … 1; NaN if it meets no surface
   ImageU8 label;           ///< PixelLabel as a number
+  /// 255 where that ray meets what moves, otherwise 0. Empty if nothing moves in the recording.
+  ImageU8 moving;
 };
 
 struct PixelLight;
+struct SceneAtTime;
 struct SensorEffects;
 struct SensorReadout;
 struct SubRay;
@@ -201,8 +214,12 @@ class Simulator final : public FrameSource {
   /// Camera poses when the images A are taken.
   const Trajectory& trajectory() const { return motion_.at_a; }
 
+  /// The surface that does not move.
   const TriangleMesh& surface() const { return scene_.surface; }
   const RayScene& rays() const { return ray_scene_; }
+
+  /// What moves.
+  const MovingBodies& bodies() const { return bodies_; }
 
   /// Standard deviation of the noise of each component of the complex signal, in units of the
   /// amplitude, without ambient light and dark charge. The phase noise of a pixel is noise_sigma()
@@ -215,19 +232,21 @@ class Simulator final : public FrameSource {
   void check_index(int index) const;
   Exposure exposure_a(int index) const;
   Exposure exposure_b(int index) const;
-  Exposure exposure_of(const Trajectory& poses, int index, double wavelength_m,
+  double time_s(int index, double share) const;
+  SceneAtTime scene_at(double time_s) const;
+  Exposure exposure_of(const Trajectory& poses, int index, double delay_share, double wavelength_m,
                        std::uint64_t key) const;
   template <class Visit>
   void for_each_signal(const Exposure& exposure, const Visit& visit) const;
   ImageC ideal_signals(const Exposure& exposure) const;
   Exposed expose(const Exposure& exposure, const SensorReadout& readout, bool with_labels) const;
-  PixelLight light_of(std::size_t pixel, const Exposure& exposure, const Pose& world_from_camera,
+  PixelLight light_of(std::size_t pixel, const Exposure& exposure, std::size_t sample,
                       std::vector<SubRay>& rays) const;
   std::optional<std::complex<double>> ideal_signal(std::size_t pixel, const Exposure& exposure,
                                                    const SensorEffects& effects,
                                                    std::vector<SubRay>& rays) const;
   struct Truth;
-  Truth cast_truth(const Pose& world_from_camera) const;
+  Truth cast_truth(int index) const;
 
   Scene scene_;
   SimulatorOptions options_;
@@ -235,13 +254,15 @@ class Simulator final : public FrameSource {
   double reach_m_ = 0;  ///< range at which rays end
   RayScene ray_scene_;
   CameraMotion motion_;
+  MovingBodies bodies_;
   std::vector<Eigen::Vector3f> rays_;  ///< camera frame; row by row, the rays of a pixel together
   double noise_sigma_ = 0;
   int next_index_ = 0;
   std::function<bool()> keep_going_;
 };
 
-/// Writes all frames as a sequence, with groundtruth.txt, range_truth/, label_truth/ and scene.ply,
+/// Writes all frames as a sequence, with groundtruth.txt, range_truth/, label_truth/, scene.ply
+/// and, if something moves, moving_truth/,
 /// into a new or empty folder. `keep_going(done, total)` is called before each frame. If it returns
 /// false, or if the simulator is stopped, the frames so far remain as a complete sequence. Returns
 /// the number of frames written. Throws InputError if a file cannot be written.

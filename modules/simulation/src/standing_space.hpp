@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <tofmap/core/trajectory.hpp>
+#include <tofmap/simulation/ray_scene.hpp>
+
+namespace tofmap {
+
+/// The places near a camera path on which people can stand: floor that is free up to a person's
+/// height, and that can be reached on foot from beneath the path. World frame, z up.
+///
+/// The floor is found by casting rays downwards. If they meet nothing beneath the whole path, the
+/// floor is taken to be 1.5 m beneath the camera.
+class StandingSpace {
+ public:
+  /// Explores the floor up to `reach_m` away from the path, on foot.
+  StandingSpace(const RayScene& still, const Trajectory& path, double reach_m);
+
+  /// The height of the floor beneath a camera position, metres.
+  double floor_beneath_m(const Eigen::Vector3d& camera_m) const;
+
+  /// Whether a person can stand within a cell of `foot_m`, a point on the floor.
+  bool is_free(const Eigen::Vector3d& foot_m) const;
+
+ private:
+  struct Cell {
+    double floor_m = 0;
+    bool is_free = false;
+    int steps = 0;  ///< from the path
+  };
+  static std::uint64_t key(int col, int row, double floor_m);
+  std::optional<double> drop_m(const Eigen::Vector3d& from, double limit_m) const;
+  Cell inspect(int col, int row, double near_floor_m, int steps) const;
+  const Cell* find(int col, int row, double floor_m) const;
+  void explore(const Trajectory& path, int max_steps);
+
+  const RayScene& still_;
+  double eye_height_m_ = 1.5;  ///< of the camera over the floor, the median along the path
+  bool has_floor_ = false;
+  std::unordered_map<std::uint64_t, Cell> cells_;
+};
+
+}  // namespace tofmap
