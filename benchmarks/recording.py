@@ -21,10 +21,16 @@ def frames(sequence):
         return [line.split() for line in file if line.strip() and not line.startswith("#")]
 
 
-def position_errors_m(path, truth):
-    """Errors of the positions of a path after the rigid alignment that fits it best to the truth
-    (Umeyama 1991). Both have a row of three coordinates for each frame."""
+def best_alignment(path, truth):
+    """The rotation and translation that fit a path best to the truth (Umeyama 1991). Both have a row
+    of three coordinates for each frame."""
     centred, wanted = path - path.mean(axis=0), truth - truth.mean(axis=0)
     u, _, vt = numpy.linalg.svd(wanted.T @ centred)
-    flip = numpy.diag([1, 1, numpy.sign(numpy.linalg.det(u @ vt))])
-    return numpy.linalg.norm(wanted - centred @ (u @ flip @ vt).T, axis=1)
+    rotation = u @ numpy.diag([1, 1, numpy.sign(numpy.linalg.det(u @ vt))]) @ vt
+    return rotation, truth.mean(axis=0) - rotation @ path.mean(axis=0)
+
+
+def position_errors_m(path, truth):
+    """Errors of the positions of a path after the alignment that fits it best to the truth."""
+    rotation, translation = best_alignment(path, truth)
+    return numpy.linalg.norm(path @ rotation.T + translation - truth, axis=1)

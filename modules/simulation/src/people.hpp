@@ -1,20 +1,17 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
+
 #pragma once
 
+#include "walk_ahead.hpp"
 #include "walker.hpp"
 
 #include <vector>
 
-#include <tofmap/core/trajectory.hpp>
-#include <tofmap/simulation/ray_scene.hpp>
-
 namespace tofmap {
 
-struct SimulatorOptions;
-
-/// The people of a recording. `camera` are the poses of the camera, with increasing timestamps.
-std::vector<Walker> walking_people(const RayScene& still, const Trajectory& camera,
-                                   const SimulatorOptions& options);
+/// The people of a recording. There are fewer than the options ask for if people on paths of their
+/// own do not find enough free space.
+std::vector<Walker> walking_people(const WalkSurroundings& around, const SimulatorOptions& options);
 
 }  // namespace tofmap

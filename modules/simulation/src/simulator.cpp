@@ -75,6 +75,12 @@ CameraMotion camera_motion(const Scene& scene, const SimulatorOptions& options) 
                      options.b_delay_share);
 }
 
+/// The rays of a scene, to whose surface the frames of doors are added.
+RayScene with_frames(Scene& scene, const MovingBodies& bodies) {
+  bodies.add_frames(scene.surface);
+  return RayScene(scene.surface);
+}
+
 }  // namespace
 
 Simulator::Simulator(Scene scene, const SimulatorOptions& options, std::function<bool()> keep_going)
@@ -82,9 +88,9 @@ Simulator::Simulator(Scene scene, const SimulatorOptions& options, std::function
       options_(checked_options(options)),
       sensor_(sensor_model(options_)),
       reach_m_(options_.max_range_m > 0 ? options_.max_range_m : scene_.max_range_m),
-      ray_scene_(scene_.surface),
       motion_(camera_motion(scene_, options_)),
-      bodies_(ray_scene_, motion_.at_a, options_),
+      bodies_(scene_.surface, motion_.at_a, sensor_.camera, options_),
+      ray_scene_(with_frames(scene_, bodies_)),
       rays_(subpixel_rays(sensor_.camera, options_.subpixels)),
       noise_sigma_(noise_strength(options_.range_noise_m, sensor_.modulation)),
       keep_going_(std::move(keep_going)) {}
@@ -154,7 +160,7 @@ SimulatedFrame Simulator::simulate(int index) const {
   Truth truth = cast_truth(index);
   simulated.range_truth_m = std::move(truth.range_m);
   simulated.cos_incidence = std::move(truth.cos_incidence);
-  if (!bodies_.is_none()) simulated.moving = std::move(truth.moving);
+  if (!bodies_.are_none()) simulated.moving = std::move(truth.moving);
   return simulated;
 }
 
@@ -190,7 +196,7 @@ double Simulator::time_s(int index, double share) const {
 }
 
 SceneAtTime Simulator::scene_at(double time_s) const {
-  if (bodies_.is_none()) return {&ray_scene_, nullptr};
+  if (bodies_.are_none()) return {&ray_scene_, nullptr};
   const TriangleMesh surface = bodies_.surface_at(time_s);
   if (surface.triangles.empty()) return {&ray_scene_, nullptr};
   return {&ray_scene_, std::make_shared<const RayScene>(surface)};
@@ -346,7 +352,7 @@ int simulate_sequence(const Simulator& simulator, const std::filesystem::path& f
     if (simulator.is_stopped()) break;
     writer.add(simulated.frame, simulated.world_from_camera, simulated.range_truth_m,
                simulated.label,
-               simulator.bodies().is_none() ? std::nullopt : std::optional(simulated.moving));
+               simulator.bodies().are_none() ? std::nullopt : std::optional(simulated.moving));
   }
   return writer.count();
 }

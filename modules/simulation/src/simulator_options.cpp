@@ -7,6 +7,12 @@
 
 namespace tofmap {
 
+std::span<const NamedValue<PeoplePaths>> named_values(PeoplePaths) {
+  static constexpr NamedValue<PeoplePaths> values[] = {
+      {"ahead", PeoplePaths::ahead}, {"own", PeoplePaths::own}, {"both", PeoplePaths::both}};
+  return values;
+}
+
 std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
   using S = SimulatorOptions;
   return {
@@ -78,11 +84,14 @@ std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
        "surfaces beyond return no signal, and the recording states this limit; 0: no limit"},
       {"trajectory_file", &S::trajectory_file, 0, 0, "",
        "file of camera poses in TUM format, one per frame; empty: the path of the scene"},
-      {"people", &S::people, 0, 8, "", "number of people who walk about"},
+      {"people", &S::people, 0, 8, "", "largest number of people who walk about"},
+      {"people_paths", &S::people_paths, 0, 0, "",
+       "where people walk: ahead of the camera, on lines of their own, or by turns"},
       {"people_range_m", &S::people_range_m, 0.8, 10, "m",
-       "how far from the camera the nearest person walks, on average"},
+       "mean range from the camera to the nearest person ahead of it"},
+      {"doors", &S::doors, 0, 8, "", "largest number of doors that open and shut"},
       {"seed", &S::seed, 0, 2147483647, "",
-       "seed of the noise, of people, and of the scene random"},
+       "seed of the noise, of people and doors, and of the scene random"},
   };
 }
 

@@ -38,7 +38,7 @@ StandingSpace::StandingSpace(const RayScene& still, const Trajectory& path, doub
     std::ranges::nth_element(drops, middle);
     eye_height_m_ = *middle;
   }
-  explore(path, static_cast<int>(reach_m / cell_m));
+  explore(path, static_cast<int>((reach_m + eye_height_m_) / cell_m));
 }
 
 double StandingSpace::floor_beneath_m(const Vector3d& camera_m) const {
@@ -54,6 +54,23 @@ bool StandingSpace::is_free(const Vector3d& foot_m) const {
   return cell != nullptr && cell->is_free;
 }
 
+void StandingSpace::block(const Vector3d& centre_m, double radius_m) {
+  for (auto& [key, cell] : cells_) {
+    if ((cell.middle_m - centre_m).head<2>().norm() < radius_m) cell.is_free = false;
+  }
+}
+
+std::vector<Vector3d> StandingSpace::free_places(double spacing_m) const {
+  const int every = std::max(1, static_cast<int>(std::lround(spacing_m / cell_m)));
+  std::vector<Vector3d> places;
+  for (const auto& [key, cell] : cells_) {
+    const bool is_on_grid =
+        cell_of(cell.middle_m.x()) % every == 0 && cell_of(cell.middle_m.y()) % every == 0;
+    if (cell.is_free && is_on_grid) places.push_back(cell.middle_m);
+  }
+  return places;
+}
+
 std::uint64_t StandingSpace::key(int col, int row, double floor_m) {
   const auto part = [](int value) { return static_cast<std::uint64_t>(value + (1 << 20)); };
   return (part(col) << 42U) | (part(row) << 21U) |
@@ -67,14 +84,12 @@ std::optional<double> StandingSpace::drop_m(const Vector3d& from, double limit_m
 
 /// The cell as it is found by someone who stands next to it, on a floor of the given height.
 StandingSpace::Cell StandingSpace::inspect(int col, int row, double near_floor_m, int steps) const {
-  Cell cell{near_floor_m, false, steps};
-  Vector3d place((col + 0.5) * cell_m, (row + 0.5) * cell_m, near_floor_m);
+  Cell cell{{(col + 0.5) * cell_m, (row + 0.5) * cell_m, near_floor_m}, false, steps};
   if (has_floor_) {
-    const auto drop = drop_m(place + Vector3d(0, 0, 2 * max_step_up_m), 3 * max_step_up_m);
+    const auto drop = drop_m(cell.middle_m + Vector3d(0, 0, 2 * max_step_up_m), 3 * max_step_up_m);
     if (!drop) return cell;
-    cell.floor_m = near_floor_m + 2 * max_step_up_m - *drop;
-    if (cell.floor_m > near_floor_m + max_step_up_m) return cell;
-    place.z() = cell.floor_m;
+    cell.middle_m.z() = near_floor_m + 2 * max_step_up_m - *drop;
+    if (cell.middle_m.z() > near_floor_m + max_step_up_m) return cell;
   }
   // Balls from the floor to the top of the head.
   constexpr double lift_m = 0.03;
@@ -82,7 +97,7 @@ StandingSpace::Cell StandingSpace::inspect(int col, int row, double near_floor_m
   constexpr int balls = 6;
   for (int i = 0; i < balls; ++i) {
     const double height_m = clearance_m + lift_m + i * (top_m - clearance_m - lift_m) / (balls - 1);
-    if (still_.clearance_m(place + Vector3d(0, 0, height_m), clearance_m) < clearance_m) {
+    if (still_.clearance_m(cell.middle_m + Vector3d(0, 0, height_m), clearance_m) < clearance_m) {
       return cell;
     }
   }
@@ -94,7 +109,7 @@ const StandingSpace::Cell* StandingSpace::find(int col, int row, double floor_m)
   for (const double offset_m : {0.0, -level_m, level_m}) {
     const auto found = cells_.find(key(col, row, floor_m + offset_m));
     if (found == cells_.end()) continue;
-    if (std::abs(found->second.floor_m - floor_m) < level_m / 2 + 0.01) return &found->second;
+    if (std::abs(found->second.middle_m.z() - floor_m) < level_m / 2 + 0.01) return &found->second;
   }
   return nullptr;
 }
@@ -111,8 +126,8 @@ void StandingSpace::explore(const Trajectory& path, int max_steps) {
   const auto visit = [&](int col, int row, double near_floor_m, int steps) {
     if (find(col, row, near_floor_m) != nullptr) return;
     const Cell cell = inspect(col, row, near_floor_m, steps);
-    cells_.emplace(key(col, row, cell.floor_m), cell);
-    if (cell.is_free && steps < max_steps) open.push({col, row, cell.floor_m, steps});
+    cells_.emplace(key(col, row, cell.middle_m.z()), cell);
+    if (cell.is_free && steps < max_steps) open.push({col, row, cell.middle_m.z(), steps});
   };
   for (const StampedPose& pose : path) {
     const Vector3d camera_m = pose.world_from_camera.translation();

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
-#include <unordered_map>
 #include <vector>
 
 #include <Eigen/Core>
@@ -21,8 +21,12 @@ namespace tofmap {
 /// floor is taken to be 1.5 m beneath the camera.
 class StandingSpace {
  public:
-  /// Explores the floor up to `reach_m` away from the path, on foot.
+  /// Explores the floor up to `reach_m` away from the path, on foot, and farther beneath a camera
+  /// that is high above the floor.
   StandingSpace(const RayScene& still, const Trajectory& path, double reach_m);
+
+  /// Whether rays find a floor beneath the path.
+  bool has_floor() const { return has_floor_; }
 
   /// The height of the floor beneath a camera position, metres.
   double floor_beneath_m(const Eigen::Vector3d& camera_m) const;
@@ -30,9 +34,15 @@ class StandingSpace {
   /// Whether a person can stand within a cell of `foot_m`, a point on the floor.
   bool is_free(const Eigen::Vector3d& foot_m) const;
 
+  /// Makes all places within `radius_m` of a point, horizontally, not free.
+  void block(const Eigen::Vector3d& centre_m, double radius_m);
+
+  /// Free places about `spacing_m` apart, on a grid.
+  std::vector<Eigen::Vector3d> free_places(double spacing_m) const;
+
  private:
   struct Cell {
-    double floor_m = 0;
+    Eigen::Vector3d middle_m;  ///< on the floor
     bool is_free = false;
     int steps = 0;  ///< from the path
   };
@@ -45,7 +55,7 @@ class StandingSpace {
   const RayScene& still_;
   double eye_height_m_ = 1.5;  ///< of the camera over the floor, the median along the path
   bool has_floor_ = false;
-  std::unordered_map<std::uint64_t, Cell> cells_;
+  std::map<std::uint64_t, Cell> cells_;  ///< sorted, so that their order is always the same
 };
 
 }  // namespace tofmap

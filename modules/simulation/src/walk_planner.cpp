@@ -15,8 +15,8 @@ using Eigen::Vector3d;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double easy_speed_m_per_s = 1.5;
 constexpr double max_speed_m_per_s = 3;
-constexpr double absence_cost_per_s = 30;
-constexpr double leaving_cost = 15;  ///< also of coming back
+constexpr double absence_cost_per_s = 60;
+constexpr double leaving_cost = 30;  ///< also of coming back
 
 /// The states of one time: the places and, last, absence.
 struct Stage {
@@ -58,6 +58,11 @@ Stage next_stage(const Stage& last, std::vector<WalkPlace> places, double step_s
 }
 
 }  // namespace
+
+double cost_of_offset(double off_m) {
+  constexpr double near_m = 0.2;
+  return 2 * (std::hypot(1, off_m / near_m) - 1);
+}
 
 WalkedPlaces cheapest_walk(int steps, double step_s,
                            const std::function<std::vector<WalkPlace>(int step)>& places) {

@@ -16,11 +16,15 @@ struct WalkPlace {
   double cost_per_s = 0;  ///< how undesirable it is to be there
 };
 
+/// The cost per second of being `off_m` away from the wanted place: the square of off_m / 0.2 m
+/// near by, and proportional to it farther away.
+double cost_of_offset(double off_m);
+
 /// Where a person is at evenly spaced times. Empty while the person is not in the scene.
 using WalkedPlaces = std::vector<std::optional<Eigen::Vector3d>>;
 
-/// The cheapest walk through one place of `places(i)` at each of `steps` times, `step_s` apart
-/// (Viterbi's algorithm). Walking costs the square of the speed over 1.5 m/s for each second, and
+/// The cheapest walk through one of `places(i)` at each of `steps` times, `step_s` apart
+/// (Viterbi's algorithm). Walking costs (speed / 1.5 m/s)² per second, and
 /// nobody walks faster than 3 m/s. A person who finds no place leaves the scene, which costs as
 /// much as being at a bad place for some seconds.
 WalkedPlaces cheapest_walk(int steps, double step_s,

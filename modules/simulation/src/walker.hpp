@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "person_shape.hpp"
 #include "walk_planner.hpp"
 
 #include <optional>
 #include <vector>
+
+#include <tofmap/simulation/person.hpp>
 
 namespace tofmap {
 

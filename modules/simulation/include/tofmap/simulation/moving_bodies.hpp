@@ -1,33 +1,46 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
+
 #pragma once
 
 #include <memory>
+#include <vector>
 
+#include <tofmap/core/camera.hpp>
 #include <tofmap/core/trajectory.hpp>
-#include <tofmap/simulation/ray_scene.hpp>
+#include <tofmap/simulation/door.hpp>
+#include <tofmap/simulation/person.hpp>
 #include <tofmap/simulation/triangle_mesh.hpp>
 
 namespace tofmap {
 
 struct SimulatorOptions;
 
-/// What moves in a simulated scene: people (docs/simulator.md). Where they are at a time depends
-/// only on the scene, the poses of the camera, and the options. World frame, metres.
+/// What moves in a simulated scene: people and doors (docs/simulator.md). Where they are at a time
+/// depends only on the scene, the path of the camera, and the options. World frame, metres.
 class MovingBodies {
  public:
-  /// Plans all motion of a recording. `still` is the surface that does not move, and `camera` are
-  /// the poses of the camera, of which there must be at least one, with increasing timestamps.
-  MovingBodies(const RayScene& still, const Trajectory& camera, const SimulatorOptions& options);
+  /// Plans all motion of a recording. `still` is the surface that does not move, and `camera_path`
+  /// the poses of the camera at its frames: one or more, with increasing timestamps.
+  MovingBodies(const TriangleMesh& still, const Trajectory& camera_path, const CameraModel& camera,
+               const SimulatorOptions& options);
   MovingBodies(MovingBodies&&) noexcept;
   MovingBodies& operator=(MovingBodies&&) noexcept;
   ~MovingBodies();
 
-  /// Whether the options ask for nothing that moves.
-  bool is_none() const;
+  /// Whether nothing ever moves.
+  bool are_none() const;
 
-  /// The surface of all that moves, as it is at a time. Empty if nothing is in the scene then.
+  const std::vector<Door>& doors() const;
+
+  /// The postures of the people who are in the scene at a time.
+  std::vector<PersonStance> people_at(double time_s) const;
+
+  /// The surface of people and leaves of doors at a time. Empty if nothing is in the scene then.
   TriangleMesh surface_at(double time_s) const;
+
+  /// Adds the frames of the doors, which do not move, to a surface.
+  void add_frames(TriangleMesh& still) const;
 
  private:
   struct Plan;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,15 @@
 #include <tofmap/simulation/scenes.hpp>
 
 namespace tofmap {
+
+/// Where people walk in a simulated scene.
+enum class PeoplePaths : std::uint8_t {
+  ahead,  ///< to and fro ahead of the camera, whose pace they keep
+  own,    ///< to and fro on lines through the free space of the scene
+  both,   ///< the first, third … person ahead of the camera, the others on lines of their own
+};
+
+std::span<const NamedValue<PeoplePaths>> named_values(PeoplePaths);
 
 /// Options of the simulated camera (docs/simulator.md, to which equations refer). By default its
 /// only errors are noise, mixed pixels and the motion between A and B.
@@ -136,15 +146,20 @@ struct SimulatorOptions {
 
   // What moves.
 
-  /// Number of people, 0 … 8. They walk to and fro ahead of the camera and keep its pace.
+  /// Largest number of people, 0 … 8. There are fewer where the scene lacks free space.
   int people = 0;
 
-  /// Mean horizontal range from the camera to the first person, 0.8 … 10 m. Each further person
-  /// walks 30 % of it farther away.
+  PeoplePaths people_paths = PeoplePaths::ahead;  ///< where people walk
+
+  /// Mean horizontal range from the camera to the first person who walks ahead of it, 0.8 … 10 m.
+  /// Each further one walks 30 % of it farther away.
   double people_range_m = 1.7;
 
-  /// Seed of the noise and of people, 0 or larger. The program and the device also use it for the
-  /// room of the scene `random`.
+  /// Largest number of doors that open and shut, 0 … 8. There are fewer where walls lack the space.
+  int doors = 0;
+
+  /// Seed of the noise, of people and of doors, 0 or larger. The program and the device also use it
+  /// for the room of the scene `random`.
   int seed = 1;
 
   static std::vector<OptionField<SimulatorOptions>> fields();
@@ -214,7 +229,7 @@ class Simulator final : public FrameSource {
   /// Camera poses when the images A are taken.
   const Trajectory& trajectory() const { return motion_.at_a; }
 
-  /// The surface that does not move.
+  /// The surface that does not move, with the frames of doors.
   const TriangleMesh& surface() const { return scene_.surface; }
   const RayScene& rays() const { return ray_scene_; }
 
@@ -252,9 +267,9 @@ class Simulator final : public FrameSource {
   SimulatorOptions options_;
   SensorModel sensor_;
   double reach_m_ = 0;  ///< range at which rays end
-  RayScene ray_scene_;
   CameraMotion motion_;
   MovingBodies bodies_;
+  RayScene ray_scene_;
   std::vector<Eigen::Vector3f> rays_;  ///< camera frame; row by row, the rays of a pixel together
   double noise_sigma_ = 0;
   int next_index_ = 0;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "person_shape.hpp"
+#include "tofmap/simulation/person.hpp"
 
 #include <algorithm>
 #include <cmath>
