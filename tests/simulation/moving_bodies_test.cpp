@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -23,10 +26,18 @@ SimulatorOptions busy_options() {
   return options;
 }
 
-/// A simulator whose people and doors are looked at from time to time.
+/// The simulator of a scene with people and doors. All tests share it, since planning takes time.
+const Simulator& busy_simulator(const std::string& scene) {
+  static std::map<std::string, Simulator> simulators;
+  const auto found = simulators.find(scene);
+  if (found != simulators.end()) return found->second;
+  return simulators.try_emplace(scene, make_scene(scene), busy_options()).first->second;
+}
+
+/// People and doors are looked at from time to time.
 class MovingBodiesInScene : public testing::TestWithParam<std::string> {
  protected:
-  MovingBodiesInScene() : simulator_(make_scene(GetParam()), busy_options()) {}
+  MovingBodiesInScene() : simulator_(busy_simulator(GetParam())) {}
 
   const MovingBodies& bodies() const { return simulator_.bodies(); }
   double end_s() const { return simulator_.trajectory().back().timestamp_s; }
@@ -43,7 +54,7 @@ class MovingBodiesInScene : public testing::TestWithParam<std::string> {
     return way.norm() > 0 && simulator_.rays().cast(from, way.normalized(), way.norm()).has_value();
   }
 
-  Simulator simulator_;
+  const Simulator& simulator_;
 };
 
 constexpr double look_every_s = 0.37;

@@ -195,6 +195,25 @@ TEST(MovingSimulation, SequenceHoldsWhatMovesOnlyIfSomethingDoes) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "without/moving_truth"));
 }
 
+TEST(MovingSimulation, ThingsMoveInMeshFilesAndOnTrajectoryFilesToo) {
+  const test::TemporaryFolder folder;
+  const auto mesh = folder.path() / "room.ply";
+  write_mesh_ply(mesh, make_scene("room").surface);
+  SimulatorOptions options = with_person(30);
+  options.doors = 1;
+  const Simulator in_mesh(find_scene(mesh.string()), options);
+  EXPECT_EQ(in_mesh.bodies().doors().size(), 1U);
+  EXPECT_EQ(in_mesh.bodies().people_at(1).size(), 1U);
+  EXPECT_GT(moving_share(in_mesh.simulate(15)), 0.03);
+
+  const auto poses = folder.path() / "poses.txt";
+  write_trajectory(poses, in_mesh.trajectory());
+  options.trajectory_file = poses.string();
+  const Simulator on_path(make_scene("room"), options);
+  EXPECT_EQ(on_path.bodies().doors().size(), 1U);
+  EXPECT_GT(moving_share(on_path.simulate(15)), 0.03);
+}
+
 TEST(MovingSimulation, SurfaceHoldsFramesOfDoorsButNoLeaves) {
   SimulatorOptions options = test::ideal_camera();
   const std::size_t plain = Simulator(make_scene("room"), options).surface().triangles.size();

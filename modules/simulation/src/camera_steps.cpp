@@ -33,7 +33,7 @@ CameraSteps camera_steps(const Trajectory& poses) {
   constexpr double usual_step_s = 0.1;
   constexpr double max_steps = 20000;
   CameraSteps steps;
-  const double span_s = poses.back().timestamp_s - poses.front().timestamp_s;
+  const double span_s = std::max(0.0, poses.back().timestamp_s - poses.front().timestamp_s);
   steps.step_s = std::max(usual_step_s, span_s / max_steps);
   const double start_s = poses.front().timestamp_s - steps.step_s;
   const int count = static_cast<int>(std::ceil(span_s / steps.step_s)) + 3;
@@ -47,7 +47,8 @@ CameraSteps camera_steps(const Trajectory& poses) {
     while (next + 1 < poses.size() && poses[next].timestamp_s < time_s) ++next;
     const StampedPose& a = poses[next - 1];
     const StampedPose& b = poses[next];
-    const double share = (time_s - a.timestamp_s) / (b.timestamp_s - a.timestamp_s);
+    const double between_s = b.timestamp_s - a.timestamp_s;
+    const double share = between_s > 0 ? (time_s - a.timestamp_s) / between_s : 0;
     constexpr double most_beyond = 1;  // of the motion between two frames
     steps.poses.push_back({time_s, interpolate(a.world_from_camera, b.world_from_camera,
                                                std::clamp(share, -most_beyond, 1 + most_beyond))});

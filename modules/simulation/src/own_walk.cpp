@@ -19,11 +19,11 @@ constexpr double least_line_m = 2;
 constexpr double longest_line_m = 6;
 constexpr double line_spacing_m = 1.5;  ///< between the middles of two lines
 
-/// The end of the longest free line from a place in a direction. The floor is level along it.
+/// The end of the longest free line from a place in a horizontal direction.
 Vector3d end_of_line(const StandingSpace& space, const Vector3d& from, const Vector3d& direction) {
   constexpr double step_m = 0.05;
   double free_m = 0;
-  while (free_m < longest_line_m && space.is_free(from + (free_m + step_m) * direction)) {
+  while (free_m < longest_line_m && space.standing_place(from + (free_m + step_m) * direction)) {
     free_m += step_m;
   }
   return from + free_m * direction;
@@ -59,8 +59,9 @@ OwnWalk::OwnWalk(const WalkSurroundings& around, const Vector3d& from, const Vec
   const int width = static_cast<int>(std::lround(aside_m / spacing_m));
   for (int i = -beyond; i <= length + beyond; ++i) {
     for (int j = -width; j <= width; ++j) {
-      const Vector3d place = from + i * spacing_m * along + j * spacing_m * across;
-      if (around.space.is_free(place)) places_.push_back(place);
+      const auto place =
+          around.space.standing_place(from + i * spacing_m * along + j * spacing_m * across);
+      if (place) places_.push_back(*place);
     }
   }
 }

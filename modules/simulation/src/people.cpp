@@ -50,9 +50,12 @@ WalkedPlaces planned_walk(const WalkSurroundings& around, const Wish& wish,
   smooth_walk(walk, [&](int step, const Vector3d& foot_m) {
     const Pose& camera = around.steps.poses[static_cast<std::size_t>(step)].world_from_camera;
     const double gap_m = (camera.translation() - foot_m).head<2>().norm();
-    return around.space.is_free(foot_m) && gap_m >= least_camera_gap_m &&
+    return around.space.standing_place(foot_m) && gap_m >= least_camera_gap_m &&
            keeps_clear(others, step, foot_m);
   });
+  for (auto& place : walk) {
+    if (place) place = around.space.standing_place(*place);
+  }
   return walk;
 }
 

@@ -49,9 +49,10 @@ double StandingSpace::floor_beneath_m(const Vector3d& camera_m) const {
   return camera_m.z() - (is_floor ? *drop : eye_height_m_);
 }
 
-bool StandingSpace::is_free(const Vector3d& foot_m) const {
-  const Cell* cell = find(cell_of(foot_m.x()), cell_of(foot_m.y()), foot_m.z());
-  return cell != nullptr && cell->is_free;
+std::optional<Vector3d> StandingSpace::standing_place(const Vector3d& place_m) const {
+  const Cell* cell = find(cell_of(place_m.x()), cell_of(place_m.y()), place_m.z());
+  if (cell == nullptr || !cell->is_free) return std::nullopt;
+  return Vector3d(place_m.x(), place_m.y(), cell->middle_m.z());
 }
 
 void StandingSpace::block(const Vector3d& centre_m, double radius_m) {
@@ -126,8 +127,10 @@ void StandingSpace::explore(const Trajectory& path, int max_steps) {
   const auto visit = [&](int col, int row, double near_floor_m, int steps) {
     if (find(col, row, near_floor_m) != nullptr) return;
     const Cell cell = inspect(col, row, near_floor_m, steps);
-    cells_.emplace(key(col, row, cell.middle_m.z()), cell);
-    if (cell.is_free && steps < max_steps) open.push({col, row, cell.middle_m.z(), steps});
+    const bool is_new = cells_.emplace(key(col, row, cell.middle_m.z()), cell).second;
+    if (is_new && cell.is_free && steps < max_steps) {
+      open.push({col, row, cell.middle_m.z(), steps});
+    }
   };
   for (const StampedPose& pose : path) {
     const Vector3d camera_m = pose.world_from_camera.translation();

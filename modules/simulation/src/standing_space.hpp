@@ -31,8 +31,8 @@ class StandingSpace {
   /// The height of the floor beneath a camera position, metres.
   double floor_beneath_m(const Eigen::Vector3d& camera_m) const;
 
-  /// Whether a person can stand within a cell of `foot_m`, a point on the floor.
-  bool is_free(const Eigen::Vector3d& foot_m) const;
+  /// The point of the floor at a place near the floor, if a person can stand there.
+  std::optional<Eigen::Vector3d> standing_place(const Eigen::Vector3d& place_m) const;
 
   /// Makes all places within `radius_m` of a point, horizontally, not free.
   void block(const Eigen::Vector3d& centre_m, double radius_m);

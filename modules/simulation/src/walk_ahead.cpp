@@ -81,12 +81,13 @@ std::vector<WalkPlace> WalkAhead::places(int step) const {
   const Vector3d wanted =
       place_at(half_rad_ * std::sin(turn), std::max(least_camera_gap_m, wanted_range_m));
   std::vector<WalkPlace> places;
-  const auto add = [&](const Vector3d& place) {
-    if (!around_.space.is_free(place)) return;
-    const Vector3d sight = place + Vector3d(0, 0, chest_m) - eye_m;
+  const auto add = [&](const Vector3d& near_m) {
+    const auto place = around_.space.standing_place(near_m);
+    if (!place) return;
+    const Vector3d sight = *place + Vector3d(0, 0, chest_m) - eye_m;
     const bool is_hidden = around_.still.cast(eye_m, sight.normalized(), sight.norm()).has_value();
     places.push_back(
-        {place, cost_of_offset((place - wanted).norm()) + (is_hidden ? hidden_cost_per_s : 0)});
+        {*place, cost_of_offset((*place - wanted).norm()) + (is_hidden ? hidden_cost_per_s : 0)});
   };
   add(wanted);
   for (int i = 0; i < angles * ranges; ++i) {

@@ -13,7 +13,7 @@
 namespace tofmap {
 
 /// What a simulated pixel measured at A, regardless of its wrap count. The numbers are those in
-/// `label_truth/NNNNNN.png`.
+/// `label_truth/NNNNNN.png`. What moves is a surface like any other.
 enum class PixelLabel : std::uint8_t {
   no_return = 0,
   right = 1,   ///< the pixel sees one surface, and the range error is at most noisy_range_m
