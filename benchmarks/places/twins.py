@@ -1,0 +1,83 @@
+# SPDX-FileCopyrightText: 2026 the tofmap authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Rooms of one plan side by side, and walks through them."""
+from places.building import WOOD, Building
+from places.rooms import Room, chair, corridor
+from places.walk import Walk
+
+
+def twins(random, differs):
+    """Two rooms of one plan along a corridor, and their offsets along it."""
+    room = Room(random)
+    width_m = random.uniform(1.8, 2.1)
+    offsets = [0.5, 0.5 + room.width_m + random.uniform(0.2, 0.8)]
+    length_m = offsets[1] + room.width_m + random.uniform(0.4, 1)
+    building = Building()
+    for x in offsets:
+        room.build(building, [x, 0, 0])
+    corridor(building, length_m, width_m, room.height_m, [room.door(x) for x in offsets])
+    building.box([length_m - 0.35, -0.9, 0], [length_m, -0.2, random.uniform(0.9, 1.4)], WOOD)
+    if differs:
+        building.add(chair(room.width_m - 0.75, 0.6, 140), [offsets[1], 0, 0])
+    return building, room, offsets, width_m
+
+
+def twin_rooms(random, differs):
+    """One twin, the other, and the first again, by way of the corridor."""
+    building, room, (first, second), width_m = twins(random, differs)
+    middle_m, aisle = 0.45 * room.depth_m, -0.5 * width_m
+    one, two = first + room.door_m, second + room.door_m
+    walk = Walk([one, middle_m], 150)
+    walk.turn(30, -90).go(one, aisle).turn(0).go(two, aisle).turn(90).go(two, middle_m)
+    walk.turn(145, 40, -90).go(two, aisle).turn(-180).go(one, aisle).turn(-270)
+    walk.go(one, middle_m).turn(-230, -300)
+    return building, [walk]
+
+
+def five_rooms(random, differs):
+    """Five rooms of one plan in a row, and a long bare wall before them or between them. The camera
+    looks at the doors, enters each room by a step or two, and comes back along the corridor."""
+    room = Room(random, width_m=random.uniform(3.0, 3.3), depth_m=random.uniform(3.2, 3.8))
+    width_m = random.uniform(2.0, 2.3)
+    pitch_m = room.width_m + 0.12
+    stretch_m = random.uniform(2.2, 3.0)
+    long_after = random.integers(2, 4)
+    offsets = [0.6 + pitch_m * i + (stretch_m if i > long_after else 0) for i in range(5)]
+    building = Building()
+    for x in offsets:
+        room.build(building, [x, 0, 0])
+    corridor(building, offsets[-1] + room.width_m + 0.6, width_m, room.height_m,
+             [room.door(x) for x in offsets])
+    if differs:
+        building.add(chair(room.width_m - 0.7, 0.7, 140), [offsets[3], 0, 0])
+    aisle = -width_m + 0.75
+    walk = Walk([offsets[0] + room.door_m, aisle], 90, pitch_deg=-14)
+    for x in offsets:
+        door = x + room.door_m
+        walk.go(door, aisle).go(door, 0.6).turn(108, 72, 90).go(door, aisle)
+    for x in offsets[-2:1:-1]:
+        walk.go(x + room.door_m, aisle)
+    return building, [walk]
+
+
+def carried_to_twin(random, differs):
+    """A look around in one twin, and, without the way there, in the other."""
+    building, room, offsets, _ = twins(random, differs)
+    middle_m = 0.45 * room.depth_m
+    walks = []
+    for x in offsets:
+        door = x + room.door_m + random.uniform(-0.2, 0.2)
+        walk = Walk([door, middle_m + random.uniform(-0.2, 0.2)], 150)
+        walk.turn(30).go(door, 0.9).turn(140).go(door + 0.3, middle_m)
+        walks.append(walk)
+    return building, walks
+
+
+def carried_back(random, differs):
+    """A look around in one of two twins, and, without the way there, from another spot in the same
+    room."""
+    building, room, (first, _), _ = twins(random, differs)
+    door, middle_m = first + room.door_m, 0.45 * room.depth_m
+    walk = Walk([door, middle_m], 150).turn(30).go(door, 0.9).turn(140)
+    again = Walk([door + 0.4, middle_m - 0.3], 30).turn(140).go(door, middle_m).turn(40)
+    return building, [walk, again]
