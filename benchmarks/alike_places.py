@@ -44,7 +44,7 @@ def measure(tofmap, out, kind, seed, settings):
     ate_mm = "; ".join(f"{1000 * ate_m:.1f}" for ate_m in found.ate_m)
     return (f"| {kind} | {seed} | {registered} of {found.frames} | {ate_mm} | "
             f"{1000 * found.worst_m:.0f} | {found.used} / {found.loops} | {found.wrong_loops} | "
-            f"{found.wrong_joins} of {found.joins} | "
+            f"{found.wrong_joins} | "
             f"{found.verdict}{'' if found.is_warned else ', no warning'} | {found.outcome} |")
 
 

@@ -49,11 +49,14 @@ class Building:
             begin_m = door_end_m
         piece(begin_m, length_m + WALL_M / 2, bottom_m, top_m)
 
-    def add(self, other, offset):
-        """Adds all boxes of another building, moved by `offset`."""
-        self.centres += [centre + numpy.asarray(offset, float) for centre in other.centres]
+    def add(self, other, offset, yaw_deg=0):
+        """Adds all boxes of another building, rotated about its origin and moved by `offset`."""
+        yaw = numpy.radians(yaw_deg)
+        cos, sin = numpy.cos(yaw), numpy.sin(yaw)
+        rotation = numpy.array([[cos, -sin, 0], [sin, cos, 0], [0, 0, 1]])
+        self.centres += [rotation @ centre + offset for centre in other.centres]
         self.halves += other.halves
-        self.yaws += other.yaws
+        self.yaws += [yaw + other_yaw for other_yaw in other.yaws]
         self.reflectances += other.reflectances
 
     def clearance_m(self, points):

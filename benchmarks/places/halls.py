@@ -19,6 +19,18 @@ def hall(width_m, depth_m, height_m):
     return building
 
 
+def pilasters(building, size_m, xs, ys):
+    """Adds equal pilasters to the four walls of a hall of a size: at `xs` to those along x, at `ys`
+    to those along y."""
+    (width_m, depth_m, height_m), half_m, out_m = size_m, 0.15, 0.12
+    for x in xs:
+        for y in (0, depth_m - out_m):
+            building.box([x - half_m, y, 0], [x + half_m, y + out_m, height_m], WALL)
+    for y in ys:
+        for x in (0, width_m - out_m):
+            building.box([x, y - half_m, 0], [x + out_m, y + half_m, height_m], WALL)
+
+
 def bay(random, depth_m):
     """A bay of a rack along y with the same crates on each of its boards, and its length."""
     made = Building()
@@ -44,7 +56,10 @@ def shelves(random, differs):
     made, length_m = bay(random, depth_m)
     pitch_m = depth_m + aisle_m
     inner_m = 4 * length_m
-    building = hall(3 * pitch_m + depth_m, inner_m + 2 * cross_m, random.uniform(3.2, 3.8))
+    size_m = [3 * pitch_m + depth_m, inner_m + 2 * cross_m, random.uniform(3.2, 3.8)]
+    building = hall(*size_m)
+    pilasters(building, size_m, [depth_m / 2 + i * pitch_m / 2 for i in range(7)],
+              [0.4 * cross_m, size_m[1] - 0.4 * cross_m])
     for rack in range(4):
         for i in range(4):
             building.add(made, [rack * pitch_m, cross_m + i * length_m, 0])
@@ -54,9 +69,10 @@ def shelves(random, differs):
     aisles = [depth_m + aisle_m / 2 + i * pitch_m + (0.1 if differs else 0) for i in range(3)]
     low, high = 0.5 * cross_m, 1.5 * cross_m + inner_m
     walk = Walk([aisles[0], low], 90)
-    walk.go(aisles[0], high).turn(0).go(aisles[1], high).turn(-90).go(aisles[1], low)
-    walk.turn(0).go(aisles[2], low).turn(90).go(aisles[2], high).turn(180).go(aisles[1], high)
-    return building, [walk.turn(270).go(aisles[1], high - 2.5)]
+    for aisle, y, yaw_deg in ((0, high, 0), (1, high, -90), (1, low, 0), (2, low, 90),
+                              (2, high, 180), (1, high, 270)):
+        walk.corner(aisles[aisle], y, yaw_deg)
+    return building, [walk.go(aisles[1], high - 2.5)]
 
 
 def ring(random, differs):
@@ -75,16 +91,14 @@ def ring(random, differs):
     inner = (low + WALL_M / 2, high - WALL_M / 2)  # the leaves of the doors, behind the walls
     building.box([inner[0], inner[0], 0], [inner[1], inner[1], 2.1], DOOR)
     middle_m = outer_m / 2
-    for x, y in ((0, 1), (1, 0), (0, -1), (-1, 0)):  # a pilaster in the middle of each outer wall
-        centre = [middle_m * (1 + x), middle_m * (1 + y)]
-        building.box([centre[0] - 0.2, centre[1] - 0.2, 0], [centre[0] + 0.2, centre[1] + 0.2,
-                                                             height_m], WALL)
+    places = [0.35 * width_m, middle_m, outer_m - 0.35 * width_m]
+    pilasters(building, [outer_m, outer_m, height_m], places, places)
     if differs:
-        building.add(chair(outer_m - 0.35, middle_m + 1.2, -90), [0, 0, 0])
+        building.add(chair(), [outer_m - 0.35, middle_m + 1.2, 0], -90)
     near, far = width_m / 2, outer_m - width_m / 2
     walk = Walk([near + 0.3, near], 0)
-    walk.go(far, near).turn(90).go(far, far).turn(180).go(near, far).turn(270).go(near, near)
-    return building, [walk.turn(360).go(far - 0.3, near)]
+    walk.corner(far, near, 90).corner(far, far, 180).corner(near, far, 270).corner(near, near, 360)
+    return building, [walk.go(far - 0.3, near)]
 
 
 def pillar_hall(random, differs):
@@ -92,19 +106,21 @@ def pillar_hall(random, differs):
     middle, comes back behind a row, and looks along the middle again."""
     pitch_m, count = random.uniform(2.5, 2.9), 5
     length_m, width_m = pitch_m * (count + 1), random.uniform(6.5, 7.2)
-    building = hall(length_m, width_m, random.uniform(3.0, 3.6))
-    height_m = building.centres[1][2]
+    height_m = random.uniform(3.0, 3.6)
+    building = hall(length_m, width_m, height_m)
     rows = [width_m * share for share in (0.31, 0.69)]
-    for i in range(count):
+    along = [pitch_m * (i + 1) for i in range(count)]
+    pilasters(building, [length_m, width_m, height_m], along, [rows[0], width_m / 2, rows[1]])
+    for x in along:
         for y in rows:
-            x = pitch_m * (i + 1)
             building.box([x - 0.2, y - 0.2, 0], [x + 0.2, y + 0.2, height_m], WALL)
     if differs:
-        building.add(chair(2.5 * pitch_m, rows[1] + 0.1, 200), [0, 0, 0])
+        building.add(chair(), [2.5 * pitch_m, rows[1] + 0.1, 0], 200)
     middle_m, side_m = width_m / 2, 0.16 * width_m
-    walk = Walk([1.2, middle_m], 0).go(length_m - 1.3, middle_m)
-    walk.turn(-90).go(length_m - 1.3, side_m).turn(-180).go(1.2, side_m)
-    return building, [walk.turn(-270).go(1.2, middle_m).turn(-360).go(2.5, middle_m)]
+    walk = Walk([1.3, middle_m], 0)
+    walk.corner(length_m - 1.3, middle_m, -90).corner(length_m - 1.3, side_m, -180)
+    walk.corner(1.3, side_m, -270).corner(1.3, middle_m, -360)
+    return building, [walk.go(3, middle_m)]
 
 
 def cubicle(random, depth_m, width_m):
@@ -114,7 +130,7 @@ def cubicle(random, depth_m, width_m):
     middle_m = random.uniform(0.4, 0.6) * width_m
     made.box([middle_m - 0.3, depth_m - 0.3, 0.85], [middle_m + 0.3, depth_m - 0.25, 1.2], METAL)
     made.box([0.1, depth_m - 1.5, 0], [0.5, depth_m - 1.0, 0.6], METAL)
-    made.add(chair(middle_m, depth_m - 1.2, random.uniform(150, 210)), [0, 0, 0])
+    made.add(chair(), [middle_m, depth_m - 1.2, 0], random.uniform(150, 210))
     return made
 
 
@@ -125,9 +141,6 @@ def cubicles(random, differs):
     length_m = 5 * width_m + 1.6
     building = hall(length_m, 2 * depth_m + aisle_m, 2.7)
     made = cubicle(random, depth_m, width_m)
-    mirrored = Building()
-    mirrored.add(made, [0, 0, 0])
-    mirrored.centres = [c * [-1, -1, 1] for c in made.centres]  # half a turn
     top_m = random.uniform(1.55, 1.7)
     for i in range(6):
         x = 0.8 + i * width_m
@@ -135,7 +148,7 @@ def cubicles(random, differs):
             building.box([x - 0.03, y, 0], [x + 0.03, y + depth_m, top_m], CLOTH)
     for i in range(5):
         building.add(made, [0.8 + i * width_m, depth_m + aisle_m, 0])
-        building.add(mirrored, [0.8 + (i + 1) * width_m, depth_m, 0])
+        building.add(made, [0.8 + (i + 1) * width_m, depth_m, 0], 180)
     if differs:
         building.box([0.8 + 3.7 * width_m, depth_m + aisle_m + 0.3, 0],
                      [0.8 + 3.7 * width_m + 0.3, depth_m + aisle_m + 0.7, 0.5], WOOD)

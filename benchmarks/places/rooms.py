@@ -1,46 +1,36 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Furnished rooms, corridors and stairs."""
-import numpy
-
 from places.building import CEILING, CLOTH, METAL, WALL, WALL_M, WOOD, Building
 
 DOOR_M = 2.05  # height of doors
 
 
-def chair(x, y, yaw_deg):
+def chair():
     """A seat on a block, with a back."""
     made = Building()
     made.box([-0.22, -0.22, 0], [0.22, 0.22, 0.45], CLOTH)
     made.box([-0.22, 0.16, 0.45], [0.22, 0.22, 0.95], CLOTH)
-    turned = Building()
-    yaw = numpy.radians(yaw_deg)
-    rotation = numpy.array([[numpy.cos(yaw), -numpy.sin(yaw), 0],
-                            [numpy.sin(yaw), numpy.cos(yaw), 0], [0, 0, 1]])
-    turned.add(made, [x, y, 0])
-    turned.centres = [numpy.array([x, y, 0]) + rotation @ centre for centre in made.centres]
-    turned.yaws = [yaw] * 2
-    return turned
+    return made
 
 
 def table(made, low, high):
-    """A table between two corners on the floor."""
+    """Adds a table between two corners on the floor."""
     (x0, y0), (x1, y1) = low, high
     made.box([x0, y0, 0.70], [x1, y1, 0.75], WOOD)
     for x in (x0 + 0.05, x1 - 0.1):
         for y in (y0 + 0.05, y1 - 0.1):
             made.box([x, y, 0], [x + 0.05, y + 0.05, 0.70], WOOD)
-    return made
 
 
 class Room:
     """The plan of a furnished room [0, width] x [0, depth] with a door in the wall y = 0. Its
     middle is free."""
 
-    def __init__(self, random, width_m=None, depth_m=None):
+    def __init__(self, random, width_m=None, depth_m=None, height_m=None):
         self.width_m = width_m or random.uniform(3.8, 4.8)
         self.depth_m = depth_m or random.uniform(3.6, 4.4)
-        self.height_m = random.uniform(2.5, 2.8)
+        self.height_m = height_m or random.uniform(2.5, 2.8)
         self.door_m = random.uniform(0.35, 0.65) * self.width_m  # its middle
         self.furniture = self.furnish(random)
 

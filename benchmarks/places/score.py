@@ -39,12 +39,23 @@ def key_of(timestamp_s):
 
 
 def is_wrong(path, truth, one, other):
-    """Whether a path has another place at one of two frames than the truth."""
+    """Whether a frame is at another place, as seen from one frame, than in truth."""
     translation_m, rotation = path.between(one, other)
     true_translation_m, true_rotation = truth.between(one, other)
     turned_deg = numpy.degrees((true_rotation.inv() * rotation).magnitude())
     return bool(numpy.linalg.norm(translation_m - true_translation_m) > WRONG_M or
                 turned_deg > WRONG_DEG)
+
+
+def wrong_joins(path, truth, times_s):
+    """Pairs of frames next to each other in a path between which frames are missing, where the
+    later one is at a wrong place as seen from every earlier one. After a drift, a right place is
+    wrong as seen from the last frame, but not from those that it was recognised by."""
+    joins = [(one, other) for one, other in zip(path.indices, path.indices[1:])
+             if times_s[other] - times_s[one] > 1.5 / FRAME_RATE_HZ]
+    return [(one, other) for one, other in joins
+            if all(is_wrong(path, truth, earlier, other)
+                   for earlier in path.indices if earlier <= one)]
 
 
 @dataclasses.dataclass
@@ -57,7 +68,6 @@ class Score:
     loops: int
     used: int
     wrong_loops: int
-    joins: int
     wrong_joins: int
     verdict: str
     reasons: str
@@ -71,12 +81,6 @@ class Score:
             return "WRONG"
         is_whole = len(self.registered) == 1 and self.registered[0] >= 0.95 * self.frames
         return "right" if is_whole and self.ate_m[0] <= RIGHT_ATE_M else "unknown"
-
-
-def joined_at(path, times_s):
-    """Pairs of frames next to each other in a path between which the camera was lost or carried."""
-    return [(one, other) for one, other in zip(path.indices, path.indices[1:])
-            if times_s[other] - times_s[one] > 1.5 / FRAME_RATE_HZ]
 
 
 def score(recorded, result):
@@ -93,7 +97,6 @@ def score(recorded, result):
         for path in paths]
     loops = report["summary"]["loops"]
     used = [(loop["from"], loop["to"]) for loop in loops if loop["is_used"]]
-    joins = [(path, pair) for path in paths for pair in joined_at(path, times_s)]
     page = (result / "report.html").read_text(encoding="utf-8")
     verdict, reasons = re.search(r'class="verdict (\w+)">.*?(?:Reasons: (.*?))?</', page,
                                  re.DOTALL).groups()
@@ -104,7 +107,6 @@ def score(recorded, result):
         loops=len(loops), used=len(used),
         wrong_loops=sum(is_wrong(path, truth, *pair) for path in paths for pair in used
                         if all(index in path.row_of for index in pair)),
-        joins=len(joins),
-        wrong_joins=sum(is_wrong(path, truth, *pair) for path, pair in joins),
+        wrong_joins=sum(len(wrong_joins(path, truth, times_s)) for path in paths),
         verdict=verdict, reasons=reasons or "",
         is_warned=verdict != "good" or bool(report["warnings"]))

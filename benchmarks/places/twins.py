@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Rooms of one plan side by side, and walks through them."""
-from places.building import WOOD, Building
+from places.building import CLOTH, METAL, WOOD, Building
 from places.rooms import Room, chair, corridor
 from places.walk import Walk
 
@@ -17,8 +17,12 @@ def twins(random, differs):
         room.build(building, [x, 0, 0])
     corridor(building, length_m, width_m, room.height_m, [room.door(x) for x in offsets])
     building.box([length_m - 0.35, -0.9, 0], [length_m, -0.2, random.uniform(0.9, 1.4)], WOOD)
+    for x in offsets:  # a radiator and a board, so that the wall opposite a door is not bare
+        door, wall = x + room.door_m, -width_m
+        building.box([door - 0.5, wall, 0.15], [door + 0.5, wall + 0.12, 0.75], METAL)
+        building.box([door + 0.1, wall, 1.2], [door + 0.9, wall + 0.06, 1.8], CLOTH)
     if differs:
-        building.add(chair(room.width_m - 0.75, 0.6, 140), [offsets[1], 0, 0])
+        building.add(chair(), [offsets[1] + room.width_m - 0.75, 0.6, 0], 140)
     return building, room, offsets, width_m
 
 
@@ -34,13 +38,14 @@ def twin_rooms(random, differs):
     return building, [walk]
 
 
-def five_rooms(random, differs):
-    """Five rooms of one plan in a row, and a long bare wall before them or between them. The camera
-    looks at the doors, enters each room by a step or two, and comes back along the corridor."""
+def row_of_rooms(random, differs, stretch_m, last):
+    """Five rooms of one plan in a row, with a bare wall of so many metres more between two of them.
+    The camera looks at the wall with the doors, enters each room by a step or two, and comes back
+    along the corridor to the room with the index `last`."""
     room = Room(random, width_m=random.uniform(3.0, 3.3), depth_m=random.uniform(3.2, 3.8))
     width_m = random.uniform(2.0, 2.3)
     pitch_m = room.width_m + 0.12
-    stretch_m = random.uniform(2.2, 3.0)
+    stretch_m = random.uniform(*stretch_m)
     long_after = random.integers(2, 4)
     offsets = [0.6 + pitch_m * i + (stretch_m if i > long_after else 0) for i in range(5)]
     building = Building()
@@ -49,15 +54,25 @@ def five_rooms(random, differs):
     corridor(building, offsets[-1] + room.width_m + 0.6, width_m, room.height_m,
              [room.door(x) for x in offsets])
     if differs:
-        building.add(chair(room.width_m - 0.7, 0.7, 140), [offsets[3], 0, 0])
+        building.add(chair(), [offsets[3] + room.width_m - 0.7, 0.7, 0], 140)
     aisle = -width_m + 0.75
     walk = Walk([offsets[0] + room.door_m, aisle], 90, pitch_deg=-14)
     for x in offsets:
         door = x + room.door_m
         walk.go(door, aisle).go(door, 0.6).turn(108, 72, 90).go(door, aisle)
-    for x in offsets[-2:1:-1]:
+    for x in offsets[3:last:-1]:
         walk.go(x + room.door_m, aisle)
-    return building, [walk]
+    return building, [walk.go(offsets[last] + room.door_m, aisle)]
+
+
+def five_rooms(random, differs):
+    """Five rooms of one plan in a row, with a long bare wall between two of them."""
+    return row_of_rooms(random, differs, (2.2, 3.0), 2)
+
+
+def five_rooms_close(random, differs):
+    """Five rooms of one plan in a row, with short stretches of bare wall between their doors."""
+    return row_of_rooms(random, differs, (0, 0.3), 1)
 
 
 def carried_to_twin(random, differs):

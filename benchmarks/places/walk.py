@@ -21,20 +21,28 @@ class Walk:
         self.points = [[*place, yaw_deg, pitch_deg] if len(place) == 3
                        else [*place, 0, yaw_deg, pitch_deg]]
 
-    def go(self, x, y, z=None, pitch_deg=None):
-        """Walks to a place without a turn."""
-        _, _, last_z, yaw_deg, last_pitch_deg = self.points[-1]
-        self.points.append([x, y, last_z if z is None else z, yaw_deg,
-                            last_pitch_deg if pitch_deg is None else pitch_deg])
+    def go(self, x, y, z=None, yaw_deg=None, pitch_deg=None):
+        """Walks to a place, and turns on the way. What is not given stays as it is."""
+        given = [x, y, z, yaw_deg, pitch_deg]
+        self.points.append([last if value is None else value
+                            for value, last in zip(given, self.points[-1])])
         return self
 
     def turn(self, *yaws_deg, pitch_deg=None):
         """Turns to one direction after the other, on the spot."""
         for yaw_deg in yaws_deg:
-            x, y, z, _, last_pitch_deg = self.points[-1]
-            self.points.append([x, y, z, yaw_deg,
-                                last_pitch_deg if pitch_deg is None else pitch_deg])
+            x, y = self.points[-1][:2]
+            self.go(x, y, yaw_deg=yaw_deg, pitch_deg=pitch_deg)
         return self
+
+    def corner(self, x, y, yaw_deg, radius_m=0.5):
+        """Walks towards a place and, in an arc before it, turns to where the walk goes on."""
+        corner = numpy.array([x, y])
+        back = self.points[-1][:2] - corner
+        begin = corner + radius_m * back / numpy.linalg.norm(back)
+        yaw = numpy.radians(yaw_deg)
+        end = corner + radius_m * numpy.array([numpy.cos(yaw), numpy.sin(yaw)])
+        return self.go(*begin).go(*end, yaw_deg=yaw_deg)
 
     def poses(self, random):
         """Positions and rotations of the camera, camera to world, one per frame."""
