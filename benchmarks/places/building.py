@@ -29,6 +29,10 @@ class Building:
         """Adds a horizontal slab below `top_m`: a floor, or a ceiling seen from below."""
         self.box([*low, top_m - WALL_M], [*high, top_m], reflectance)
 
+    def column(self, x, y, low_m, high_m, reflectance=WALL):
+        """Adds a column of 0.26 m x 0.26 m, askew: its faces constrain motion along both axes."""
+        self.box([x - 0.13, y - 0.13, low_m], [x + 0.13, y + 0.13, high_m], reflectance, 45)
+
     def wall(self, start, end, bottom_m, top_m, doors=(), reflectance=WALL):
         """Adds a wall along x or y from `start` to `end`, with a gap for each door. A door is its
         begin and end along the wall and its height, in metres."""

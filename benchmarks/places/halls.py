@@ -19,16 +19,13 @@ def hall(width_m, depth_m, height_m):
     return building
 
 
-def pilasters(building, size_m, xs, ys):
-    """Adds equal pilasters to the four walls of a hall of a size: at `xs` to those along x, at `ys`
-    to those along y."""
-    (width_m, depth_m, height_m), half_m, out_m = size_m, 0.15, 0.12
-    for x in xs:
-        for y in (0, depth_m - out_m):
-            building.box([x - half_m, y, 0], [x + half_m, y + out_m, height_m], WALL)
-    for y in ys:
-        for x in (0, width_m - out_m):
-            building.box([x, y - half_m, 0], [x + out_m, y + half_m, height_m], WALL)
+def columns(building, size_m, xs, ys):
+    """Adds equal columns to the walls of a hall: at `xs` to those along x, at `ys` to those along
+    y."""
+    width_m, depth_m, height_m = size_m
+    places = [(x, y) for x in xs for y in (0, depth_m)] + [(x, y) for x in (0, width_m) for y in ys]
+    for x, y in places:
+        building.column(x, y, 0, height_m)
 
 
 def bay(random, depth_m):
@@ -58,7 +55,7 @@ def shelves(random, differs):
     inner_m = 4 * length_m
     size_m = [3 * pitch_m + depth_m, inner_m + 2 * cross_m, random.uniform(3.2, 3.8)]
     building = hall(*size_m)
-    pilasters(building, size_m, [depth_m / 2 + i * pitch_m / 2 for i in range(7)],
+    columns(building, size_m, [depth_m / 2 + i * pitch_m / 2 for i in range(7)],
               [0.4 * cross_m, size_m[1] - 0.4 * cross_m])
     for rack in range(4):
         for i in range(4):
@@ -92,7 +89,7 @@ def ring(random, differs):
     building.box([inner[0], inner[0], 0], [inner[1], inner[1], 2.1], DOOR)
     middle_m = outer_m / 2
     places = [0.35 * width_m, middle_m, outer_m - 0.35 * width_m]
-    pilasters(building, [outer_m, outer_m, height_m], places, places)
+    columns(building, [outer_m, outer_m, height_m], places, places)
     if differs:
         building.add(chair(), [outer_m - 0.35, middle_m + 1.2, 0], -90)
     near, far = width_m / 2, outer_m - width_m / 2
@@ -110,7 +107,7 @@ def pillar_hall(random, differs):
     building = hall(length_m, width_m, height_m)
     rows = [width_m * share for share in (0.31, 0.69)]
     along = [pitch_m * (i + 1) for i in range(count)]
-    pilasters(building, [length_m, width_m, height_m], along, [rows[0], width_m / 2, rows[1]])
+    columns(building, [length_m, width_m, height_m], along, [rows[0], width_m / 2, rows[1]])
     for x in along:
         for y in rows:
             building.box([x - 0.2, y - 0.2, 0], [x + 0.2, y + 0.2, height_m], WALL)

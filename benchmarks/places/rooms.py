@@ -65,6 +65,14 @@ class Room:
         building.add(shell, origin)
         building.add(self.furniture, origin)
 
+    def add_columns(self, building, origin):
+        """Adds a column to three of its walls, for walks that look at them."""
+        made = Building()
+        for x, y in ((0, self.depth_m - 0.9), (self.width_m, self.depth_m - 0.95),
+                     (self.width_m, 0.35)):
+            made.column(x, y, 0, self.height_m)
+        building.add(made, origin)
+
     def door(self, x, width_m=0.95):
         """The door of a room at `x`, for Building.wall()."""
         return (x + self.door_m - width_m / 2, x + self.door_m + width_m / 2, DOOR_M)

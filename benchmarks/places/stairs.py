@@ -66,7 +66,7 @@ class Stairs:
 
     def furnish(self, building, floor_m):
         """Adds what is on the walls around a half landing: the frame of a window with a radiator
-        below it, a pipe in each corner, and a board on each side, as on the next landing."""
+        below it, a column near each corner, and a board on each side, as on the next landing."""
         middle, right, back = self.x + self.width_m / 2, self.x + self.width_m, -self.length_m
         building.box([middle - 0.5, back, floor_m + 0.1],
                      [middle + 0.5, back + 0.12, floor_m + 0.7], METAL)
@@ -74,8 +74,8 @@ class Stairs:
                           ([-0.6, 0.8], [0.6, 0.9]), ([-0.6, 2.1], [0.6, 2.2])):
             building.box([middle + low[0], back, floor_m + low[1]],
                          [middle + high[0], back + 0.1, floor_m + high[1]], WOOD)
-        for x in (self.x, right - 0.1):
-            building.box([x, back, floor_m], [x + 0.1, back + 0.1, floor_m + 2.3], METAL)
+        for x in (self.x, right):
+            building.column(x, back + 0.3, floor_m, floor_m + 2.3, METAL)
         for y, bottom_m in ((back + 0.5, floor_m), (-1, floor_m + self.storey_m / 2)):
             for x in (self.x, right - 0.08):
                 building.box([x, y, bottom_m + 1], [x + 0.08, y + 0.5, bottom_m + 1.7], METAL)
@@ -113,6 +113,7 @@ def two_storeys(random, differs):
     building = Building()
     for storey in (0, 1):
         room.build(building, [0, 0, storey * stairs.storey_m])
+        room.add_columns(building, [0, 0, storey * stairs.storey_m])
     door = (stairs.width_m / 2 - 0.475, stairs.width_m / 2 + 0.475, DOOR_M)
     stairs.build(building, 1, [door])
     for storey in (0, 1):

@@ -29,23 +29,24 @@ def twins(random, differs):
 def twin_rooms(random, differs):
     """One twin, the other, and the first again, by way of the corridor."""
     building, room, (first, second), width_m = twins(random, differs)
+    for x in (first, second):
+        room.add_columns(building, [x, 0, 0])
     middle_m, aisle = 0.45 * room.depth_m, -0.5 * width_m
     one, two = first + room.door_m, second + room.door_m
     walk = Walk([one, middle_m], 150)
-    walk.turn(30, -90).go(one, aisle).turn(0).go(two, aisle).turn(90).go(two, middle_m)
-    walk.turn(145, 40, -90).go(two, aisle).turn(-180).go(one, aisle).turn(-270)
-    walk.go(one, middle_m).turn(-230, -300)
-    return building, [walk]
+    walk.turn(30, -90).corner(one, aisle, 0, 0.7).corner(two, aisle, 90, 0.7).go(two, middle_m)
+    walk.turn(145, 40, -90).corner(two, aisle, -180, 0.7).corner(one, aisle, -270, 0.7)
+    return building, [walk.go(one, middle_m).turn(-230, -300)]
 
 
-def row_of_rooms(random, differs, stretch_m, last):
-    """Five rooms of one plan in a row, with a bare wall of so many metres more between two of them.
-    The camera looks at the wall with the doors, enters each room by a step or two, and comes back
-    along the corridor to the room with the index `last`."""
+def row_of_rooms(random, differs, stretches_m):
+    """Five rooms of one plan along a corridor, with a bare wall more between two of them, of a
+    length in the range `stretches_m`. Also the places of their doors along x, and of the path along
+    the corridor in y."""
     room = Room(random, width_m=random.uniform(3.0, 3.3), depth_m=random.uniform(3.2, 3.8))
     width_m = random.uniform(2.0, 2.3)
     pitch_m = room.width_m + 0.12
-    stretch_m = random.uniform(*stretch_m)
+    stretch_m = random.uniform(*stretches_m)
     long_after = random.integers(2, 4)
     offsets = [0.6 + pitch_m * i + (stretch_m if i > long_after else 0) for i in range(5)]
     building = Building()
@@ -55,24 +56,37 @@ def row_of_rooms(random, differs, stretch_m, last):
              [room.door(x) for x in offsets])
     if differs:
         building.add(chair(), [offsets[3] + room.width_m - 0.7, 0.7, 0], 140)
-    aisle = -width_m + 0.75
-    walk = Walk([offsets[0] + room.door_m, aisle], 90, pitch_deg=-14)
-    for x in offsets:
-        door = x + room.door_m
-        walk.go(door, aisle).go(door, 0.6).turn(108, 72, 90).go(door, aisle)
-    for x in offsets[3:last:-1]:
-        walk.go(x + room.door_m, aisle)
-    return building, [walk.go(offsets[last] + room.door_m, aisle)]
+    return building, [x + room.door_m for x in offsets], -width_m + 0.75
 
 
 def five_rooms(random, differs):
-    """Five rooms of one plan in a row, with a long bare wall between two of them."""
-    return row_of_rooms(random, differs, (2.2, 3.0), 2)
+    """Five rooms of one plan in a row. The camera looks at the wall with the doors all the time,
+    which is bare between the doors. It enters each room by a step or two, and comes back along the
+    corridor."""
+    building, doors, aisle = row_of_rooms(random, differs, (2.2, 3.0))
+    walk = Walk([doors[0], aisle], 90, pitch_deg=-14)
+    for door in doors:
+        walk.go(door, aisle).go(door, 0.6).turn(108, 72, 90).go(door, aisle)
+    for door in doors[3:1:-1]:
+        walk.go(door, aisle)
+    return building, [walk]
 
 
-def five_rooms_close(random, differs):
-    """Five rooms of one plan in a row, with short stretches of bare wall between their doors."""
-    return row_of_rooms(random, differs, (0, 0.3), 1)
+def five_rooms_once(random, differs):
+    """Five rooms of one plan in a row. The camera looks ahead between the doors, but once at the
+    bare wall between two of them. It enters each room by a step, and looks into the last four again
+    on the way back."""
+    building, doors, aisle = row_of_rooms(random, differs, (0, 0.3))
+    bare = random.integers(1, 4)
+    walk = Walk([doors[0], aisle], 90, pitch_deg=-10)
+    for i, door in enumerate(doors):
+        if i > 0 and i != bare:
+            walk.go(doors[i - 1] + 0.8, aisle, yaw_deg=40).go(door - 0.8, aisle)
+        walk.go(door, aisle, yaw_deg=90).go(door, 0.4).go(door, aisle)
+    for door in doors[3:0:-1]:
+        walk.go(door + 2.4, aisle, yaw_deg=125).go(door + 0.7, aisle)
+        walk.go(door, aisle, yaw_deg=90)
+    return building, [walk]
 
 
 def carried_to_twin(random, differs):
