@@ -5,8 +5,10 @@ whether one small object differs between the places. It returns a building and o
 between two walks the camera is carried without frames."""
 from places.halls import cubicles, pillar_hall, ring, shelves
 from places.stairs import stairwell, two_storeys
-from places.twins import carried_back, carried_to_twin, five_rooms, five_rooms_once, twin_rooms
+from places.twins import (carried_back, carried_to_twin, five_rooms, five_rooms_once, twin_rooms,
+                          twin_rooms_bare)
 
 KINDS = {kind.__name__: kind
-         for kind in (twin_rooms, five_rooms, five_rooms_once, two_storeys, stairwell, shelves,
-                      ring, pillar_hall, cubicles, carried_to_twin, carried_back)}
+         for kind in (twin_rooms, twin_rooms_bare, five_rooms, five_rooms_once, two_storeys,
+                      stairwell, shelves, ring, pillar_hall, cubicles, carried_to_twin,
+                      carried_back)}

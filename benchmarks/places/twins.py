@@ -39,6 +39,18 @@ def twin_rooms(random, differs):
     return building, [walk.go(one, middle_m).turn(-230, -300)]
 
 
+def twin_rooms_bare(random, differs):
+    """The same walk without columns and with turns on the spot, some of them before walls that are
+    nearly bare, so that little is known about the path."""
+    building, room, (first, second), width_m = twins(random, differs)
+    middle_m, aisle = 0.45 * room.depth_m, -0.5 * width_m
+    one, two = first + room.door_m, second + room.door_m
+    walk = Walk([one, middle_m], 150)
+    walk.turn(30, -90).go(one, aisle).turn(0).go(two, aisle).turn(90).go(two, middle_m)
+    walk.turn(145, 40, -90).go(two, aisle).turn(-180).go(one, aisle).turn(-270)
+    return building, [walk.go(one, middle_m).turn(-230, -300)]
+
+
 def row_of_rooms(random, differs, stretches_m):
     """Five rooms of one plan along a corridor, with a bare wall more between two of them, of a
     length in the range `stretches_m`. Also the places of their doors along x, and of the path along
