@@ -26,36 +26,47 @@ class Path:
         self.positions_m = rows[:, 1:4]
         self.rotations = Rotation.from_quat(rows[:, 4:8])
 
-    def between(self, one, other):
-        """The pose of a frame in the axes of another: translation and rotation."""
-        one, other = self.row_of[one], self.row_of[other]
+    def between(self, one, others):
+        """The poses of frames in the axes of one frame: translations and rotations."""
+        one, others = self.row_of[one], [self.row_of[other] for other in others]
         inverse = self.rotations[one].inv()
-        moved_m = self.positions_m[other] - self.positions_m[one]
-        return inverse.apply(moved_m), inverse * self.rotations[other]
+        moved_m = self.positions_m[others] - self.positions_m[one]
+        return inverse.apply(moved_m), inverse * self.rotations[others]
 
 
 def key_of(timestamp_s):
     return round(float(timestamp_s), 4)
 
 
-def is_wrong(path, truth, one, other):
-    """Whether a frame is at another place, as seen from one frame, than in truth."""
-    translation_m, rotation = path.between(one, other)
-    true_translation_m, true_rotation = truth.between(one, other)
-    turned_deg = numpy.degrees((true_rotation.inv() * rotation).magnitude())
-    return bool(numpy.linalg.norm(translation_m - true_translation_m) > WRONG_M or
-                turned_deg > WRONG_DEG)
+def is_wrong(path, truth, one, others):
+    """Whether each of the other frames is at another place, as seen from one frame, than in
+    truth."""
+    translations_m, rotations = path.between(one, others)
+    true_translations_m, true_rotations = truth.between(one, others)
+    errors_m = numpy.linalg.norm(translations_m - true_translations_m, axis=1)
+    errors_deg = numpy.degrees((true_rotations.inv() * rotations).magnitude())
+    return (errors_m > WRONG_M) | (errors_deg > WRONG_DEG)
 
 
-def wrong_joins(path, truth, times_s):
-    """Pairs of frames next to each other in a path between which frames are missing, where the
-    later one is at a wrong place as seen from every earlier one. After a drift, a right place is
-    wrong as seen from the last frame, but not from those that it was recognised by."""
-    joins = [(one, other) for one, other in zip(path.indices, path.indices[1:])
-             if times_s[other] - times_s[one] > 1.5 / FRAME_RATE_HZ]
-    return [(one, other) for one, other in joins
-            if all(is_wrong(path, truth, earlier, other)
-                   for earlier in path.indices if earlier <= one)]
+def sections(path, frames):
+    """The frames of a path, in sections: a new one begins where frames are missing, and where the
+    program had begun a new map."""
+    found = [[path.indices[0]]]
+    for one, other in zip(path.indices, path.indices[1:]):
+        gap_s = frames[other]["timestamp"] - frames[one]["timestamp"]
+        is_new = gap_s > 1.5 / FRAME_RATE_HZ or frames[other]["tracking"]["status"] == "first"
+        if is_new:
+            found.append([])
+        found[-1].append(other)
+    return found
+
+
+def wrong_joins(path, truth, frames):
+    """Number of sections that lie wrong as seen from every frame of the sections before. Drift
+    makes two frames lie wrong to each other, but not those that recognised each other."""
+    parts = sections(path, frames)
+    return sum(all(is_wrong(path, truth, earlier, part).all() for earlier in sum(parts[:i], []))
+               for i, part in enumerate(parts) if i > 0)
 
 
 @dataclasses.dataclass
@@ -70,7 +81,6 @@ class Score:
     wrong_loops: int
     wrong_joins: int
     verdict: str
-    reasons: str
     is_warned: bool
 
     @property
@@ -83,30 +93,33 @@ class Score:
         return "right" if is_whole and self.ate_m[0] <= RIGHT_ATE_M else "unknown"
 
 
+def paths_of(result, report, index_at):
+    """The paths of all maps of a result, that of the largest map first."""
+    count = len(report["summary"]["separate_maps"])
+    names = ["trajectory.txt"] + [f"trajectory_{number + 2}.txt" for number in range(count)]
+    return [Path(result / name, index_at) for name in names]
+
+
 def score(recorded, result):
     """Scores the result of `tofmap map` against the truth of a recording."""
     report = json.loads((result / "report.json").read_text(encoding="utf-8"))
-    times_s = {frame["index"]: frame["timestamp"] for frame in report["frames"]}
-    index_at = {key_of(time_s): index for index, time_s in times_s.items()}
+    frames = {frame["index"]: frame for frame in report["frames"]}
+    index_at = {key_of(frame["timestamp"]): index for index, frame in frames.items()}
     truth = Path(recorded / "groundtruth.txt", index_at)
-    paths = [Path(result / "trajectory.txt", index_at)]
-    paths += [Path(result / f"trajectory_{number + 2}.txt", index_at)
-              for number in range(len(report["summary"]["separate_maps"]))]
+    paths = paths_of(result, report, index_at)
     errors_m = [recording.position_errors_m(
         path.positions_m, truth.positions_m[[truth.row_of[index] for index in path.indices]])
         for path in paths]
     loops = report["summary"]["loops"]
     used = [(loop["from"], loop["to"]) for loop in loops if loop["is_used"]]
     page = (result / "report.html").read_text(encoding="utf-8")
-    verdict, reasons = re.search(r'class="verdict (\w+)">.*?(?:Reasons: (.*?))?</', page,
-                                 re.DOTALL).groups()
+    verdict = re.search(r'class="verdict (\w+)"', page).group(1)
     return Score(
-        frames=len(times_s), registered=[len(path.indices) for path in paths],
+        frames=len(frames), registered=[len(path.indices) for path in paths],
         ate_m=[float(numpy.sqrt((errors ** 2).mean())) for errors in errors_m],
         worst_m=float(max(errors.max() for errors in errors_m)),
         loops=len(loops), used=len(used),
-        wrong_loops=sum(is_wrong(path, truth, *pair) for path in paths for pair in used
-                        if all(index in path.row_of for index in pair)),
-        wrong_joins=sum(len(wrong_joins(path, truth, times_s)) for path in paths),
-        verdict=verdict, reasons=reasons or "",
-        is_warned=verdict != "good" or bool(report["warnings"]))
+        wrong_loops=sum(bool(is_wrong(path, truth, one, [other])[0]) for path in paths
+                        for one, other in used if one in path.row_of and other in path.row_of),
+        wrong_joins=sum(wrong_joins(path, truth, frames) for path in paths),
+        verdict=verdict, is_warned=verdict != "good" or bool(report["warnings"]))

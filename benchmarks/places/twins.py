@@ -29,10 +29,14 @@ def twins(random, differs):
 def twin_rooms(random, differs):
     """One twin, the other, and the first again, by way of the corridor."""
     building, room, (first, second), width_m = twins(random, differs)
-    for x in (first, second):
-        room.add_columns(building, [x, 0, 0])
     middle_m, aisle = 0.45 * room.depth_m, -0.5 * width_m
     one, two = first + room.door_m, second + room.door_m
+    for x, door in ((first, one), (second, two)):
+        room.add_columns(building, [x, 0, 0])
+        # A sideboard opposite the door, and two boxes on it, askew.
+        building.box([door - 0.7, -width_m, 0], [door + 0.7, 0.3 - width_m, 0.85], WOOD)
+        for shift in (-0.4, 0.4):
+            building.column(door + shift, 0.15 - width_m, 0.85, 1.3, CLOTH)
     walk = Walk([one, middle_m], 150)
     walk.turn(30, -90).corner(one, aisle, 0, 0.7).corner(two, aisle, 90, 0.7).go(two, middle_m)
     walk.turn(145, 40, -90).corner(two, aisle, -180, 0.7).corner(one, aisle, -270, 0.7)
