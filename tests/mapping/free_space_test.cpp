@@ -60,8 +60,14 @@ TEST_F(SeenThrough, KeepsWhatIsHiddenOrOutOfView) {
   EXPECT_TRUE(keeps({100, 0, 2}));
 }
 
-TEST_F(SeenThrough, TakesTwoKeyframesToDrop) {
+TEST_F(SeenThrough, DropsByOneKeyframeWhatNoneAgreesWith) {
   keyframes_.resize(1);
+  EXPECT_FALSE(keeps({0.1, 0.1, 2}));
+  // One that agrees takes two that do not.
+  keyframes_.push_back({.id = 1,
+                        .world_from_camera = Pose::Identity(),
+                        .cloud = std::make_shared<const SurfaceCloud>(test::box_cloud(
+                            small_camera(), {-9, -9, -9}, {9, 9, 2}, Pose::Identity()))});
   EXPECT_TRUE(keeps({0.1, 0.1, 2}));
 }
 

@@ -11,7 +11,6 @@ namespace tofmap {
 namespace {
 
 bool violates_free_space(const MapPoint& point, const std::vector<KeyframeView>& views) {
-  constexpr int least = 2;
   int free_space_violation = 0;
   int agreeing = 0;
   for (const KeyframeView& view : views) {
@@ -19,7 +18,7 @@ bool violates_free_space(const MapPoint& point, const std::vector<KeyframeView>&
     free_space_violation += observation == Observation::sees_through ? 1 : 0;
     agreeing += observation == Observation::agrees ? 1 : 0;
   }
-  return free_space_violation >= least && free_space_violation > agreeing;
+  return free_space_violation > agreeing;
 }
 
 /// How many points of a cloud a view agrees with, and how many it sees through.

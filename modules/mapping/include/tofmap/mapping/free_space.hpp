@@ -17,9 +17,8 @@ namespace tofmap {
 /// pixel that it projects into and at the eight pixels around, each time by more than `margin_m`
 /// plus three standard deviations of the surface along its normal. The keyframe agrees with the
 /// point if the point lies within that distance of the surface at its pixel. A keyframe that has no
-/// surface at one of the nine pixels does not see through the point. A point is removed if at least
-/// two keyframes see through it, and more than agree with it. The result is the same for any number
-/// of threads.
+/// surface at one of the nine pixels does not see through the point. A point is removed if more
+/// keyframes see through it than agree with it. The result is the same for any number of threads.
 MapCloud without_free_space_violations(const MapCloud& map, std::span<const Keyframe> keyframes,
                                        const CameraModel& camera, double margin_m);
 
