@@ -48,10 +48,23 @@ struct Recording {
       write;
 };
 
+/// Says which people and doors found no place in the scene.
+void print_missing(const Simulator& simulator, const SimulatorOptions& wanted) {
+  const auto print = [](int there, int asked, const char* what, const char* lacking) {
+    if (there == asked) return;
+    std::fprintf(stderr, "tofmap: %d of %d %s found a place: %s\n", there, asked, what, lacking);
+  };
+  print(simulator.bodies().people_count(), wanted.people, "people",
+        "the scene lacks free floor that the camera sees");
+  print(static_cast<int>(simulator.bodies().doors().size()), wanted.doors, "doors",
+        "the scene lacks walls that the camera sees, with space for a door");
+}
+
 Recording simulated(const std::string& scene, const ProgramOptions& options) {
   auto simulator =
       std::make_shared<const Simulator>(find_scene(scene, options.simulator.seed),
                                         options.simulator, [] { return !is_interrupted(); });
+  print_missing(*simulator, options.simulator);
   return {*simulator->frame_count(), scene,
           [simulator](const std::filesystem::path& folder, const auto& keep_going) {
             return Written{simulate_sequence(*simulator, folder,

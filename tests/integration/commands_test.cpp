@@ -31,6 +31,18 @@ TEST_F(Commands, SimulateWritesAWholeSequence) {
   EXPECT_EQ(names_in(sequence_ / "phase_a").size(), frames);
 }
 
+TEST_F(Commands, SimulateWritesWhatMovesAndNamesWhatFoundNoPlace) {
+  const fs::path out = folder_.path() / "moving";
+  const Finished finished = run_program({"simulate", "wall", "--out", out.string(), "--frames", "2",
+                                         "--set", "simulator.width_px=44", "simulator.height_px=36",
+                                         "simulator.people=1", "simulator.doors=8"});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  EXPECT_EQ(names_in(out / "moving_truth").size(), 2U);
+  // A room of 9 x 5 m lacks the walls for eight doors, 2 m apart, in view.
+  EXPECT_THAT(finished.err, HasSubstr("of 8 doors found a place"));
+  EXPECT_THAT(finished.err, Not(HasSubstr("people")));
+}
+
 TEST_F(Commands, SimulateRepeatsItselfFromTheOptionsItWrote) {
   const fs::path again = folder_.path() / "again";
   const Finished finished = run_program({"simulate", "room", "--out", again.string(), "--config",

@@ -48,6 +48,8 @@ bool MovingBodies::are_none() const { return plan_->people.empty() && plan_->doo
 
 const std::vector<Door>& MovingBodies::doors() const { return plan_->doors; }
 
+int MovingBodies::people_count() const { return static_cast<int>(plan_->people.size()); }
+
 std::vector<PersonStance> MovingBodies::people_at(double time_s) const {
   std::vector<PersonStance> people;
   for (const Walker& walker : plan_->people) {

@@ -24,9 +24,8 @@ double cost_of_offset(double off_m);
 using WalkedPlaces = std::vector<std::optional<Eigen::Vector3d>>;
 
 /// The cheapest walk through one of `places(i)` at each of `steps` times, `step_s` apart
-/// (Viterbi's algorithm). Walking costs (speed / 1.5 m/s)² per second, and
-/// nobody walks faster than 3 m/s. A person who finds no place leaves the scene, which costs as
-/// much as being at a bad place for some seconds.
+/// (Viterbi's algorithm). Walking costs (speed / 1.5 m/s)² per second, and nobody walks faster than
+/// 3 m/s. A person who finds no place leaves the scene, which costs more than a bad place.
 WalkedPlaces cheapest_walk(int steps, double step_s,
                            const std::function<std::vector<WalkPlace>(int step)>& places);
 

@@ -31,7 +31,11 @@ class MovingBodies {
   /// Whether nothing ever moves.
   bool are_none() const;
 
+  /// The doors, fewer than the options ask for if walls lack the space.
   const std::vector<Door>& doors() const;
+
+  /// Number of people, smaller than the options ask for if there is not enough free space.
+  int people_count() const;
 
   /// The postures of the people who are in the scene at a time.
   std::vector<PersonStance> people_at(double time_s) const;

@@ -32,9 +32,9 @@ double stride_m(const PersonLook& look);
 /// The swing of a person at full walking speed.
 inline constexpr double max_swing_rad = 0.42;
 
-/// Adds a person: head, neck, trunk, two arms and two legs of two segments each, hands and feet,
-/// with the proportions of Winter, 'Biomechanics and Motor Control of Human Movement' (2009,
-/// figure 4.1). The lower foot touches the floor.
+/// Adds a person: head, neck, trunk, two arms and two legs of two segments each, hands and feet.
+/// The segments of arms and legs are as long as those of Winter, 'Biomechanics and Motor Control of
+/// Human Movement' (2009, figure 4.1). The lower foot touches the floor.
 void add_person(TriangleMesh& mesh, const PersonLook& look, const PersonStance& stance);
 
 }  // namespace tofmap

@@ -277,10 +277,10 @@ class Simulator final : public FrameSource {
 };
 
 /// Writes all frames as a sequence, with groundtruth.txt, range_truth/, label_truth/, scene.ply
-/// and, if something moves, moving_truth/,
-/// into a new or empty folder. `keep_going(done, total)` is called before each frame. If it returns
-/// false, or if the simulator is stopped, the frames so far remain as a complete sequence. Returns
-/// the number of frames written. Throws InputError if a file cannot be written.
+/// and, if something moves, moving_truth/, into a new or empty folder. `keep_going(done, total)` is
+/// called before each frame. If it returns false, or if the simulator is stopped, the frames so far
+/// remain as a complete sequence. Returns the number of frames written. Throws InputError if a file
+/// cannot be written.
 int simulate_sequence(const Simulator& simulator, const std::filesystem::path& folder,
                       const std::function<bool(int done, int total)>& keep_going = {});
 
