@@ -31,6 +31,16 @@ HEADER = ("| kind | seed | frames in each map | ATE, mm | largest error, mm | lo
           "|---|---|---|---|---|---|---|---|---|---|")
 
 
+def row_of(kind, seed, found):
+    """The row of the table of a score."""
+    registered = " + ".join(map(str, found.registered))
+    ate_mm = "; ".join(f"{1000 * ate_m:.1f}" for ate_m in found.ate_m)
+    warned = "" if found.is_warned else ", no warning"
+    return (f"| {kind} | {seed} | {registered} of {found.frames} | {ate_mm} | "
+            f"{1000 * found.worst_m:.0f} | {found.used} / {found.loops} | {found.wrong_loops} | "
+            f"{found.wrong_joins} | {found.verdict}{warned} | {found.outcome} |")
+
+
 def measure(tofmap, out, kind, seed, settings):
     """Makes, maps and scores one recording. Returns its row of the table."""
     recorded = make_recording(tofmap, out, kind, seed)
@@ -39,13 +49,7 @@ def measure(tofmap, out, kind, seed, settings):
     run(tofmap, "map", copy, "--out", result, "--set", "report.frames=0", "pictures.frames=0",
         *settings)
     shutil.rmtree(copy)
-    found = score(recorded, result)
-    registered = " + ".join(map(str, found.registered))
-    ate_mm = "; ".join(f"{1000 * ate_m:.1f}" for ate_m in found.ate_m)
-    return (f"| {kind} | {seed} | {registered} of {found.frames} | {ate_mm} | "
-            f"{1000 * found.worst_m:.0f} | {found.used} / {found.loops} | {found.wrong_loops} | "
-            f"{found.wrong_joins} | "
-            f"{found.verdict}{'' if found.is_warned else ', no warning'} | {found.outcome} |")
+    return row_of(kind, seed, score(recorded, result))
 
 
 def main():
