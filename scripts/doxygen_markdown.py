@@ -5,9 +5,11 @@
 
 The pages link to headings as code hosts name them (`page.md#a-heading`), which Doxygen 1.9 does not
 know. Headings get labels that name their page, links to them use those labels, and links to files
-that are no page become the names of these files.
+that are no page become the names of these files. A heading that a page repeats is numbered, as code
+hosts do.
 """
 
+import collections
 import pathlib
 import re
 import sys
@@ -49,14 +51,18 @@ def converted_link(match, page, root):
     return f"[{text}]({path})"
 
 
-def labelled_heading(match, page):
+def labelled_heading(match, page, uses):
+    """Counts in `uses` how often the page had this heading."""
     title = LINK.sub(r"\2", match[2])
-    return f"{match[1]} {title} {{#{label(page, slug(match[2]))}}}"
+    anchor = slug(match[2])
+    number = f"-{uses[anchor]}" if uses[anchor] else ""
+    uses[anchor] += 1
+    return f"{match[1]} {title} {{#{label(page, anchor)}{number}}}"
 
 
-def converted(text, page, root):
+def converted(text, page, root, uses):
     """Text without code blocks. Links may span lines."""
-    text = HEADING.sub(lambda match: labelled_heading(match, page), text)
+    text = HEADING.sub(lambda match: labelled_heading(match, page, uses), text)
     return LINK.sub(lambda match: converted_link(match, page, root), text)
 
 
@@ -64,9 +70,10 @@ def main():
     page = pathlib.Path(sys.argv[1]).resolve()
     root = pathlib.Path(__file__).resolve().parent.parent
     parts = re.split(r"(^```.*?^```$)", page.read_text(), flags=re.MULTILINE | re.DOTALL)
+    uses = collections.Counter()
     for number, part in enumerate(parts):
         is_code = number % 2 == 1
-        sys.stdout.write(part if is_code else converted(part, page, root))
+        sys.stdout.write(part if is_code else converted(part, page, root, uses))
 
 
 if __name__ == "__main__":
