@@ -113,7 +113,10 @@ Judgement judgement_of(const EvaluationPageSubject& subject) {
     return judge(evidence);
   }
   const Verdict of_ranges = verdict_on_wraps(mean_score(scores_of(with)).wrong_wrap_percent);
-  return {std::max(of_ranges, subject.warnings.empty() ? Verdict::good : Verdict::doubtful), {}};
+  return {
+      .verdict = std::max(of_ranges, subject.warnings.empty() ? Verdict::good : Verdict::doubtful),
+      .reasons = {},
+      .remarks = {}};
 }
 
 std::vector<ShownMap> shown_maps(const EvaluationPageSubject& subject) {

@@ -63,10 +63,31 @@ TEST(Verdict, SaysToCheckAMapThatIsNotTheOnlyOne) {
 
 TEST(Verdict, GoesByDirectionsThatNoSurfaceConstrained) {
   MapEvidence evidence = good_evidence();
-  evidence.degenerate = 10;
+  evidence.position_sigma_m = 0.05;
   EXPECT_EQ(verdict_on(evidence), Verdict::good);
-  evidence.degenerate = 11;
+  evidence.position_sigma_m = 0.123;
+  evidence.least_certain_frame = 17;
+  const Judgement judgement = judge(evidence);
+  EXPECT_EQ(judgement.verdict, Verdict::doubtful);
+  ASSERT_EQ(judgement.reasons.size(), 1U);
+  EXPECT_EQ(judgement.reasons[0],
+            "the position at frame 17 is uncertain by 0.12 m (one standard deviation), since "
+            "surfaces seen on the way there did not constrain all directions of motion");
+}
+
+TEST(Verdict, SaysToCheckAMapThatRecognisedPlacesContradict) {
+  MapEvidence evidence = good_evidence();
+  evidence.unused_loops = 1;
   EXPECT_EQ(verdict_on(evidence), Verdict::doubtful);
+  EXPECT_EQ(told_reasons(judge(evidence)), " Reasons: the map contradicts 1 recognised place.");
+}
+
+TEST(Verdict, MentionsJoinsThatDoNotMakeItWorse) {
+  MapEvidence evidence = good_evidence();
+  evidence.joins = 2;
+  EXPECT_EQ(verdict_on(evidence), Verdict::good);
+  EXPECT_EQ(told_reasons(judge(evidence)),
+            " Also: tracking was lost and found again 2 times, by places that were recognised.");
 }
 
 TEST(Verdict, IsTheWorstOfAllThatIsKnown) {

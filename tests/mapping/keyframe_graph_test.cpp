@@ -3,6 +3,9 @@
 
 #include "support/box_ranges.hpp"
 
+#include <cmath>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include <tofmap/mapping/keyframe_graph.hpp>
@@ -12,13 +15,18 @@ namespace {
 
 Pose at(double x_m) { return test::moved_by({0, 0, 0}, {x_m, 0, 0}); }
 
+/// A spread with this standard deviation in translation, and a tenth of it in radians.
+PoseSpread spread(double sigma_m) { return {0.01 * sigma_m * sigma_m, sigma_m * sigma_m}; }
+
+const PoseSpread small_spread = spread(0.002);
+
 /// A camera that goes ten metres along x and back again, a keyframe a metre, each tied to the one
 /// before it.
 KeyframeGraph there_and_back() {
   KeyframeGraph graph;
   for (int id = 0; id <= 20; ++id) {
     graph.add({id, id, 0.1 * id, at(id <= 10 ? id : 20 - id), nullptr});
-    if (id > 0) graph.connect(id - 1, id);
+    if (id > 0) graph.connect(id - 1, id, small_spread);
   }
   return graph;
 }
@@ -37,8 +45,46 @@ TEST(KeyframeGraph, ReachesNoFurtherThanATrustedChain) {
 
 TEST(KeyframeGraph, TakesTheNearestOnceTheyAreTied) {
   KeyframeGraph graph = there_and_back();
-  graph.connect(0, 20);
+  graph.connect(0, 20, small_spread);
   EXPECT_EQ(ids(graph.around(20, at(0), 5, {1, 1})), (std::vector<int>{0, 1, 18, 19, 20}));
+}
+
+/// Three keyframes before a bare wall, along which the camera was lost between the first two.
+KeyframeGraph past_a_bare_wall() {
+  KeyframeGraph graph;
+  for (int id = 0; id < 3; ++id) graph.add({id, id, 0.1 * id, at(id), nullptr});
+  graph.connect(0, 1, spread(0.3));
+  graph.connect(1, 2, spread(0.04));
+  return graph;
+}
+
+TEST(KeyframeGraph, DoesNotTieKeyframesWhoseRelativePoseIsUncertain) {
+  KeyframeGraph graph = past_a_bare_wall();
+  EXPECT_TRUE(graph.tied_to(1).empty());
+  EXPECT_EQ(ids(graph.around(1, at(0), 5, {1, 1})), (std::vector<int>{1}));
+  // Registered again, with more in view.
+  graph.connect(2, 1, spread(0.01));
+  EXPECT_EQ(graph.tied_to(1), (std::vector<int>{2}));
+}
+
+TEST(KeyframeGraph, AddsUpTheUncertaintyOfRegistrations) {
+  KeyframeGraph graph = there_and_back();
+  graph.connect(3, 4, spread(0.001));
+  // Two registrations of 2 mm and one of 1 mm lead to number 4.
+  const auto spreads = graph.spreads_from(1);
+  EXPECT_NEAR(spreads[4]->translation_sigma_m(), 0.003, 1e-9);
+  EXPECT_NEAR(spreads[4]->rotation_sigma_rad(), 0.0003, 1e-9);
+  EXPECT_EQ(spreads[1]->translation_m2, 0);
+}
+
+TEST(KeyframeGraph, KnowsThePathThatIsMostCertain) {
+  KeyframeGraph graph = past_a_bare_wall();
+  EXPECT_NEAR(graph.spreads_from(0)[2]->translation_sigma_m(), std::hypot(0.3, 0.04), 1e-9);
+  graph.connect(0, 2, spread(0.01));  // a loop
+  EXPECT_NEAR(graph.spreads_from(0)[2]->translation_sigma_m(), 0.01, 1e-9);
+  EXPECT_NEAR(graph.spreads_from(0)[1]->translation_sigma_m(), std::hypot(0.01, 0.04), 1e-9);
+  graph.add({3, 3, 0.3, at(3), nullptr});
+  EXPECT_FALSE(graph.spreads_from(0)[3]);
 }
 
 TEST(KeyframeGraph, MeasuresTurnsAsWell) {
@@ -46,8 +92,8 @@ TEST(KeyframeGraph, MeasuresTurnsAsWell) {
   graph.add({0, 0, 0, at(0), nullptr});
   graph.add({1, 1, 0.1, test::moved_by({0, 1.5, 0}, {0, 0, 0}), nullptr});
   graph.add({2, 2, 0.2, at(1), nullptr});
-  graph.connect(0, 1);
-  graph.connect(0, 2);
+  graph.connect(0, 1, small_spread);
+  graph.connect(0, 2, small_spread);
   // A metre is two steps, 1.5 radians are three turns.
   EXPECT_EQ(ids(graph.around(0, at(0), 2, {0.5, 0.5})), (std::vector<int>{2, 0}));
 }
@@ -76,8 +122,8 @@ TEST(KeyframeGraph, MovesAMapIntoAnotherOne) {
 TEST(KeyframeGraph, ForgetsTheNewestKeyframes) {
   KeyframeGraph graph;
   for (int id = 0; id < 4; ++id) graph.add({.id = id, .world_from_camera = at(id)});
-  graph.connect(0, 1);
-  graph.connect(2, 3);
+  graph.connect(0, 1, small_spread);
+  graph.connect(2, 3, small_spread);
   graph.shrink(2);
   EXPECT_EQ(graph.size(), 2);
   graph.add({.id = 2, .world_from_camera = at(2)});

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -42,13 +43,14 @@ class FindLoop : public testing::Test {
   }
 
   LoopCandidate find() const {
-    return find_loop(keyframes_[1], keyframes_, small_camera(), options_, {});
+    return find_loop(keyframes_[1], keyframes_, spreads_, small_camera(), options_, {});
   }
 
   Pose old_truth_ = moved_by({0.1, 0.5, 0}, {0, 0, 0});
   Pose new_truth_ = moved_by({0.05, 0.6, 0}, {0.2, 0.1, 0.1});
   Pose drift_ = moved_by({0, 0.01, 0.01}, {0.04, -0.02, 0.03});
   std::vector<Keyframe> keyframes_;
+  std::vector<std::optional<PoseSpread>> spreads_{PoseSpread{}, PoseSpread{}};
   LoopOptions options_;
 };
 
@@ -70,6 +72,19 @@ TEST_F(FindLoop, MeasuresTheMotionSinceAPlaceSeenBefore) {
 TEST_F(FindLoop, PassesOverKeyframesThatWereJustThere) {
   options_.min_keyframes = 2;
   EXPECT_EQ(find().from, -1);
+}
+
+TEST_F(FindLoop, DoesNotPassOverKeyframesJustNowIfThePathSinceIsUncertain) {
+  options_.min_keyframes = 2;
+  spreads_[0] = PoseSpread{0.001, 0.01};
+  EXPECT_TRUE(find().edge);
+}
+
+TEST_F(FindLoop, LooksAsFarAsThePathIsUncertain) {
+  options_.radius_m = 0.1;
+  EXPECT_EQ(find().from, -1);
+  spreads_[0] = PoseSpread{0.001, 0.01};
+  EXPECT_TRUE(find().edge);
 }
 
 TEST_F(FindLoop, PassesOverKeyframesThatLookElsewhere) {
@@ -121,7 +136,8 @@ class FindLoopFarOff : public testing::Test {
   }
 
   LoopCandidate find() const {
-    return find_loop(keyframes_.back(), keyframes_, room_.camera(), options_, {});
+    const std::vector<std::optional<PoseSpread>> spreads(keyframes_.size(), PoseSpread{});
+    return find_loop(keyframes_.back(), keyframes_, spreads, room_.camera(), options_, {});
   }
 
   double path_m_ = 80;

@@ -51,6 +51,15 @@ class DriftingPath : public testing::Test {
     return largest_error_m(fit_loops(keyframes_, edges_, {}).poses, truth_);
   }
 
+  int used_loops() const {
+    const LoopFit fit = fit_loops(keyframes_, edges_, {});
+    int used = 0;
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      if (edges_[i].may_be_wrong && fit.is_used[i]) ++used;
+    }
+    return used;
+  }
+
   std::vector<Pose> truth_ = circle(steps);
   std::vector<Keyframe> keyframes_;
   std::vector<PoseEdge> edges_;
@@ -84,6 +93,26 @@ TEST_F(DriftingPath, IsMendedByMostLoops) {
   for (const int from : {0, 1, 2}) add_right_loop(from, 24);
   add_wrong_loop(0, 22, 0.4);
   EXPECT_LT(error_m(), 0.25 * before_m);
+}
+
+TEST_F(DriftingPath, IsNotMovedByTwoLoopsThatAgree) {
+  // Two keyframes may be deceived by the same thing.
+  const double before_m = error_m();
+  add_wrong_loop(0, 23, 0.3);
+  add_wrong_loop(0, 24, 0.3);
+  EXPECT_LT(error_m(), before_m + 0.001);
+  EXPECT_EQ(used_loops(), 0);
+}
+
+TEST_F(DriftingPath, UsesALoopThatAgreesWithIt) {
+  add_wrong_loop(0, 24, 0.02);
+  EXPECT_EQ(used_loops(), 1);
+}
+
+TEST_F(DriftingPath, UsesTheLoopsThatMendIt) {
+  for (const int from : {0, 1, 2}) add_right_loop(from, 24);
+  add_wrong_loop(0, 22, 0.4);
+  EXPECT_EQ(used_loops(), 3);
 }
 
 TEST(LoopFit, OfNothingIsNothing) { EXPECT_TRUE(fit_loops({}, {}, {}).poses.empty()); }

@@ -74,6 +74,29 @@ TEST(MotionUncertainty, RestartsFromAPlaceWithTheVelocityAsUncertainAsBefore) {
   EXPECT_NEAR(moving.of_pose()(3, 3), 11 * translation_sigma * translation_sigma, 1e-9);
 }
 
+TEST(MotionUncertainty, RestartsFromAPlaceThatIsItselfUncertain) {
+  MotionUncertainty moving(rotation_sigma, translation_sigma);
+  moving.restart(0.01 * Covariance::Identity());
+  EXPECT_EQ(moving.of_pose()(3, 3), 0.01);
+  moving.learn(1, Covariance::Zero());
+  EXPECT_NEAR(moving.of_pose()(3, 3), 0.01 + translation_sigma * translation_sigma, 1e-12);
+}
+
+TEST(MotionUncertainty, IsSmallerOnceTheMotionProvesSteady) {
+  MotionUncertainty steady(rotation_sigma, translation_sigma);
+  // Changes of 3 mm and 2 mrad per axis, over two frames each.
+  for (int i = 0; i < 300; ++i) {
+    steady.note_change(2 * 0.002 * std::sqrt(3), 2 * 0.003 * std::sqrt(3), 2);
+  }
+  const MotionUncertainty blind = after_blind(1, steady);
+  EXPECT_NEAR(std::sqrt(blind.of_pose()(0, 0)), 2 * 0.002, 1e-5);
+  EXPECT_NEAR(std::sqrt(blind.of_pose()(3, 3)), 2 * 0.003, 1e-5);
+  for (int i = 0; i < 300; ++i) steady.note_change(0, 0, 1);
+  EXPECT_NEAR(std::sqrt(after_blind(1, steady).of_pose()(3, 3)), 0.1 * translation_sigma, 1e-5);
+  for (int i = 0; i < 300; ++i) steady.note_change(1, 1, 1);
+  EXPECT_NEAR(std::sqrt(after_blind(1, steady).of_pose()(3, 3)), translation_sigma, 1e-5);
+}
+
 TEST(MotionUncertainty, RotatesWithTheWorld) {
   MotionUncertainty uncertainty(rotation_sigma, translation_sigma);
   Covariance information = Covariance::Zero();

@@ -14,7 +14,7 @@ namespace tofmap {
 Judgement judge(const MapEvidence& evidence) {
   constexpr double half_percent = 50;        // with fewer frames, most of the recording is missing
   constexpr double nearly_all_percent = 95;  // every recording loses some frames
-  constexpr double some_percent = 10;        // up to this, frames may rely on the motion prior
+  constexpr double much_m = 0.05;            // a wall that is off by more looks double
   Judgement judgement;
   const auto hold_against = [&](Verdict verdict, const std::string& reason) {
     judgement.verdict = std::max(judgement.verdict, verdict);
@@ -41,12 +41,22 @@ Judgement judge(const MapEvidence& evidence) {
   if (of_surface != Verdict::good) {
     hold_against(of_surface, "the error of its surface is larger than a voxel");
   }
-  const double degenerate_percent = percent_of_frames(evidence, evidence.degenerate);
-  if (degenerate_percent > some_percent) {
-    hold_against(
-        Verdict::doubtful,
-        fmt::format("in {:.0f} % of the frames, no surface constrained one direction of motion",
-                    degenerate_percent));
+  if (evidence.position_sigma_m > much_m) {
+    hold_against(Verdict::doubtful,
+                 fmt::format("the position at frame {} is uncertain by {:.2f} m (one standard "
+                             "deviation), since surfaces seen on the way there did not constrain "
+                             "all directions of motion",
+                             evidence.least_certain_frame, evidence.position_sigma_m));
+  }
+  if (evidence.unused_loops > 0) {
+    hold_against(Verdict::doubtful,
+                 "the map contradicts " +
+                     counted(static_cast<std::size_t>(evidence.unused_loops), "recognised place"));
+  }
+  if (evidence.joins > 0) {
+    judgement.remarks.push_back(
+        fmt::format("tracking was lost and found again {}, by places that were recognised",
+                    counted(static_cast<std::size_t>(evidence.joins), "time")));
   }
   if (!evidence.is_seen_twice) hold_against(Verdict::doubtful, "no place was seen by two frames");
   if (evidence.is_interrupted) hold_against(Verdict::doubtful, "the run was interrupted");
@@ -55,8 +65,10 @@ Judgement judge(const MapEvidence& evidence) {
 }
 
 std::string told_reasons(const Judgement& judgement) {
-  if (judgement.reasons.empty()) return "";
-  return " Reasons: " + joined(judgement.reasons, "; ") + ".";
+  std::string told;
+  if (!judgement.reasons.empty()) told += " Reasons: " + joined(judgement.reasons, "; ") + ".";
+  if (!judgement.remarks.empty()) told += " Also: " + joined(judgement.remarks, "; ") + ".";
+  return told;
 }
 
 Verdict verdict_on_accuracy(double accuracy_m, double voxel_m) {

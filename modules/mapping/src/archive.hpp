@@ -68,6 +68,7 @@ template <class Archive>
 void serialize(Archive& archive, tofmap::TrackingResult& result, unsigned) {
   archive& result.status& result.world_from_camera& result.is_keyframe& result.targets;
   archive& result.registration& result.target_covariances;
+  archive& result.spread.rotation_rad2& result.spread.translation_m2;
 }
 
 }  // namespace boost::serialization

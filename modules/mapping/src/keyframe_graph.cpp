@@ -4,6 +4,9 @@
 #include "tofmap/mapping/keyframe_graph.hpp"
 
 #include <algorithm>
+#include <map>
+#include <queue>
+#include <utility>
 
 namespace tofmap {
 namespace {
@@ -24,10 +27,15 @@ void KeyframeGraph::add(Keyframe keyframe) {
   neighbours_.emplace_back();
 }
 
-void KeyframeGraph::connect(int a, int b) {
+void KeyframeGraph::connect(int a, int b, const PoseSpread& spread) {
   for (const auto& [one, other] : {std::pair(a, b), std::pair(b, a)}) {
-    std::vector<int>& connected = neighbours_[static_cast<std::size_t>(one)];
-    if (std::ranges::find(connected, other) == connected.end()) connected.push_back(other);
+    std::vector<Neighbour>& connected = neighbours_[static_cast<std::size_t>(one)];
+    const auto known = std::ranges::find(connected, other, &Neighbour::id);
+    if (known == connected.end()) {
+      connected.push_back({other, spread});
+    } else if (spread.translation_m2 < known->spread.translation_m2) {
+      known->spread = spread;
+    }
   }
 }
 
@@ -59,7 +67,7 @@ std::vector<const Keyframe*> KeyframeGraph::around(int id, const Pose& pose, int
   const auto steps_away = [&](int other) {
     return steps.between((*this)[other].world_from_camera, pose);
   };
-  std::vector<int> ids = within_reach(id);
+  std::vector<int> ids = tied_to(id);
   // Of keyframes at equal distance, the most recent ones are taken.
   std::ranges::sort(ids, std::ranges::greater());
   std::ranges::stable_sort(ids, std::ranges::less(), steps_away);
@@ -71,19 +79,50 @@ std::vector<const Keyframe*> KeyframeGraph::around(int id, const Pose& pose, int
   return keyframes;
 }
 
-std::vector<int> KeyframeGraph::within_reach(int id) const {
-  std::vector<int> reached{id};
-  std::size_t border = 0;
+std::vector<int> KeyframeGraph::tied_to(int id) const {
+  std::map<int, double> reached_m2{{id, 0.0}};  // the variance along the connections so far
+  std::map<int, double> border_m2 = reached_m2;
   for (int hops = 0; hops < max_hops; ++hops) {
-    const std::size_t end = reached.size();
-    for (; border < end; ++border) {
-      for (const int other : neighbours_[static_cast<std::size_t>(reached[border])]) {
-        if (std::ranges::find(reached, other) == reached.end()) reached.push_back(other);
+    std::map<int, double> next_m2;
+    for (const auto& [from, variance_m2] : border_m2) {
+      for (const Neighbour& neighbour : neighbours_[static_cast<std::size_t>(from)]) {
+        const double sum_m2 = variance_m2 + neighbour.spread.translation_m2;
+        if (sum_m2 > tied_sigma_m * tied_sigma_m) continue;
+        const auto [known, is_new] = reached_m2.try_emplace(neighbour.id, sum_m2);
+        if (!is_new && known->second <= sum_m2) continue;
+        known->second = sum_m2;
+        next_m2[neighbour.id] = sum_m2;
+      }
+    }
+    border_m2 = std::move(next_m2);
+  }
+  std::vector<int> tied;
+  for (const auto& [other, variance_m2] : reached_m2) {
+    if (other != id) tied.push_back(other);
+  }
+  return tied;
+}
+
+std::vector<std::optional<PoseSpread>> KeyframeGraph::spreads_from(int id) const {
+  std::vector<std::optional<PoseSpread>> spreads(keyframes_.size());
+  const auto is_farther = [](const Neighbour& one, const Neighbour& other) {
+    return one.spread.translation_m2 > other.spread.translation_m2;
+  };
+  std::priority_queue<Neighbour, std::vector<Neighbour>, decltype(is_farther)> open(is_farther);
+  open.push({id, {}});
+  while (!open.empty()) {
+    const Neighbour nearest = open.top();
+    open.pop();
+    std::optional<PoseSpread>& spread = spreads[static_cast<std::size_t>(nearest.id)];
+    if (spread) continue;
+    spread = nearest.spread;
+    for (const Neighbour& next : neighbours_[static_cast<std::size_t>(nearest.id)]) {
+      if (!spreads[static_cast<std::size_t>(next.id)]) {
+        open.push({next.id, nearest.spread + next.spread});
       }
     }
   }
-  reached.erase(reached.begin());
-  return reached;
+  return spreads;
 }
 
 }  // namespace tofmap

@@ -3,8 +3,13 @@
 
 #include "tofmap/mapping/loop_closure.hpp"
 
+#include "tofmap/mapping/free_space.hpp"
+#include "tofmap/mapping/keyframe_graph.hpp"
+#include "tofmap/mapping/place_recognition.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tofmap {
 namespace {
@@ -24,26 +29,59 @@ constexpr double alike_difference = 0.3;
 /// Largest correction by a loop, in standard deviations of drift.
 constexpr double most_drift_sigmas = 3;
 
-/// Earlier keyframes that, by their poses, may see the same place as `keyframe`.
-std::vector<const Keyframe*> earlier_around(const Keyframe& keyframe,
-                                            std::span<const Keyframe> keyframes,
-                                            const LoopOptions& options) {
-  std::vector<const Keyframe*> earlier;
-  const Pose& pose = keyframe.world_from_camera;
-  for (const Keyframe& other : keyframes) {
-    if (other.id + options.min_keyframes > keyframe.id) break;
-    if (other.map != keyframe.map) continue;
-    if ((pose.translation() - other.world_from_camera.translation()).norm() < options.radius_m &&
-        rotation_angle_rad(pose, other.world_from_camera) < options.max_rotation_rad) {
-      earlier.push_back(&other);
-    }
-  }
-  return earlier;
+/// The search for a loop of a keyframe.
+struct LoopSearch {
+  const Keyframe& keyframe;
+  std::span<const Keyframe> keyframes;
+  std::span<const std::optional<PoseSpread>> spreads;
+  const CameraModel& camera;
+  const LoopOptions& options;
+  const RegistrationOptions& registration;
+
+  MotionPrior drift_from(const Keyframe& other) const;
+  bool is_within(double reach_m, double reach_rad, const Keyframe& other) const;
+  bool may_see_the_same(const Keyframe& other) const;
+  std::vector<const Keyframe*> candidates() const;
+};
+
+/// The prior of the keyframe's pose relative to an earlier keyframe of its map.
+MotionPrior LoopSearch::drift_from(const Keyframe& other) const {
+  MotionPrior prior =
+      drift_prior(keyframe.world_from_camera, keyframe.path_m - other.path_m, options);
+  const PoseSpread spread = spreads[static_cast<std::size_t>(other.id)].value_or(PoseSpread{});
+  prior.rotation_sigma_rad = std::hypot(prior.rotation_sigma_rad, spread.rotation_sigma_rad());
+  prior.translation_sigma_m = std::hypot(prior.translation_sigma_m, spread.translation_sigma_m());
+  return prior;
 }
 
-MotionPrior drift_prior(const Keyframe& keyframe, const Keyframe& other,
-                        const LoopOptions& options) {
-  return drift_prior(keyframe.world_from_camera, keyframe.path_m - other.path_m, options);
+/// Whether the camera of an earlier keyframe may be within a distance and a rotation, as far as the
+/// keyframe's pose relative to it is known.
+bool LoopSearch::is_within(double reach_m, double reach_rad, const Keyframe& other) const {
+  const MotionPrior drift = drift_from(other);
+  const Pose& pose = keyframe.world_from_camera;
+  return (pose.translation() - other.world_from_camera.translation()).norm() <
+             reach_m + most_drift_sigmas * drift.translation_sigma_m &&
+         rotation_angle_rad(pose, other.world_from_camera) <
+             reach_rad + most_drift_sigmas * drift.rotation_sigma_rad;
+}
+
+/// Whether an earlier keyframe may see the same place, and was not registered with the keyframe by
+/// odometry anyway.
+bool LoopSearch::may_see_the_same(const Keyframe& other) const {
+  const std::optional<PoseSpread>& spread = spreads[static_cast<std::size_t>(other.id)];
+  const bool is_tied = spread && spread->translation_sigma_m() <= KeyframeGraph::tied_sigma_m;
+  if (other.map != keyframe.map || (is_tied && other.id + options.min_keyframes > keyframe.id)) {
+    return false;
+  }
+  return is_within(options.radius_m, options.max_rotation_rad, other);
+}
+
+std::vector<const Keyframe*> LoopSearch::candidates() const {
+  std::vector<const Keyframe*> earlier;
+  for (const Keyframe& other : keyframes.first(static_cast<std::size_t>(keyframe.id))) {
+    if (may_see_the_same(other)) earlier.push_back(&other);
+  }
+  return earlier;
 }
 
 /// The three keyframes of `earlier` that see most of the points of `keyframe`, and at least
@@ -72,42 +110,52 @@ std::vector<const Keyframe*> best_overlaps(const Keyframe& keyframe,
   return best;
 }
 
-/// Registers `keyframe` from its current pose with the earlier keyframes that it overlaps most.
-LoopCandidate find_where_believed(const Keyframe& keyframe,
-                                  const std::vector<const Keyframe*>& earlier,
-                                  const CameraModel& camera, const LoopOptions& options,
-                                  const RegistrationOptions& registration) {
+/// Registers the keyframe from its current pose with the earlier keyframes that it overlaps most.
+LoopCandidate find_where_believed(const LoopSearch& search,
+                                  const std::vector<const Keyframe*>& earlier) {
   LoopCandidate candidate;
-  const auto overlapping = best_overlaps(keyframe, earlier, camera, options, registration);
+  const auto overlapping =
+      best_overlaps(search.keyframe, earlier, search.camera, search.options, search.registration);
   if (overlapping.empty()) return candidate;
+  const MotionPrior drift = search.drift_from(*overlapping.front());
+  if (drift.translation_sigma_m > recognition_reach_m) return candidate;
   candidate.from = overlapping.front()->id;
   std::vector<RegistrationTarget> targets;
   for (const Keyframe* other : overlapping) targets.push_back(target_of(*other));
-  candidate.registration =
-      register_to_targets(*keyframe.cloud, targets, camera,
-                          drift_prior(keyframe, *overlapping.front(), options), registration);
+  candidate.registration = register_from_afar(*search.keyframe.cloud, targets, search.camera, drift,
+                                              search.registration);
   return candidate;
 }
 
-/// Registers `keyframe` with the most similar earlier keyframe, from the pose of that one. Empty if
-/// no keyframe is similar enough, or if the result is not verified.
-std::optional<LoopCandidate> find_where_alike(const Keyframe& keyframe,
-                                              std::span<const Keyframe> keyframes,
-                                              const std::vector<const Keyframe*>& earlier,
-                                              const CameraModel& camera, const LoopOptions& options,
-                                              const RegistrationOptions& registration) {
-  constexpr std::size_t one = 1;
-  const auto alike = most_alike(keyframe.place, earlier, one);
-  if (alike.empty()) return std::nullopt;
-  const Keyframe& other = *alike.front();
-  if (keyframe.place.difference(other.place) > alike_difference) return std::nullopt;
-  const auto before = keyframes.first(static_cast<std::size_t>(keyframe.id));
-  const RegistrationResult found =
-      register_near(other, *keyframe.cloud, before, camera, registration);
-  const double drift_sigmas =
-      prior_deviation_sigmas(drift_prior(keyframe, other, options), found.world_from_camera);
-  if (drift_sigmas > most_drift_sigmas || !is_verified(found, options)) return std::nullopt;
-  return LoopCandidate{.from = other.id, .registration = found, .edge = {}};
+/// Recognises the place that the keyframe sees among keyframes of earlier visits near which the
+/// camera may be. Empty if that fails, or if the camera cannot have drifted that far.
+std::optional<LoopCandidate> find_where_alike(const LoopSearch& search,
+                                              std::vector<const Keyframe*> earlier) {
+  const Keyframe& keyframe = search.keyframe;
+  std::erase_if(earlier, [&](const Keyframe* other) {
+    return other->id + search.options.min_keyframes > keyframe.id ||
+           keyframe.place.difference(other->place) > alike_difference ||
+           !search.is_within(recognition_reach_m, recognition_reach_rad, *other);
+  });
+  if (earlier.empty()) return std::nullopt;
+  const auto before = search.keyframes.first(static_cast<std::size_t>(keyframe.id));
+  const auto has_drifted_to = [&](const Keyframe& other, const Pose& pose) {
+    return prior_deviation_sigmas(search.drift_from(other), pose) <= most_drift_sigmas;
+  };
+  const auto found = recognise(keyframe, std::move(earlier), has_drifted_to, before, search.camera,
+                               search.options, search.registration);
+  if (!found) return std::nullopt;
+  return LoopCandidate{.from = found->from, .registration = found->registration, .edge = {}};
+}
+
+/// Whether a registration with an earlier keyframe is verified and does not contradict its free
+/// space.
+bool is_loop(const LoopSearch& search, const LoopCandidate& candidate) {
+  if (!is_verified(candidate.registration, search.options)) return false;
+  const Keyframe& other = search.keyframes[static_cast<std::size_t>(candidate.from)];
+  return !contradicts_free_space(
+      {search.keyframe.cloud.get(), candidate.registration.world_from_camera}, target_of(other),
+      search.camera);
 }
 
 }  // namespace
@@ -205,13 +253,14 @@ RegistrationResult register_near(const Keyframe& keyframe, const SurfaceCloud& c
 }
 
 LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyframes,
+                        std::span<const std::optional<PoseSpread>> spreads,
                         const CameraModel& camera, const LoopOptions& options,
                         const RegistrationOptions& registration) {
-  const auto earlier = earlier_around(keyframe, keyframes, options);
-  LoopCandidate candidate = find_where_believed(keyframe, earlier, camera, options, registration);
-  if (!is_verified(candidate.registration, options)) {
-    const auto alike =
-        find_where_alike(keyframe, keyframes, earlier, camera, options, registration);
+  const LoopSearch search{keyframe, keyframes, spreads, camera, options, registration};
+  const auto earlier = search.candidates();
+  LoopCandidate candidate = find_where_believed(search, earlier);
+  if (!is_loop(search, candidate)) {
+    const auto alike = find_where_alike(search, earlier);
     if (!alike) return candidate;
     candidate = *alike;
   }

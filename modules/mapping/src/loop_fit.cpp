@@ -13,8 +13,8 @@
 namespace tofmap {
 namespace {
 
-/// Smallest number of agreeing loops that can prove the path wrong.
-constexpr std::size_t least_agreeing = 2;
+/// Smallest number of loops that must agree to move the path.
+constexpr std::ptrdiff_t least_agreeing = 3;
 
 /// Two loops agree within this many standard deviations.
 constexpr double most_sigmas = 2;
@@ -42,6 +42,18 @@ bool agree(const PoseEdge& one, const PoseEdge& other, std::span<const Keyframe>
   return prior_deviation_sigmas(prior, found(other)) < most_sigmas;
 }
 
+/// Whether a loop may move the path, or does not: it agrees with the path as it is, up to what
+/// registration corrects.
+bool is_supported(const PoseEdge& loop, const Loops& loops, std::span<const Keyframe> keyframes,
+                  const LoopOptions& options) {
+  const Pose found = at(keyframes, loop.from).world_from_camera * loop.from_from_to;
+  const MotionPrior as_believed = drift_prior(at(keyframes, loop.to).world_from_camera, 0, options);
+  if (prior_deviation_sigmas(as_believed, found) < most_sigmas) return true;
+  return std::ranges::count_if(loops, [&](const PoseEdge* other) {
+           return agree(loop, *other, keyframes, options);
+         }) >= least_agreeing;
+}
+
 /// Edges for the second fit: `loops`, and the edges of odometry with covariances increased so that
 /// they add up to the drift of the whole path.
 std::vector<PoseEdge> with_drift(std::span<const PoseEdge> edges, const Loops& loops,
@@ -56,6 +68,16 @@ std::vector<PoseEdge> with_drift(std::span<const PoseEdge> edges, const Loops& l
   }
   for (const PoseEdge* loop : loops) loosened.push_back(*loop);
   return loosened;
+}
+
+/// Whether most of the loops agree with each other, but not with the poses that the path allows.
+bool tell_of_drift(const Loops& agreeing, const Loops& supported, const std::vector<Pose>& poses,
+                   const LoopOptions& options) {
+  const auto rejected = std::ranges::count_if(agreeing, [&](const PoseEdge* loop) {
+    return is_rejected(mahalanobis_distance(*loop, poses), options.kernel_width);
+  });
+  return agreeing.size() > 1 && 2 * agreeing.size() > supported.size() &&
+         2 * static_cast<std::size_t>(rejected) > agreeing.size();
 }
 
 }  // namespace
@@ -74,30 +96,37 @@ std::vector<const PoseEdge*> most_that_agree(const std::vector<const PoseEdge*>&
   return most;
 }
 
-PoseGraphResult fit_loops(std::span<const Keyframe> keyframes, std::span<const PoseEdge> edges,
-                          const LoopOptions& options) {
+LoopFit fit_loops(std::span<const Keyframe> keyframes, std::span<const PoseEdge> edges,
+                  const LoopOptions& options) {
   std::vector<Pose> poses;
   for (const Keyframe& keyframe : keyframes) poses.push_back(keyframe.world_from_camera);
-  PoseGraphResult fitted = optimise_pose_graph(poses, edges, options.kernel_width);
   Loops loops;
   for (const PoseEdge& edge : edges) {
     if (edge.may_be_wrong) loops.push_back(&edge);
   }
-  const Loops agreeing = most_that_agree(loops, keyframes, options);
-  const auto rejected = std::ranges::count_if(agreeing, [&](const PoseEdge* loop) {
-    return is_rejected(mahalanobis_distance(*loop, fitted.poses), options.kernel_width);
-  });
-  const bool tell_of_drift = agreeing.size() >= least_agreeing &&
-                             2 * agreeing.size() > loops.size() &&
-                             2 * static_cast<std::size_t>(rejected) > agreeing.size();
-  if (!tell_of_drift) return fitted;
-  fitted = optimise_pose_graph(std::move(poses), with_drift(edges, agreeing, keyframes, options),
-                               options.kernel_width);
-  fitted.edge_mahalanobis.clear();
+  std::vector<PoseEdge> trusted;
+  Loops supported;
   for (const PoseEdge& edge : edges) {
-    fitted.edge_mahalanobis.push_back(mahalanobis_distance(edge, fitted.poses));
+    if (edge.may_be_wrong && !is_supported(edge, loops, keyframes, options)) continue;
+    trusted.push_back(edge);
+    if (edge.may_be_wrong) supported.push_back(&edge);
   }
-  return fitted;
+  PoseGraphResult fitted = optimise_pose_graph(poses, trusted, options.kernel_width);
+  const Loops agreeing = most_that_agree(supported, keyframes, options);
+  if (tell_of_drift(agreeing, supported, fitted.poses, options)) {
+    fitted = optimise_pose_graph(std::move(poses), with_drift(edges, agreeing, keyframes, options),
+                                 options.kernel_width);
+    supported = agreeing;
+  }
+  LoopFit fit{.poses = std::move(fitted.poses), .edge_mahalanobis = {}, .is_used = {}};
+  for (const PoseEdge& edge : edges) {
+    const double distance = mahalanobis_distance(edge, fit.poses);
+    fit.edge_mahalanobis.push_back(distance);
+    fit.is_used.push_back(!edge.may_be_wrong ||
+                          (std::ranges::find(supported, &edge) != supported.end() &&
+                           !is_rejected(distance, options.kernel_width)));
+  }
+  return fit;
 }
 
 }  // namespace tofmap

@@ -99,8 +99,13 @@ void KeyframeGraph::serialize(Archive& archive, unsigned) {
 }
 
 template <class Archive>
+void KeyframeGraph::Neighbour::serialize(Archive& archive, unsigned) {
+  archive& id& spread.rotation_rad2& spread.translation_m2;
+}
+
+template <class Archive>
 void MotionUncertainty::serialize(Archive& archive, unsigned) {
-  archive& joint_;
+  archive& joint_& mean_squares_;
 }
 
 template <class Archive>

@@ -8,16 +8,41 @@
 
 namespace tofmap {
 
+namespace {
+
+/// How many times larger than recent changes the next ones may be, as a standard deviation.
+constexpr double margin = 2;
+
+/// Changes are not taken to be smaller than this share of the largest ones: a camera that is held
+/// still may be moved.
+constexpr double least_share = 0.1;
+
+}  // namespace
+
 MotionUncertainty::MotionUncertainty(double rotation_sigma_rad, double translation_sigma_m) {
-  change_sigmas_ << Eigen::Vector3d::Constant(rotation_sigma_rad),
+  largest_sigmas_ << Eigen::Vector3d::Constant(rotation_sigma_rad),
       Eigen::Vector3d::Constant(translation_sigma_m);
+  mean_squares_ = largest_sigmas_.cwiseAbs2();
+}
+
+void MotionUncertainty::note_change(double rotation_rad, double translation_m, int frames) {
+  constexpr double share_of_newest = 0.05;
+  constexpr double axes = 3;
+  Eigen::Matrix<double, 6, 1> squares;
+  squares << Eigen::Vector3d::Constant(rotation_rad * rotation_rad / axes),
+      Eigen::Vector3d::Constant(translation_m * translation_m / axes);
+  squares /= static_cast<double>(frames) * frames;
+  mean_squares_ += share_of_newest * (squares - mean_squares_);
 }
 
 void MotionUncertainty::learn(int frames, const Covariance& information) {
   Joint step = Joint::Identity();
   step.topRightCorner<6, 6>().diagonal().setConstant(frames);
   // A change of the motion between frames changes pose and velocity by the same twist.
-  const Covariance change = (frames * change_sigmas_).cwiseAbs2().asDiagonal();
+  const Eigen::Matrix<double, 6, 1> sigmas = (margin * mean_squares_.cwiseSqrt())
+                                                 .cwiseMax(least_share * largest_sigmas_)
+                                                 .cwiseMin(largest_sigmas_);
+  const Covariance change = (frames * sigmas).cwiseAbs2().asDiagonal();
   const Joint expected = step * joint_ * step.transpose() + change.replicate<2, 2>();
   const Covariance of_pose = expected.topLeftCorner<6, 6>();
   const Covariance known = (of_pose.inverse() + information).inverse();
@@ -28,11 +53,15 @@ void MotionUncertainty::learn(int frames, const Covariance& information) {
   joint_ = (0.5 * (joint_ + joint_.transpose())).eval();
 }
 
-void MotionUncertainty::reset() { joint_.setZero(); }
+void MotionUncertainty::reset() {
+  joint_.setZero();
+  mean_squares_ = largest_sigmas_.cwiseAbs2();
+}
 
-void MotionUncertainty::restart() {
+void MotionUncertainty::restart(const Covariance& of_pose) {
   joint_.topRows<6>().setZero();
   joint_.leftCols<6>().setZero();
+  joint_.topLeftCorner<6, 6>() = of_pose;
 }
 
 void MotionUncertainty::rotate(const Eigen::Matrix3d& new_from_old) {

@@ -150,7 +150,10 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
   result.registration = attempt.registration;
   if (result.status != TrackingStatus::tracked) return result;
   result.world_from_camera = result.registration.world_from_camera;
-  result.target_covariances = learn_covariances(periods, attempt);
+  if (result.registration.degenerate_directions == 0) {
+    note_change(timestamp_s, result.world_from_camera);
+  }
+  learn_covariances(periods, attempt, result);
   constexpr double share_of_newest = 0.1;
   usual_support_ += share_of_newest * (support(result.registration) - usual_support_);
   usual_inlier_ratio_ += share_of_newest * (result.registration.inlier_ratio - usual_inlier_ratio_);
@@ -343,23 +346,39 @@ std::vector<const Keyframe*> Odometry::choose_targets(
   return targets;
 }
 
-/// Covariances of the pose relative to each target. Frames since the latest keyframe tell of the
-/// motion since then, where its own surfaces do not.
-std::vector<Eigen::Matrix<double, 6, 6>> Odometry::learn_covariances(double periods,
-                                                                     const Attempt& attempt) {
+/// Learns by how much the pose of a frame differs from the predicted one.
+void Odometry::note_change(double timestamp_s, const Pose& found) {
+  const Pose change = predict(timestamp_s).world_from_camera.inverse() * found;
+  const long frames = std::max(1L, std::lround(periods_since_registered(timestamp_s)));
+  uncertainty_.note_change(rotation_angle_rad(Pose::Identity(), change),
+                           change.translation().norm(), static_cast<int>(frames));
+}
+
+/// Finds the covariances of the pose relative to each target, and the spread relative to all of
+/// them. Frames since the reference tell of the motion since then, where its own surfaces do not.
+void Odometry::learn_covariances(double periods, const Attempt& attempt, TrackingResult& result) {
   using Covariance = MotionUncertainty::Covariance;
   const auto& information = attempt.registration.target_information;
-  Covariance of_reference = Covariance::Zero();
-  for (std::size_t i = 0; i < attempt.targets.size(); ++i) {
-    if (attempt.targets[i]->id == reference_) of_reference = information[i];
+  const auto reference = std::ranges::find(attempt.targets, reference_, &Keyframe::id);
+  const bool sees_reference = reference != attempt.targets.end();
+  const auto place = static_cast<std::size_t>(reference - attempt.targets.begin());
+  uncertainty_.learn(static_cast<int>(std::lround(periods)),
+                     sees_reference ? information[place] : Covariance(Covariance::Zero()));
+  for (const Covariance& of_target : information) {
+    result.target_covariances.push_back(covariance_of(of_target));
   }
-  uncertainty_.learn(static_cast<int>(std::lround(periods)), of_reference);
-  std::vector<Covariance> covariances;
-  for (std::size_t i = 0; i < attempt.targets.size(); ++i) {
-    covariances.push_back(attempt.targets[i]->id == reference_ ? uncertainty_.of_pose()
-                                                               : covariance_of(information[i]));
+  Covariance& by_motion = result.target_covariances[sees_reference ? place : 0];
+  if (sees_reference) {
+    by_motion = uncertainty_.of_pose();
+  } else {
+    // The pose of the reference relative to the targets is known well.
+    by_motion = (by_motion.inverse() + uncertainty_.of_pose().inverse()).inverse();
+    reference_ = attempt.targets.front()->id;
+    uncertainty_.restart(by_motion);
   }
-  return covariances;
+  Covariance sum = Covariance::Zero();
+  for (const Covariance& covariance : result.target_covariances) sum += covariance.inverse();
+  result.spread = spread_of(sum.inverse());
 }
 
 void Odometry::note_keyframe(int id) {

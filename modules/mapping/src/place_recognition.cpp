@@ -33,6 +33,7 @@ bool is_same_place(const Recognition& one, const Recognition& other,
 
 std::optional<Recognition> recognise(const Keyframe& keyframe,
                                      std::vector<const Keyframe*> candidates,
+                                     const IsPossiblePlace& is_possible,
                                      std::span<const Keyframe> keyframes, const CameraModel& camera,
                                      const LoopOptions& options,
                                      const RegistrationOptions& registration) {
@@ -41,7 +42,9 @@ std::optional<Recognition> recognise(const Keyframe& keyframe,
        most_alike(keyframe.place, std::move(candidates), most_candidates)) {
     const RegistrationResult result =
         register_near(*candidate, *keyframe.cloud, keyframes, camera, registration);
-    if (!is_verified(result, options)) continue;
+    if (!is_verified(result, options) || !is_possible(*candidate, result.world_from_camera)) {
+      continue;
+    }
     const RegistrationTarget placed{keyframe.cloud.get(), result.world_from_camera};
     if (contradicts_free_space(placed, target_of(*candidate), camera)) continue;
     found.push_back({candidate->id, result});

@@ -98,7 +98,7 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
   }
   lost_frames_ = 0;
   held_.clear();
-  result.is_keyframe = wants_keyframe(result.world_from_camera, around);
+  result.is_keyframe = wants_keyframe(result, around);
   if (result.is_keyframe) {
     add_keyframe(frame, around, result);
   } else if (!result.targets.empty()) {
@@ -217,7 +217,8 @@ void RoomMapper::close_loops() {
   if (!loop_options_.close) return;
   const Keyframe& keyframe = keyframes_[keyframes_.size() - 1];
   const LoopCandidate candidate =
-      find_loop(keyframe, keyframes_.all(), camera_, loop_options_, registration_);
+      find_loop(keyframe, keyframes_.all(), keyframes_.spreads_from(keyframe.id), camera_,
+                loop_options_, registration_);
   if (candidate.edge) {
     const Pose& found = candidate.registration.world_from_camera;
     add_loop(*candidate.edge,
@@ -234,23 +235,53 @@ void RoomMapper::add_loop(const PoseEdge& edge, double error_m) {
   ++unfitted_loops_;
 }
 
-/// Searches for the place of the newest keyframe in other maps, and joins maps if enough keyframes
-/// agree.
+/// Searches for the place of the newest keyframe in those other maps that the camera can have
+/// travelled to, and joins maps if enough keyframes agree.
 void RoomMapper::recognise_place() {
+  if (begun_maps_ == 1) return;
   const Keyframe& keyframe = keyframes_[keyframes_.size() - 1];
+  const std::vector<Stretch> travelled = stretches();
+  const auto can_be_at = [&](const Keyframe& other, const Pose& pose, double tolerance_m) {
+    return can_travel(travelled,
+                      {.into = other.map,
+                       .map = map_,
+                       .into_from_map = pose * keyframe.world_from_camera.inverse(),
+                       .edges = {}},
+                      tolerance_m);
+  };
+  // The camera may be some way from the keyframe that recognises it, and turned, which moves the
+  // begin of its map.
+  const double since_begin_m =
+      (keyframe.world_from_camera.translation() - travelled.back().begin_m).norm();
+  const double near_m =
+      travel_tolerance_m + recognition_reach_m + recognition_reach_rad * since_begin_m;
   std::vector<const Keyframe*> candidates;
   for (const Keyframe& other : keyframes_.all()) {
-    if (other.map != map_) candidates.push_back(&other);
+    if (other.map != map_ && can_be_at(other, other.world_from_camera, near_m)) {
+      candidates.push_back(&other);
+    }
   }
-  if (candidates.empty()) return;
-  const auto found = recognise(keyframe, std::move(candidates), keyframes_.all(), camera_,
-                               loop_options_, registration_);
+  const auto is_possible = [&](const Keyframe& other, const Pose& pose) {
+    return can_be_at(other, pose, travel_tolerance_m);
+  };
+  const auto found = recognise(keyframe, std::move(candidates), is_possible, keyframes_.all(),
+                               camera_, loop_options_, registration_);
   if (!found) return;
   recognitions_.push_back(edge_of(keyframes_[found->from], keyframe.id,
                                   found->registration.world_from_camera,
                                   covariance_of(found->registration.target_information.front())));
   recognitions_.back().may_be_wrong = true;
   join_maps();
+}
+
+/// The path of the camera through the maps.
+std::vector<Stretch> RoomMapper::stretches() const {
+  std::vector<Stretch> stretches;
+  for (const RegisteredFrame& frame : frames_) {
+    add_position(stretches, keyframes_[frame.keyframe].map, frame.timestamp_s,
+                 pose_of(frame).translation());
+  }
+  return stretches;
 }
 
 void RoomMapper::join_maps() {
@@ -302,6 +333,21 @@ Trajectory RoomMapper::keyframe_trajectory(int map) const {
   return trajectory;
 }
 
+PoseCertainty RoomMapper::least_certain(int map) const {
+  const auto is_of_map = [&](const Keyframe& keyframe) { return keyframe.map == map; };
+  const Keyframe& first = *std::ranges::find_if(keyframes_.all(), is_of_map);
+  const auto spreads = keyframes_.spreads_from(first.id);
+  PoseCertainty least{first.frame_index, {}};
+  for (const Keyframe& keyframe : keyframes_.all()) {
+    const std::optional<PoseSpread>& spread = spreads[static_cast<std::size_t>(keyframe.id)];
+    if (!is_of_map(keyframe) || !spread) continue;
+    if (spread->translation_m2 > least.spread.translation_m2) {
+      least = {keyframe.frame_index, *spread};
+    }
+  }
+  return least;
+}
+
 std::size_t RoomMapper::voxel_count() const {
   std::size_t count = 0;
   for (const Submap& submap : submaps_) count += submap.surface.size();
@@ -322,7 +368,12 @@ MapCloud RoomMapper::surface(int map) const {
   return without_free_space_violations(surface, seen_by, camera_, surface_options_.voxel_m);
 }
 
-bool RoomMapper::wants_keyframe(const Pose& pose, std::span<const Keyframe* const> around) const {
+bool RoomMapper::wants_keyframe(const TrackingResult& result,
+                                std::span<const Keyframe* const> around) const {
+  const Pose& pose = result.world_from_camera;
+  if (result.spread.translation_sigma_m() > odometry_options_.keyframe_translation_m / 2) {
+    return true;
+  }
   return std::ranges::none_of(around, [&](const Keyframe* keyframe) {
     const bool is_of_earlier_visit = keyframe->id + recent_keyframes < keyframes_.size();
     return keyframe_spacing().between(keyframe->world_from_camera, pose) <
@@ -349,7 +400,7 @@ void RoomMapper::add_keyframe(const NewFrame& frame, std::span<const Keyframe* c
     const int target = result.targets[i];
     edges_.push_back(
         edge_of(keyframes_[target], id, result.world_from_camera, result.target_covariances[i]));
-    keyframes_.connect(target, id);
+    keyframes_.connect(target, id, spread_of(edges_.back().covariance));
   }
   odometry_.note_keyframe(id);
   current_ = id;
@@ -375,7 +426,7 @@ int RoomMapper::submap_for(int id, const Pose& pose, std::span<const Keyframe* c
 
 void RoomMapper::fit() {
   const Pose current_before = keyframes_[current_].world_from_camera;
-  const PoseGraphResult fitted = fit_loops(keyframes_.all(), edges_, loop_options_);
+  const LoopFit fitted = fit_loops(keyframes_.all(), edges_, loop_options_);
   for (int id = 0; id < keyframes_.size(); ++id) {
     keyframes_.set_pose(id, fitted.poses[static_cast<std::size_t>(id)]);
   }
@@ -386,9 +437,11 @@ void RoomMapper::fit() {
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     if (!edges_[i].may_be_wrong) continue;
     loop->mahalanobis_distance = fitted.edge_mahalanobis[i];
-    loop->is_used = !is_rejected(loop->mahalanobis_distance, loop_options_.kernel_width);
+    loop->is_used = fitted.is_used[i];
     // The relative pose of both ends is now correct, so frames may be registered with either.
-    if (loop->is_used) keyframes_.connect(edges_[i].from, edges_[i].to);
+    if (loop->is_used) {
+      keyframes_.connect(edges_[i].from, edges_[i].to, spread_of(edges_[i].covariance));
+    }
     ++loop;
   }
   unfitted_loops_ = 0;

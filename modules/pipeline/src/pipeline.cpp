@@ -138,6 +138,17 @@ int RoomMap::degenerate() const {
   }));
 }
 
+int RoomMap::joins() const {
+  return static_cast<int>(std::ranges::count_if(frames, [](const FrameRecord& record) {
+    return record.tracking.status == TrackingStatus::relocalised;
+  }));
+}
+
+int RoomMap::unused_loops() const {
+  return static_cast<int>(
+      std::ranges::count_if(loops, [](const Loop& loop) { return !loop.is_used; }));
+}
+
 int RoomMap::separate() const {
   return std::accumulate(separate_maps.begin(), separate_maps.end(), 0,
                          [](int sum, const SeparateMap& one) {
@@ -148,9 +159,12 @@ int RoomMap::separate() const {
 MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options) {
   return {.frames = static_cast<int>(map.frames.size()),
           .registered = static_cast<int>(map.trajectory.size()),
-          .degenerate = map.degenerate(),
           .separate = map.separate(),
           .separate_maps = static_cast<int>(map.separate_maps.size()),
+          .joins = map.joins(),
+          .unused_loops = map.unused_loops(),
+          .position_sigma_m = map.least_certain.spread.translation_sigma_m(),
+          .least_certain_frame = map.least_certain.frame,
           .is_empty = map.surface.empty(),
           .is_interrupted = map.interrupted,
           .is_unwrapped = options.unwrap.method != UnwrapMethod::none,
@@ -292,6 +306,7 @@ RoomMap MapRun::finish() {
       map.trajectory = std::move(one.trajectory);
       map.keyframes = std::move(one.keyframes);
       map.surface = std::move(one.surface);
+      map.least_certain = mapper_.least_certain(number);
     } else {
       map.separate_maps.push_back(std::move(one));
     }

@@ -12,11 +12,16 @@ namespace tofmap {
 
 /// The facts by which a map is judged.
 struct MapEvidence {
-  int frames = 0;                    ///< frames of the recording, including damaged ones
-  int registered = 0;                ///< frames whose pose was found
-  int degenerate = 0;                ///< frames with a degenerate direction of motion
-  int separate = 0;                  ///< frames that are registered in separate maps
-  int separate_maps = 0;             ///< maps that could not be joined with this one
+  int frames = 0;         ///< frames of the recording, including damaged ones
+  int registered = 0;     ///< frames whose pose was found
+  int separate = 0;       ///< frames that are registered in separate maps
+  int separate_maps = 0;  ///< maps that could not be joined with this one
+  int joins = 0;          ///< how often tracking was lost, but the maps were joined
+  int unused_loops = 0;   ///< recognised places that the map does not agree with
+  /// Standard deviation of the position that is least certain relative to the begin of the map, by
+  /// what surfaces constrain, and the frame that has it.
+  double position_sigma_m = 0;
+  int least_certain_frame = 0;
   bool is_empty = false;             ///< the map has no points
   bool is_interrupted = false;       ///< the run was ended early
   bool is_unwrapped = true;          ///< false for method `none`
@@ -30,13 +35,15 @@ struct MapEvidence {
 struct Judgement {
   Verdict verdict = Verdict::good;
   std::vector<std::string> reasons;  ///< clauses without a full stop; empty for a good verdict
+  std::vector<std::string> remarks;  ///< clauses about what the verdict does not depend on
 };
 
 /// Judges a map: each part of the evidence gives a verdict, and the worst one counts.
 /// docs/reports.md states the rules.
 Judgement judge(const MapEvidence& evidence);
 
-/// The reasons as text to append to a sentence: " Reasons: …; ….". Empty if there are none.
+/// Reasons and remarks as text to append to a sentence: " Reasons: …; …. Also: ….". Empty if there
+/// are none.
 std::string told_reasons(const Judgement& judgement);
 
 /// The verdict on a map whose ground truth is known: good if the accuracy is at most the size of a

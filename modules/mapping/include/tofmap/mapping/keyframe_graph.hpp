@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include <tofmap/mapping/keyframe.hpp>
+#include <tofmap/mapping/pose_spread.hpp>
 
 namespace boost::serialization {
 class access;
@@ -24,16 +26,18 @@ struct KeyframeSpacing {
 };
 
 /// The keyframes of a run, and which of them were registered with each other. Keyframes that were
-/// registered with each other have correct relative poses, however far the path drifted between
-/// them.
+/// registered with each other have correct relative poses, up to the spread of that registration,
+/// however far the path drifted between them. The spread is large where both saw little but a bare
+/// wall.
 class KeyframeGraph {
  public:
   /// Adds a keyframe, whose id must be size().
   void add(Keyframe keyframe);
 
-  /// Records that two keyframes were registered with each other, and that their poses agree with
-  /// the result.
-  void connect(int a, int b);
+  /// Records that two keyframes were registered with each other with this spread of their relative
+  /// pose, and that their poses agree with the result. If that is not the first time, the smaller
+  /// spread is kept.
+  void connect(int a, int b, const PoseSpread& spread);
 
   int size() const { return static_cast<int>(keyframes_.size()); }
   const Keyframe& operator[](int id) const { return keyframes_[static_cast<std::size_t>(id)]; }
@@ -53,22 +57,40 @@ class KeyframeGraph {
   void shrink(int size);
 
   /// At most `count` keyframes around a pose: keyframe `id`, and those nearest to the pose among
-  /// the keyframes that at most five registrations connect with `id`. Keyframe `id` comes last, the
-  /// others come in the order of their ids. `steps` is the unit of distance. The pointers are valid
-  /// until a keyframe is added.
+  /// the keyframes that are tied to it. Keyframe `id` comes last, the others come in the order of
+  /// their ids. `steps` is the unit of distance. The pointers are valid until a keyframe is added.
   std::vector<const Keyframe*> around(int id, const Pose& pose, int count,
                                       const KeyframeSpacing& steps) const;
+
+  /// Ids of the keyframes that are tied to a keyframe, without itself: at most five registrations
+  /// connect both, and these add up to at most `tied_sigma_m` of spread in translation.
+  std::vector<int> tied_to(int id) const;
+
+  /// For each keyframe, the spread of its pose relative to keyframe `id`, along the connections
+  /// that give the smallest spread in translation. Empty for a keyframe that nothing connects with
+  /// `id`.
+  std::vector<std::optional<PoseSpread>> spreads_from(int id) const;
+
+  /// Standard deviation of a relative pose up to which a frame can be registered with both
+  /// keyframes at once: what registration tolerates where surfaces do not coincide.
+  static constexpr double tied_sigma_m = 0.03;
 
  private:
   friend class boost::serialization::access;
   template <class Archive>
   void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
 
-  /// Ids of the keyframes that at most five registrations connect with `id`, without `id`.
-  std::vector<int> within_reach(int id) const;
+  /// A keyframe that another one was registered with.
+  struct Neighbour {
+    int id = 0;
+    PoseSpread spread;
+
+    template <class Archive>
+    void serialize(Archive& archive, unsigned version);
+  };
 
   std::vector<Keyframe> keyframes_;
-  std::vector<std::vector<int>> neighbours_;  ///< for each keyframe, those registered with it
+  std::vector<std::vector<Neighbour>> neighbours_;  ///< for each keyframe, those registered with it
 };
 
 }  // namespace tofmap

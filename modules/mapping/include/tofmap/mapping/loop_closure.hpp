@@ -9,6 +9,7 @@
 #include <tofmap/core/camera.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/mapping/keyframe.hpp>
+#include <tofmap/mapping/pose_spread.hpp>
 #include <tofmap/registration/pose_graph.hpp>
 #include <tofmap/registration/projective_icp.hpp>
 
@@ -19,7 +20,7 @@ struct LoopOptions {
   /// Whether loops are searched for, and the path corrected by them.
   bool close = true;
   /// Loops are searched for among keyframes that are at most this far away by their current poses,
-  /// 0.1 … 100 m.
+  /// and farther as far as these are uncertain; 0.1 … 100 m.
   double radius_m = 3;
   /// Loops are searched for among keyframes that are rotated by at most this by their current
   /// poses, 0.01 … 3.2 rad.
@@ -57,15 +58,21 @@ struct LoopCandidate {
 
 /// Searches for an earlier keyframe that sees the same place as `keyframe`.
 ///
-/// Candidates are keyframes of the same map with an id that is smaller by at least `min_keyframes`,
-/// whose cameras are within `radius_m` and `max_rotation_rad` of the camera of `keyframe`. First,
-/// `keyframe` is registered with the three candidates that overlap it most, together, from its
-/// current pose with drift_prior() along the path since. If the result is not verified, the drift
-/// may have been larger: then `keyframe` is registered with the candidate that looks most similar,
-/// from the pose of that candidate, and the result is accepted if it is within three standard
-/// deviations of drift. A loop is found if is_verified(). `keyframes` are in the order of their
-/// ids, from 0, and hold all earlier keyframes; later ones are ignored.
+/// `spreads` tell for each keyframe how uncertain its pose relative to `keyframe` is, as far as
+/// registrations can tell; the drift is that of the path in addition. Candidates are keyframes of
+/// the same map with an id that is smaller by at least `min_keyframes`, or with a spread that no
+/// frame can be registered across (KeyframeGraph::tied_sigma_m). Their cameras are within
+/// `radius_m` and `max_rotation_rad` of the camera of `keyframe`, plus three standard deviations of
+/// drift.
+///
+/// First, `keyframe` is registered with the three candidates that overlap it most, together, from
+/// its current pose with a prior of drift. If that is wider than ICP reaches, or if the result is
+/// not verified, the place is recognised among the candidates (recognise()), and the result is
+/// accepted if it is within three standard deviations of drift. A loop is found if the result is
+/// verified (is_verified()) and does not contradict the free space of the candidate. `keyframes`
+/// are in the order of their ids, from 0, and hold all earlier keyframes; later ones are ignored.
 LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyframes,
+                        std::span<const std::optional<PoseSpread>> spreads,
                         const CameraModel& camera, const LoopOptions& options,
                         const RegistrationOptions& registration);
 

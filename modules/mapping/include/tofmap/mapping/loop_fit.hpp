@@ -19,16 +19,25 @@ std::vector<const PoseEdge*> most_that_agree(const std::vector<const PoseEdge*>&
                                              std::span<const Keyframe> keyframes,
                                              const LoopOptions& options);
 
-/// Optimises the poses of keyframes over all edges between them (optimise_pose_graph()).
+/// Poses of keyframes that fit odometry and loops.
+struct LoopFit {
+  std::vector<Pose> poses;               ///< in the order of the keyframes
+  std::vector<double> edge_mahalanobis;  ///< Mahalanobis distance of each edge at these poses
+  std::vector<bool> is_used;             ///< for each edge, whether the poses follow it
+};
+
+/// Optimises the poses of keyframes over the edges between them (optimise_pose_graph()).
+///
+/// A loop that would move its keyframe needs support: it is left out unless at least two other
+/// loops agree with it. Loops among the others that the kernel rejects are not used either.
 ///
 /// The covariances of edges only cover noise. Errors that all frames share, such as a periodic
 /// error of ranges, add up along the path to much more, so that correct loops would be rejected.
-/// Wrong loops do not agree with each other. Therefore, if more than half of the loops, and at
-/// least two, agree with each other, but most of these are rejected, the path is taken to be wrong.
-/// The poses are then optimised again with only these loops, and with larger covariances of the
-/// other edges, which allow for a drift of `drift_share` of the path. The result has the
-/// Mahalanobis distances of all edges in any case.
-PoseGraphResult fit_loops(std::span<const Keyframe> keyframes, std::span<const PoseEdge> edges,
-                          const LoopOptions& options);
+/// Wrong loops do not agree with each other. Therefore, if more than half of the supported loops
+/// agree with each other, but most of these are rejected, the path is taken to be wrong. The poses
+/// are then optimised again with only these loops, and with larger covariances of the other edges,
+/// which allow for a drift of `drift_share` of the path.
+LoopFit fit_loops(std::span<const Keyframe> keyframes, std::span<const PoseEdge> edges,
+                  const LoopOptions& options);
 
 }  // namespace tofmap

@@ -20,9 +20,15 @@ class MotionUncertainty {
  public:
   using Covariance = Eigen::Matrix<double, 6, 6>;
 
-  /// The arguments are the standard deviations, per axis, of the change in frame-to-frame rotation
-  /// and translation from one frame to the next.
+  /// The arguments are the largest standard deviations, per axis, of the change in frame-to-frame
+  /// rotation and translation from one frame to the next. They hold until changes are noted.
   MotionUncertainty(double rotation_sigma_rad, double translation_sigma_m);
+
+  /// Learns how steady the motion is from the change of the motion to a frame: the difference, over
+  /// `frames` ≥ 1 frames, of the pose that was found from that which constant velocity predicts.
+  /// The standard deviations become twice the root mean square of recent changes, but at least a
+  /// tenth of the largest ones and at most these.
+  void note_change(double rotation_rad, double translation_m, int frames);
 
   /// Predicts over `frames` ≥ 1 frames, then updates with the information about the pose that the
   /// surfaces of the last of these frames give.
@@ -31,12 +37,13 @@ class MotionUncertainty {
   /// Covariance of the error of the last pose.
   Covariance of_pose() const { return joint_.topLeftCorner<6, 6>(); }
 
-  /// Sets all uncertainty to zero: the pose is known, and the camera stands still.
+  /// Sets all uncertainty to zero: the pose is known, and the camera stands still. Forgets the
+  /// noted changes.
   void reset();
 
-  /// Sets the uncertainty of the pose to zero, as if it were measured from the camera's present
-  /// place from now on. That of the velocity remains.
-  void restart();
+  /// Sets the covariance of the pose, as if it were measured from another place from now on. That
+  /// of the velocity remains.
+  void restart(const Covariance& of_pose = Covariance::Zero());
 
   /// Rotates the covariance into new axes of the world.
   void rotate(const Eigen::Matrix3d& new_from_old);
@@ -48,8 +55,9 @@ class MotionUncertainty {
 
   using Joint = Eigen::Matrix<double, 12, 12>;
 
-  Eigen::Matrix<double, 6, 1> change_sigmas_;
-  Joint joint_ = Joint::Zero();  ///< pose first, then velocity in twists per frame
+  Eigen::Matrix<double, 6, 1> largest_sigmas_;
+  Eigen::Matrix<double, 6, 1> mean_squares_;  ///< of recent changes
+  Joint joint_ = Joint::Zero();               ///< pose first, then velocity in twists per frame
 };
 
 }  // namespace tofmap

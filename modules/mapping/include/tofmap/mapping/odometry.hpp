@@ -14,6 +14,7 @@
 #include <tofmap/mapping/keyframe.hpp>
 #include <tofmap/mapping/loop_closure.hpp>
 #include <tofmap/mapping/motion_uncertainty.hpp>
+#include <tofmap/mapping/pose_spread.hpp>
 #include <tofmap/registration/projective_icp.hpp>
 
 namespace boost::serialization {
@@ -25,7 +26,8 @@ namespace tofmap {
 /// Options of Odometry, and of where RoomMapper takes keyframes.
 struct OdometryOptions {
   /// A frame becomes a keyframe if it is at least this far, or `keyframe_rotation_rad` in rotation,
-  /// from each keyframe around it, and twice as far from those of an earlier visit; 0.01 … 10 m.
+  /// from each keyframe around it, and twice as far from those of an earlier visit, or if its pose
+  /// relative to them is uncertain by half as much (one standard deviation); 0.01 … 10 m.
   double keyframe_translation_m = 0.25;
   /// Rotation from each keyframe around it that makes a frame a keyframe, 0.01 … 3.2 rad. See
   /// `keyframe_translation_m`.
@@ -78,10 +80,12 @@ struct TrackingResult {
   RegistrationResult registration;  ///< all defaults if registration was not tried
   /// Covariance of the error of the pose relative to each target if the status is `tracked`, else
   /// empty: rotation vector in radians, then translation in metres, along the axes of the world.
-  /// It tells of the surfaces of that target, and for the latest keyframe of the motion since it
-  /// was taken. In directions that these do not constrain, it is large, even if other targets
-  /// constrain them. RoomMapper::add_frame() makes edges of them and removes them.
+  /// It tells of the surfaces of that target, and for the latest keyframe, or the latest that was a
+  /// target all the time, of the motion since then. In directions that these do not constrain, it
+  /// is large, even if other targets constrain them. RoomMapper::add_frame() makes edges of them
+  /// and removes them.
   std::vector<Eigen::Matrix<double, 6, 6>> target_covariances;
+  PoseSpread spread;  ///< of the pose relative to all targets together, if the status is `tracked`
 
   /// Whether the pose of the frame was found.
   bool registered() const {
@@ -163,8 +167,8 @@ class Odometry {
   MotionPrior predict(double timestamp_s) const;
   std::vector<const Keyframe*> choose_targets(const SurfaceCloud& cloud, const Pose& expected,
                                               std::span<const Keyframe* const> around) const;
-  std::vector<Eigen::Matrix<double, 6, 6>> learn_covariances(double periods,
-                                                             const Attempt& attempt);
+  void note_change(double timestamp_s, const Pose& found);
+  void learn_covariances(double periods, const Attempt& attempt, TrackingResult& result);
   void accept(const StampedPose& pose);
 
   CameraModel camera_;
@@ -176,8 +180,10 @@ class Odometry {
   int frames_since_registered_ = 0;
   std::vector<double> recent_periods_s_;  ///< times between successive frames, the newest last
   double last_timestamp_s_ = 0;           ///< of the last frame passed to note_frame()
-  MotionUncertainty uncertainty_;         ///< of the last registered pose, relative to `reference_`
-  int reference_ = -1;                    ///< id of the latest keyframe; −1 before the first one
+  MotionUncertainty uncertainty_;         ///< of the last registered pose
+  /// Id of the keyframe that `uncertainty_` refers to: the latest one, or, once that is no target
+  /// any more, another one; −1 before the first one.
+  int reference_ = -1;
   static constexpr double expected_support = 0.8;  ///< before any frame was registered
   static constexpr double expected_inlier_ratio = 0.9;
   /// Share of a frame's points that fit the surfaces, averaged over recent registered frames.

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include <tofmap/mapping/camera_travel.hpp>
 #include <tofmap/mapping/keyframe_graph.hpp>
 #include <tofmap/mapping/loop_closure.hpp>
 #include <tofmap/mapping/moving_regions.hpp>
@@ -26,6 +27,12 @@ struct Loop {
   double error_m = 0;               ///< error of the path in position when the loop was found
   double mahalanobis_distance = 0;  ///< of the loop constraint at the poses of the last fit
   bool is_used = false;  ///< whether the last fit accepted it; false before the first fit
+};
+
+/// How certain the pose of a keyframe is.
+struct PoseCertainty {
+  int frame = 0;      ///< index of the frame of the keyframe
+  PoseSpread spread;  ///< relative to the first keyframe of the map
 };
 
 /// Input of RoomMapper::add_frame().
@@ -65,11 +72,12 @@ struct AddedFrame {
 ///
 /// When tracking is lost, a new map begins: once three frames with a surface could not be
 /// registered, the first of them is the origin of a map of its own, and the others are tracked in
-/// it. Every keyframe of the newest map is compared with those of the other maps; when three
-/// keyframes recognise places of another map and agree, both maps are joined. Maps that never are
-/// stay maps of their own. People, doors and other things that move are found (MovingRegions); they
-/// have no part in registration, keyframes and surface. A map of fewer than three frames is dropped
-/// again when the next one begins.
+/// it. Every keyframe of the newest map is compared with those of the other maps that the camera
+/// can have come to in the time (can_travel()); when three keyframes recognise places of another
+/// map and agree, both maps are joined. Maps that never are stay maps of their own. People, doors
+/// and other things that move are found (MovingRegions); they have no part in registration,
+/// keyframes and surface. A map of fewer than three frames is dropped again when the next one
+/// begins.
 class RoomMapper {
  public:
   RoomMapper(const CameraModel& camera, const OdometryOptions& odometry,
@@ -94,6 +102,9 @@ class RoomMapper {
   Trajectory trajectory(int map) const;
   /// Current poses of all keyframes of a map.
   Trajectory keyframe_trajectory(int map) const;
+  /// The keyframe of a map whose position relative to the first one is least certain by what
+  /// registrations tell (KeyframeGraph::spreads_from()). The map must have a keyframe.
+  PoseCertainty least_certain(int map) const;
   /// The surface of a map: all of its submaps in its world frame, without free-space violations if
   /// the options say so.
   MapCloud surface(int map) const;
@@ -141,12 +152,13 @@ class RoomMapper {
   void integrate(const SurfaceCloud& cloud);
   void close_loops();
   void recognise_place();
+  std::vector<Stretch> stretches() const;
   void join_maps();
   void add_loop(const PoseEdge& edge, double error_m);
   KeyframeSpacing keyframe_spacing() const;
   Pose pose_of(const RegisteredFrame& frame) const;
   std::vector<const Keyframe*> keyframes_around() const;
-  bool wants_keyframe(const Pose& pose, std::span<const Keyframe* const> around) const;
+  bool wants_keyframe(const TrackingResult& result, std::span<const Keyframe* const> around) const;
   void add_keyframe(const NewFrame& frame, std::span<const Keyframe* const> around,
                     const TrackingResult& result);
   int submap_for(int id, const Pose& pose, std::span<const Keyframe* const> around);

@@ -123,14 +123,17 @@ struct RoomMap {
   MapCloud surface;                        ///< in world coordinates
   std::vector<SeparateMap> separate_maps;  ///< the other maps, the one with most frames first
   std::vector<Loop> loops;                 ///< all loops that were found, used or not
+  PoseCertainty least_certain;             ///< RoomMapper::least_certain(); zero without keyframes
   std::vector<FrameRecord> frames;         ///< all frames, in order
   ErrorSurvey errors;                      ///< MapRun::errors at the end of the run
   bool interrupted = false;                ///< a hook ended the run early
 
-  int damaged() const;     ///< number of frames that could not be read
-  int repeated() const;    ///< number of frames that repeat the frame before them
-  int degenerate() const;  ///< number of frames with a degenerate direction of motion
-  int separate() const;    ///< number of frames that are registered in separate maps
+  int damaged() const;       ///< number of frames that could not be read
+  int repeated() const;      ///< number of frames that repeat the frame before them
+  int degenerate() const;    ///< number of frames with a degenerate direction of motion
+  int separate() const;      ///< number of frames that are registered in separate maps
+  int joins() const;         ///< number of frames at which maps were joined
+  int unused_loops() const;  ///< number of loops that the poses of the keyframes do not follow
 };
 
 /// The evidence that the frames and the surface of a map give for its verdict. The accuracy is
