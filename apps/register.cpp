@@ -13,6 +13,7 @@
 #include <utility>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <tofmap/cloud/downsample.hpp>
@@ -40,11 +41,25 @@ struct Input {
   std::vector<std::string> files;                            ///< all files, in the order given
 };
 
-void read_cloud(const std::filesystem::path& file, Input& input) {
+/// Reads a cloud without its points at a limit of range. Throws InputError if no others are left.
+PointSet read_surfaces(const std::filesystem::path& file, SensorAtOrigin at_origin) {
+  PointSet cloud = read_points(file);
+  leave_out_range_limit(cloud, at_origin);
+  if (!cloud.limit) return cloud;
+  const std::string named = fmt::format("{}: {} points at a constant greatest range of {:.2f}",
+                                        file.string(), cloud.limit->points, cloud.limit->range);
+  if (cloud.points.empty()) {
+    throw InputError(named + ", and no others; does the file hold the surfaces?");
+  }
+  std::fprintf(stderr, "tofmap: %s are left out\n", named.c_str());
+  return cloud;
+}
+
+void read_cloud(const std::filesystem::path& file, SensorAtOrigin at_origin, Input& input) {
   const std::size_t place = input.files.size();
   input.files.push_back(file.string());
   try {
-    input.clouds.push_back(read_points(file));
+    input.clouds.push_back(read_surfaces(file, at_origin));
   } catch (const InputError& error) {
     input.damages.emplace_back(place, error.what());
     return;
@@ -61,10 +76,10 @@ void read_cloud(const std::filesystem::path& file, Input& input) {
 /// Reads all clouds. Files that cannot be read are left out and named on stderr. Throws InputError,
 /// with the reason for the first, if these are more than half, or if fewer than two clouds are
 /// left.
-Input read_clouds(const std::vector<std::filesystem::path>& files) {
+Input read_clouds(const std::vector<std::filesystem::path>& files, SensorAtOrigin at_origin) {
   if (files.size() < 2) throw UsageError("register: needs at least two clouds");
   Input input;
-  for (const std::filesystem::path& file : files) read_cloud(file, input);
+  for (const std::filesystem::path& file : files) read_cloud(file, at_origin, input);
   if (2 * input.damages.size() > files.size() || input.clouds.size() < 2) {
     throw InputError(input.damages.front().second);
   }
@@ -81,6 +96,10 @@ ordered_json matrix_json(const Eigen::Matrix4d& matrix) {
     for (int col = 0; col < 4; ++col) numbers.push_back(matrix(row, col));
   }
   return numbers;
+}
+
+ordered_json vector_json(const Eigen::Vector3d& vector) {
+  return {vector.x(), vector.y(), vector.z()};
 }
 
 /// The transform of a cloud into the common frame, including the scale of its unit.
@@ -127,6 +146,20 @@ ordered_json transforms_json(const Input& input, const CloudRegistration& regist
   return {{"clouds", by_place}};
 }
 
+/// What is known of a cloud without regard to the others.
+ordered_json cloud_json(const Input& input, std::size_t i, const RegisteredCloud& cloud) {
+  ordered_json json;
+  json["path"] = input.names[i];
+  json["points"] = input.clouds[i].points.size();
+  json["sensor"] = name_of(cloud.sensor.source);
+  json["sensor_position"] = cloud.sensor.position ? vector_json(*cloud.sensor.position) : nullptr;
+  const std::optional<RangeLimit>& limit = input.clouds[i].limit;
+  if (limit) {
+    json["range_limit"] = {{"points_left_out", limit->points}, {"range", limit->range}};
+  }
+  return json;
+}
+
 ordered_json pair_json(const Input& input, const CloudPair& pair) {
   ordered_json json;
   json["source"] = input.names[static_cast<std::size_t>(pair.source)];
@@ -137,7 +170,9 @@ ordered_json pair_json(const Input& input, const CloudPair& pair) {
   json["overlap"] = pair.fit.overlap;
   json["inlier_ratio"] = pair.fit.inlier_ratio;
   json["rmse_m"] = pair.fit.rmse_m;
+  json["tested_views"] = pair.tested_views;
   json["free_space_violation"] = pair.free_space_violation;
+  json["window_share"] = pair.window_share;
   json["runner_up"] = pair.runner_up;
   json["direction_share"] = pair.direction_share;
   json["mahalanobis_distance"] = pair.mahalanobis_distance;
@@ -153,6 +188,10 @@ ordered_json report_json(const Input& input, const CloudRegistration& registrati
                        {"pairs", registration.pairs.size()},
                        {"voxel_m", registration.voxel_m},
                        {"interrupted", registration.interrupted}};
+  report["clouds"] = ordered_json::array();
+  for (std::size_t i = 0; i < input.names.size(); ++i) {
+    report["clouds"].push_back(cloud_json(input, i, registration.clouds[i]));
+  }
   report["pairs"] = ordered_json::array();
   for (const CloudPair& pair : registration.pairs) {
     report["pairs"].push_back(pair_json(input, pair));
@@ -189,7 +228,7 @@ int run_register(const RegisterArguments& arguments) {
   ProgramOptions options;
   const OptionTable table = arguments.common.resolve("register", options);
   OutputFolder out(arguments.out);
-  const Input input = read_clouds(arguments.clouds);
+  const Input input = read_clouds(arguments.clouds, options.cloud_registration.sensor_at_origin);
   CloudRegistration registration;
   {
     std::optional<Progress> progress;

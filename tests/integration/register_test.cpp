@@ -30,6 +30,19 @@ class Register : public testing::Test {
     return scan(RayScene(scene.surface), scene.path.pose_at(at));
   }
 
+  /// How far a point three metres before the second cloud's sensor is from its true place in the
+  /// first cloud, if both are scans of the room that were moved.
+  double error_m(const Pose& first_motion, const Pose& second_motion) const {
+    const CameraPath path = make_scene("room").path;
+    const Pose first = path.pose_at(0) * first_motion.inverse();
+    const Pose second = path.pose_at(1) * second_motion.inverse();
+    const std::vector<double> found = read_json(out_ / "transforms.json")["clouds"][1]["transform"];
+    Eigen::Matrix4d matrix;
+    for (int i = 0; i < 16; ++i) matrix(i / 4, i % 4) = found[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d ahead = second_motion * Eigen::Vector3d(0, 0, 3);
+    return ((matrix * ahead.homogeneous()).head<3>() - first.inverse() * second * ahead).norm();
+  }
+
   void write(const std::string& name, const PointSet& points) const {
     write_labelled_points(path(name), {points.points});
   }
@@ -105,6 +118,51 @@ TEST_F(Register, LeavesOutAFileThatIsNoCloudAndPlacesTheOthers) {
   EXPECT_THAT(clouds[1]["damage"], HasSubstr("text.ply"));
   EXPECT_EQ(clouds[2]["converged"], true);
   EXPECT_EQ(read_json(out_ / "report.json")["summary"]["damaged"], 1);
+}
+
+TEST_F(Register, LeavesOutPointsAtALimitOfRangeAndPlacesTheOthers) {
+  // The spheres have as many points as the surfaces. Only the identity aligns them.
+  const std::size_t surfaces = scan_of("room", 0).points.size();
+  write("c.ply", with_limit(scan_of("room", 0), 12, 18000));
+  write("d.ply", with_limit(scan_of("room", 1), 12, 18000));
+  const Finished finished = run({"c.ply", "d.ply"});
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_THAT(finished.err, HasSubstr("c.ply: 18000 points at a constant greatest range of 12.00"));
+  EXPECT_LT(error_m(Pose::Identity(), Pose::Identity()), 0.02);
+  const nlohmann::json cloud = read_json(out_ / "report.json")["clouds"][0];
+  EXPECT_EQ(cloud["range_limit"]["points_left_out"], 18000);
+  EXPECT_NEAR(cloud["range_limit"]["range"].get<double>(), 12, 0.01);
+  EXPECT_EQ(cloud["sensor"], "range_limit");
+  EXPECT_EQ(cloud["points"], surfaces);
+}
+
+TEST_F(Register, PlacesScansThatWereMovedOutOfTheFramesOfTheirSensors) {
+  const Pose little = moved_by({0.3, 0.2, 1}, {0.8, -0.5, 0.3});
+  const Pose far = moved_by({0, 1, 0}, {12, 5, -3});
+  write("c.ply", moved(scan_of("room", 0), little));
+  write("d.ply", moved(scan_of("room", 1), far));
+  const Finished finished = run({"c.ply", "d.ply"});
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_LT(error_m(little, far), 0.02);
+  const nlohmann::json clouds = read_json(out_ / "report.json")["clouds"];
+  EXPECT_NE(clouds[0]["sensor_position"], (nlohmann::json{0, 0, 0}));
+}
+
+TEST_F(Register, TakesTheOriginForTheSensorIfItIsTold) {
+  const Finished finished = run({"a.ply", "b.ply"}, {"--set", "register.sensor_at_origin=yes"});
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  const nlohmann::json cloud = read_json(out_ / "report.json")["clouds"][1];
+  EXPECT_EQ(cloud["sensor"], "given");
+  EXPECT_EQ(cloud["sensor_position"], (nlohmann::json{0.0, 0.0, 0.0}));
+}
+
+TEST_F(Register, NamesACloudOfNothingButPointsAtALimitOfRange) {
+  write("limit.ply", with_limit({}, 30, 5000));
+  const Finished finished = run({"a.ply", "limit.ply"});
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, HasSubstr("limit.ply: 5000 points at a constant greatest range of "
+                                      "30.00, and no others"));
+  EXPECT_FALSE(std::filesystem::exists(out_));
 }
 
 TEST_F(Register, TakesCloudsWhoseNamesAreNotUtf8) {

@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
+#include <tofmap/registration/oriented_cloud.hpp>
 #include <tofmap/registration/spherical_view.hpp>
 
 namespace tofmap {
@@ -29,24 +32,21 @@ TEST(SphericalView, KnowsTheNearestRangeInADirection) {
   EXPECT_FALSE(view.nearest_range_around_m({5, 0, 1}));
 }
 
-TEST(FreeSpaceViolationShare, IsOfWhatStandsBeforeWhatWasSeen) {
+TEST(Sights, TellSurfacesFromFreeSpaceAndFromWhatIsHidden) {
   const OrientedCloud far = wall_at(4);
   const SphericalView view(far.points_m, Eigen::Vector3d::Zero());
+  const auto count = [&](const OrientedCloud& wall, Sight sight) {
+    const auto found = sights(view, wall.points_m, Pose::Identity(), 0.1);
+    return static_cast<std::size_t>(std::ranges::count(found, sight));
+  };
+  EXPECT_EQ(count(far, Sight::surface), far.size());
+  // The near wall fills a wider angle than the far one: its border is in no bin of the view.
   const OrientedCloud near = wall_at(2);
-  EXPECT_EQ(free_space_violation_share(view, far, Pose::Identity(), 0.1), 0);
-  // The near wall fills a wider angle: what is off the far one was never looked at.
-  EXPECT_EQ(free_space_violation_share(view, near, Pose::Identity(), 0.1), 1);
-  // Behind it nothing contradicts.
-  EXPECT_EQ(free_space_violation_share(view, wall_at(6), Pose::Identity(), 0.1), 0);
-}
-
-TEST(MayBeViewpoint, IsAPlaceThatSeesEverything) {
-  OrientedCloud walls = wall_at(2);
-  const OrientedCloud behind = wall_at(4);
-  walls.points_m.insert(walls.points_m.end(), behind.points_m.begin(), behind.points_m.end());
-  EXPECT_TRUE(may_be_viewpoint(behind.points_m, Eigen::Vector3d::Zero()));
-  EXPECT_FALSE(may_be_viewpoint(walls.points_m, Eigen::Vector3d::Zero()));
-  EXPECT_TRUE(may_be_viewpoint(walls.points_m, Eigen::Vector3d(0, 0, 3)));
+  EXPECT_GT(count(near, Sight::free_space), near.size() / 5);
+  EXPECT_EQ(count(near, Sight::surface), 0U);
+  EXPECT_EQ(count(near, Sight::free_space) + count(near, Sight::nothing), near.size());
+  const OrientedCloud behind = wall_at(6);
+  EXPECT_EQ(count(behind, Sight::nothing), behind.size());
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include "box_ranges.hpp"
 
+#include <cmath>
+#include <numbers>
 #include <random>
 
 #include <tofmap/cloud/point_file.hpp>
@@ -33,6 +35,24 @@ inline PointSet scan(const RayScene& scene, const Pose& world_from_sensor, unsig
     }
   }
   return points;
+}
+
+/// Adds points at a limit of range in the upper half of all directions from the origin, as a sensor
+/// writes them for rays without a return.
+inline PointSet with_limit(PointSet cloud, double limit_m, int count) {
+  for (int i = 0; i < count; ++i) {
+    const double up = (i + 0.5) / count;
+    const double azimuth = 2 * std::numbers::pi * std::numbers::phi * i;
+    const double across = std::sqrt(1 - up * up);
+    cloud.points.emplace_back(
+        limit_m * Eigen::Vector3d(across * std::cos(azimuth), across * std::sin(azimuth), up));
+  }
+  return cloud;
+}
+
+inline PointSet moved(PointSet cloud, const Pose& motion) {
+  for (Eigen::Vector3d& point : cloud.points) point = motion * point;
+  return cloud;
 }
 
 inline PointSet scaled(PointSet points, double factor) {

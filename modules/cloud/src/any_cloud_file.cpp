@@ -144,7 +144,12 @@ bool read_by_ending(const std::filesystem::path& file, AnyCloud& cloud) try {
   } else {
     throw InputError("not a .ply, .pcd, .vtk or .vtp file; convert it to one of these formats");
   }
-  cloud.viewpoint = origin.head<3>().cast<double>();
+  // Writers that know no pose state the identity.
+  constexpr float no_rotation_rad = 1e-3F;
+  const float rotation_rad = orientation.angularDistance(Eigen::Quaternionf::Identity());
+  if (!origin.head<3>().isZero(0) || rotation_rad > no_rotation_rad) {
+    cloud.viewpoint = origin.head<3>().cast<double>();
+  }
   return status >= 0;
 } catch (const std::bad_alloc&) {
   return false;

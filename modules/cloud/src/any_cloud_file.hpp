@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,7 @@ class QuietPcl {
 /// A cloud with the fields of its file, which include x, y and z.
 struct AnyCloud {
   pcl::PCLPointCloud2 data;
-  Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();  ///< zero also if the file has none
+  std::optional<Eigen::Vector3d> viewpoint;  ///< empty if the file states no pose of the sensor
 };
 
 /// Reads a PLY, PCD or VTK (.vtk, .vtp) file. Of a VTK file, only positions are read. Throws

@@ -21,7 +21,7 @@ PointSet read_points(const std::filesystem::path& file) {
         file.string() +
         ": has no points, apart from those at (0, 0, 0) or not finite; is it the right file?");
   }
-  if (!cloud.viewpoint.isZero(0)) out.viewpoint = cloud.viewpoint;
+  out.viewpoint = cloud.viewpoint;
   return out;
 }
 

@@ -3,6 +3,8 @@
 
 #include "cloud_pair.hpp"
 
+#include "free_space.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,9 +22,6 @@ constexpr std::size_t fine_points = 15000;
 
 /// Poses are the same if points at the RMS radius of the source move by less than this.
 constexpr double same_pose_voxels = 4;
-
-/// A point this far in front of a surface is not on it.
-constexpr double contradiction_slack_voxels = 1;
 
 /// Largest share of free-space violations. Moving objects and sensor errors cause smaller shares.
 constexpr double max_contradiction = 0.023;
@@ -73,19 +72,23 @@ bool is_same_pose(const Pose& a, const Pose& b, double lever_m, double tolerance
          tolerance_m;
 }
 
-/// The larger share of free-space violations of either cloud. 0 if the viewpoint of neither sensor
-/// is known.
-double contradiction(const LevelledCloud& source, const LevelledCloud& target, const Pose& pose) {
-  const double slack_m = contradiction_slack_voxels * target.levels.front().voxel_m;
-  double share = 0;
-  if (target.view) {
-    share = free_space_violation_share(*target.view, source.levels.front(), pose, slack_m);
+/// The larger shares of either cloud.
+struct Contradiction {
+  double free_space_violation = 0;
+  double windows = 0;
+
+  void include(const FreeSpaceEvidence& evidence) {
+    free_space_violation = std::max(free_space_violation, evidence.violation_share());
+    windows = std::max(windows, evidence.window_share());
   }
-  if (source.view) {
-    share = std::max(share, free_space_violation_share(*source.view, target.levels.front(),
-                                                       pose.inverse(), slack_m));
-  }
-  return share;
+};
+
+Contradiction contradiction(const LevelledCloud& source, const LevelledCloud& target,
+                            const Pose& pose) {
+  Contradiction found;
+  found.include(least_evidence(target.views, source, pose));
+  found.include(least_evidence(source.views, target, pose.inverse()));
+  return found;
 }
 
 /// Refines the guesses on the coarsest level. Returns distinct poses, best quality first.
@@ -104,7 +107,8 @@ std::vector<Candidate> refine_guesses(const LevelledCloud& source_cloud,
     candidate.support = guess.support;
     candidate.fit = mutual_fit(source, target, candidate.icp.target_from_source);
     candidate.free_space_violation =
-        contradiction(source_cloud, target_cloud, candidate.icp.target_from_source);
+        contradiction(source_cloud, target_cloud, candidate.icp.target_from_source)
+            .free_space_violation;
     all.push_back(candidate);
   }
   std::ranges::stable_sort(all, std::ranges::greater(), &Candidate::quality);
@@ -136,6 +140,7 @@ CloudPair align_pair(const LevelledCloud& source, const LevelledCloud& target,
                      const CloudRegistrationOptions& options) {
   const CloudMethod method = options.method;
   CloudPair pair;
+  pair.tested_views = static_cast<int>(source.views.size() + target.views.size());
   const auto matches = match_features(source.features, target.features);
   pair.matches = static_cast<int>(matches.size());
   const auto guesses = guess_alignments(source.levels.front(), target.levels.front(), matches);
@@ -152,7 +157,9 @@ CloudPair align_pair(const LevelledCloud& source, const LevelledCloud& target,
   pair.support = best.support;
   // The fit is judged on the coarsest level, since means over large voxels have little noise.
   pair.fit = mutual_fit(source.levels.front(), target.levels.front(), best.icp.target_from_source);
-  pair.free_space_violation = contradiction(source, target, best.icp.target_from_source);
+  const Contradiction contradicting = contradiction(source, target, best.icp.target_from_source);
+  pair.free_space_violation = contradicting.free_space_violation;
+  pair.window_share = contradicting.windows;
   pair.direction_share = best.icp.direction_shares.minCoeff();
   pair.covariance = best.icp.covariance;
   pair.target_from_source = best.icp.target_from_source;

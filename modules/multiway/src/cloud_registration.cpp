@@ -49,8 +49,12 @@ class Registration {
         spacings_(side_by_side(static_cast<int>(clouds.size()),
                                [&](int i) { return feature_voxel(clouds[i]); })),
         is_common_(of_common_size(spacings_)),
+        sensors_(
+            side_by_side(static_cast<int>(clouds.size()),
+                         [&](int i) { return find_sensor(clouds[i], options.sensor_at_origin); })),
         levels_(clouds.size()) {
     out_.clouds.resize(clouds.size());
+    for (std::size_t i = 0; i < clouds.size(); ++i) out_.clouds[i].sensor = sensors_[i];
     out_.voxel_m = options.voxel_m > 0 ? options.voxel_m : common_voxel();
     const double least_m = common_voxel() / most_refinement;
     if (out_.voxel_m >= least_m) return;
@@ -82,7 +86,8 @@ class Registration {
   }
 
   std::optional<LevelledCloud> levels_with_unit(int i, double unit_m) const {
-    return make_levels(clouds_[static_cast<std::size_t>(i)], unit_m, out_.voxel_m);
+    const auto index = static_cast<std::size_t>(i);
+    return make_levels(clouds_[index], sensors_[index], unit_m, out_.voxel_m);
   }
 
   bool may_go_on(int done, int all) {
@@ -223,6 +228,7 @@ class Registration {
   const std::function<bool(int, int)>& keep_going_;
   std::vector<double> spacings_;  ///< feature_voxel() of each cloud, in its own unit
   std::vector<bool> is_common_;   ///< of_common_size()
+  std::vector<CloudSensor> sensors_;
   std::vector<std::optional<LevelledCloud>> levels_;
   CloudRegistration out_;
 };
@@ -237,6 +243,9 @@ std::vector<OptionField<CloudRegistrationOptions>> CloudRegistrationOptions::fie
        "so that about 5000 points per cloud remain"},
       {"method", &O::method, 0, 0, "",
        "how poses are refined; the methods of PCL are for comparison"},
+      {"sensor_at_origin", &O::sensor_at_origin, 0, 0, "",
+       "whether the origin of each cloud is the position of its sensor, so that free space is "
+       "known; infer tells it by the pattern of the points"},
       {"min_overlap", &O::min_overlap, 0, 1, "",
        "smallest share of one of two clouds that must be near the other"},
       {"min_inlier_ratio", &O::min_inlier_ratio, 0, 1, "",

@@ -3,6 +3,8 @@
 
 #include "levelled_cloud.hpp"
 
+#include "possible_views.hpp"
+
 #include <tofmap/cloud/downsample.hpp>
 
 namespace tofmap {
@@ -28,32 +30,22 @@ Eigen::Vector3d mean(const std::vector<Eigen::Vector3d>& points) {
   return sum / static_cast<double>(points.size());
 }
 
-/// The viewpoint of the sensor in the centred frame: the one in the file, or the origin of the
-/// cloud's frame if the cloud could have been seen from there.
-std::optional<Eigen::Vector3d> viewpoint(const PointSet& cloud, double unit_m,
-                                         const Eigen::Vector3d& centre_m,
-                                         const std::vector<Eigen::Vector3d>& points_m) {
-  if (cloud.viewpoint) return unit_m * *cloud.viewpoint - centre_m;
-  const Eigen::Vector3d origin_m = -centre_m;
-  std::vector<Eigen::Vector3f> points;
-  for (const Eigen::Vector3d& point : points_m) points.push_back(point.cast<float>());
-  if (!may_be_viewpoint(points, origin_m)) return std::nullopt;
-  return origin_m;
-}
-
 }  // namespace
 
 double feature_voxel(const PointSet& cloud) {
   return voxel_for_count(cloud.points, feature_points);
 }
 
-std::optional<LevelledCloud> make_levels(const PointSet& cloud, double unit_m, double voxel_m) {
+std::optional<LevelledCloud> make_levels(const PointSet& cloud, const CloudSensor& sensor,
+                                         double unit_m, double voxel_m) {
+  if (cloud.points.size() < least_oriented_points) return std::nullopt;
   LevelledCloud out;
   out.centre_m = unit_m * mean(cloud.points);
   const std::vector<Eigen::Vector3d> points = centred(cloud, unit_m, out.centre_m);
   const std::vector<Eigen::Vector3d> coarse = downsample(points, voxel_m);
-  const auto stood_at = viewpoint(cloud, unit_m, out.centre_m, coarse);
-  const Eigen::Vector3d from = stood_at.value_or(mean(coarse));
+  std::optional<Eigen::Vector3d> sensor_m;
+  if (sensor.position) sensor_m = unit_m * *sensor.position - out.centre_m;
+  const Eigen::Vector3d from = sensor_m.value_or(mean(coarse));
   auto coarsest = orient(coarse, voxel_m, from);
   if (!coarsest) return std::nullopt;
   out.levels.push_back(std::move(*coarsest));
@@ -67,8 +59,13 @@ std::optional<LevelledCloud> make_levels(const PointSet& cloud, double unit_m, d
     out.levels.push_back(std::move(*level_cloud));
     count = finer.size();
   }
-  if (stood_at) out.view.emplace(out.levels.back().points_m, *stood_at);
+  if (sensor_m) {
+    out.views.emplace_back(out.levels.back().points_m, *sensor_m);
+  } else {
+    out.views = possible_views(out.levels);
+  }
   out.features = point_features(out.levels.front());
+  out.neighbours = VoxelNeighbours(out.levels.front().points_m, out.levels.front().voxel_m);
   return out;
 }
 

@@ -63,36 +63,25 @@ float SphericalView::at(const Bin& bin) const {
   return nearest_m_[static_cast<std::size_t>(bin.elevation * azimuths + bin.azimuth)];
 }
 
-bool may_be_viewpoint(std::span<const Eigen::Vector3f> points_m, const Eigen::Vector3d& place_m) {
-  constexpr double max_range_ratio = 1.2;
-  constexpr double max_hidden_share = 0.1;
-  const SphericalView view(points_m, place_m);
-  const auto hidden = std::ranges::count_if(points_m, [&](const Eigen::Vector3f& point) {
-    const Eigen::Vector3d place = point.cast<double>();
-    return (place - place_m).norm() > max_range_ratio * view.range_m(place).value_or(nothing);
-  });
-  return static_cast<double>(hidden) < max_hidden_share * static_cast<double>(points_m.size());
-}
-
-double free_space_violation_share(const SphericalView& view, const OrientedCloud& cloud,
-                                  const Pose& view_from_cloud, double slack_m) {
+std::vector<Sight> sights(const SphericalView& view, std::span<const Eigen::Vector3f> points_m,
+                          const Pose& view_from_points, double slack_m) {
   constexpr double slack_share = 0.02;
-  int in_front = 0;
-  int on_surface = 0;
-  for (const Eigen::Vector3f& point : cloud.points_m) {
-    const Eigen::Vector3d place = view_from_cloud * point.cast<double>();
+  std::vector<Sight> out;
+  out.reserve(points_m.size());
+  for (const Eigen::Vector3f& point : points_m) {
+    const Eigen::Vector3d place = view_from_points * point.cast<double>();
     const double range_m = (place - view.from_m()).norm();
     const double slack = slack_m + slack_share * range_m;
     const std::optional<double> nearest_m = view.nearest_range_around_m(place);
     if (nearest_m && range_m < *nearest_m - slack) {
-      ++in_front;
+      out.push_back(Sight::free_space);
       continue;
     }
     const std::optional<double> seen_m = view.range_m(place);
-    on_surface += seen_m && std::abs(range_m - *seen_m) <= slack ? 1 : 0;
+    const bool is_on_surface = seen_m && std::abs(range_m - *seen_m) <= slack;
+    out.push_back(is_on_surface ? Sight::surface : Sight::nothing);
   }
-  const int all = in_front + on_surface;
-  return all > 0 ? static_cast<double>(in_front) / all : 0;
+  return out;
 }
 
 }  // namespace tofmap

@@ -11,6 +11,7 @@
 #include <tofmap/core/named_value.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/core/trajectory.hpp>
+#include <tofmap/multiway/cloud_sensor.hpp>
 #include <tofmap/registration/cloud_icp.hpp>
 
 namespace tofmap {
@@ -23,6 +24,9 @@ struct CloudRegistrationOptions {
   double voxel_m = 0;
   /// How poses are refined.
   CloudMethod method = CloudMethod::generalised;
+  /// Whether the origin of each cloud is the position of its sensor. If so, the cloud tells which
+  /// space is free, and the other clouds are tested against that.
+  SensorAtOrigin sensor_at_origin = SensorAtOrigin::infer;
   /// Smallest share of one of two clouds that must be near the other, 0 … 1.
   double min_overlap = 0.15;
   /// Smallest share of the near points that must lie on the surface of the other cloud, 0 … 1, for
@@ -66,7 +70,9 @@ struct CloudPair {
   int matches = 0;                  ///< number of feature matches
   int support = 0;                  ///< number of matches that agree on the pose
   CloudFit fit;                     ///< of whichever cloud overlaps the other more
+  int tested_views = 0;             ///< number of places from which free space was tested
   double free_space_violation = 0;  ///< larger share of free-space violations of either cloud
+  double window_share = 0;          ///< the same for what may be seen through windows
   double runner_up = 0;             ///< quality of the second best pose divided by that of this one
   double direction_share = 0;       ///< share of the direction that is constrained least
   double mahalanobis_distance = 0;  ///< of the pair at the poses of the fit over all pairs
@@ -76,6 +82,7 @@ struct CloudPair {
 struct RegisteredCloud {
   bool is_registered = false;
   Pose common_from_cloud = Pose::Identity();  ///< meaningful only if registered
+  CloudSensor sensor;        ///< how it was found, and where, in the frame and unit of the cloud
   double unit_m = 1;         ///< unit of length of the cloud, metres; its points are scaled by it
   std::string remark;        ///< why it is not registered, or what is unusual; empty if nothing is
   double inlier_ratio = 0;   ///< largest one of its registered pairs

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,7 +10,6 @@
 #include <Eigen/Core>
 
 #include <tofmap/core/trajectory.hpp>
-#include <tofmap/registration/oriented_cloud.hpp>
 
 namespace tofmap {
 
@@ -44,16 +44,17 @@ class SphericalView {
   std::vector<float> nearest_m_;  ///< by elevation, then azimuth; infinite in empty bins
 };
 
-/// Whether the cloud could have been seen from a point: less than 10 % of its points are occluded
-/// from there, that is, more than 1.2 times as far away as the nearest point of their bin.
-bool may_be_viewpoint(std::span<const Eigen::Vector3f> points_m, const Eigen::Vector3d& place_m);
+/// What a view shows at the place of a point.
+enum class Sight : std::uint8_t {
+  nothing,    ///< no surface in that direction, or the point is behind one
+  surface,    ///< a surface at the point
+  free_space  ///< the view sees through the place of the point: a free-space violation
+};
 
-/// Share of free-space violations: of the points of a cloud that lie on or in front of the surface
-/// that a view sees, the share in front of it, which the view sees through. A point is in front if
-/// it is nearer than the surface in its bin and in the bins around by more than `slack_m` plus 2 %
-/// of its range, and on the surface if it differs by no more than that from the surface in its bin.
-/// Points behind the surface and points in empty bins are not counted. 0 if no point is counted.
-double free_space_violation_share(const SphericalView& view, const OrientedCloud& cloud,
-                                  const Pose& view_from_cloud, double slack_m);
+/// What a view shows at the place of each point of a cloud. A point is in free space if it is
+/// nearer than the surface in its bin and in the bins around by more than `slack_m` plus 2 % of its
+/// range, and on the surface if it differs by no more than that from the surface in its bin.
+std::vector<Sight> sights(const SphericalView& view, std::span<const Eigen::Vector3f> points_m,
+                          const Pose& view_from_points, double slack_m);
 
 }  // namespace tofmap
