@@ -82,6 +82,16 @@ TEST(Verdict, SaysToCheckAMapThatRecognisedPlacesContradict) {
   EXPECT_EQ(told_reasons(judge(evidence)), " Reasons: the map contradicts 1 recognised place.");
 }
 
+TEST(Verdict, SaysToCheckAMapThatWasFoundAgainByItsLookAlone) {
+  MapEvidence evidence = good_evidence();
+  evidence.joins = 1;
+  evidence.blind_joins = 1;
+  const Judgement judgement = judge(evidence);
+  EXPECT_EQ(judgement.verdict, Verdict::doubtful);
+  ASSERT_EQ(judgement.reasons.size(), 1U);
+  EXPECT_EQ(judgement.reasons[0].substr(0, 33), "1 time, the camera was not tracke");
+}
+
 TEST(Verdict, MentionsJoinsThatDoNotMakeItWorse) {
   MapEvidence evidence = good_evidence();
   evidence.joins = 2;

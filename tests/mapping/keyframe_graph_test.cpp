@@ -3,6 +3,7 @@
 
 #include "support/box_ranges.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -85,6 +86,25 @@ TEST(KeyframeGraph, KnowsThePathThatIsMostCertain) {
   EXPECT_NEAR(graph.spreads_from(0)[1]->translation_sigma_m(), std::hypot(0.01, 0.04), 1e-9);
   graph.add({3, 3, 0.3, at(3), nullptr});
   EXPECT_FALSE(graph.spreads_from(0)[3]);
+}
+
+TEST(KeyframeGraph, TiesKeyframesAnewThatALoopHasTied) {
+  // A ring of eight keyframes with one loose registration, which a loop closes.
+  KeyframeGraph graph;
+  for (int id = 0; id < 8; ++id) {
+    graph.add({id, id, 0.1 * id, at(id), nullptr});
+    if (id > 0) graph.connect(id - 1, id, id == 4 ? spread(0.3) : small_spread);
+  }
+  const auto is_tied = [&] {
+    const std::vector<int> tied = graph.tied_to(3);
+    return std::ranges::find(tied, 4) != tied.end();
+  };
+  graph.tie_anew();
+  EXPECT_FALSE(is_tied());
+  graph.connect(0, 7, small_spread);
+  EXPECT_FALSE(is_tied()) << "seven registrations lead there";
+  graph.tie_anew();
+  EXPECT_TRUE(is_tied());
 }
 
 TEST(KeyframeGraph, MeasuresTurnsAsWell) {

@@ -74,6 +74,14 @@ TEST(MotionUncertainty, RestartsFromAPlaceWithTheVelocityAsUncertainAsBefore) {
   EXPECT_NEAR(moving.of_pose()(3, 3), 11 * translation_sigma * translation_sigma, 1e-9);
 }
 
+TEST(MotionUncertainty, AtTheFirstFrameIsThatOfACameraThatMayMove) {
+  MotionUncertainty uncertainty(rotation_sigma, translation_sigma);
+  uncertainty.forget_velocity();
+  EXPECT_TRUE(uncertainty.of_pose().isZero(0));
+  uncertainty.learn(1, Covariance::Zero());
+  EXPECT_NEAR(uncertainty.of_pose()(3, 3), (9 + 1) * translation_sigma * translation_sigma, 1e-12);
+}
+
 TEST(MotionUncertainty, RestartsFromAPlaceThatIsItselfUncertain) {
   MotionUncertainty moving(rotation_sigma, translation_sigma);
   moving.restart(0.01 * Covariance::Identity());

@@ -105,8 +105,10 @@ TEST(Odometry, KnowsWhichKeyframeHoldsTheCamera) {
     return std::sqrt(result.target_covariances[target](3, 3));
   };
   EXPECT_LT(sideways_m(of_older), 0.005);
-  // One frame of unknown motion since the newer one: the prior of the motion.
-  EXPECT_NEAR(sideways_m(1 - of_older), OdometryOptions{}.prior_translation_sigma_m, 0.005);
+  // One frame since the newer one, of a camera that may have moved before: three times the prior of
+  // the change of motion, and this change.
+  EXPECT_NEAR(sideways_m(1 - of_older), std::sqrt(10) * OdometryOptions{}.prior_translation_sigma_m,
+              0.005);
 }
 
 TEST(Odometry, FollowsWithPclsMethods) {

@@ -48,6 +48,13 @@ Judgement judge(const MapEvidence& evidence) {
                              "all directions of motion",
                              evidence.least_certain_frame, evidence.position_sigma_m));
   }
+  if (evidence.blind_joins > 0) {
+    hold_against(
+        Verdict::doubtful,
+        fmt::format("{}, the camera was not tracked for more than two seconds and found only "
+                    "by the look of the place, which another place may have as well",
+                    counted(static_cast<std::size_t>(evidence.blind_joins), "time")));
+  }
   if (evidence.unused_loops > 0) {
     hold_against(Verdict::doubtful,
                  "the map contradicts " +

@@ -125,4 +125,20 @@ std::vector<std::optional<PoseSpread>> KeyframeGraph::spreads_from(int id) const
   return spreads;
 }
 
+void KeyframeGraph::tie_anew() {
+  constexpr double tied_m2 = tied_sigma_m * tied_sigma_m;
+  const auto is_loose = [](const Neighbour& neighbour) {
+    return neighbour.spread.translation_m2 > tied_m2;
+  };
+  for (int id = 0; id < size(); ++id) {
+    const std::vector<Neighbour> neighbours = neighbours_[static_cast<std::size_t>(id)];
+    if (std::ranges::none_of(neighbours, is_loose)) continue;
+    const auto spreads = spreads_from(id);
+    for (const Neighbour& neighbour : neighbours) {
+      const std::optional<PoseSpread>& spread = spreads[static_cast<std::size_t>(neighbour.id)];
+      if (spread && spread->translation_m2 <= tied_m2) connect(id, neighbour.id, *spread);
+    }
+  }
+}
+
 }  // namespace tofmap

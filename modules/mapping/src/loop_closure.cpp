@@ -265,9 +265,14 @@ LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyf
     candidate = *alike;
   }
   const Keyframe& from = keyframes[static_cast<std::size_t>(candidate.from)];
-  candidate.edge = edge_of(from, keyframe.id, candidate.registration.world_from_camera,
-                           covariance_of(candidate.registration.target_information.front()));
-  candidate.edge->may_be_wrong = true;
+  PoseEdge edge = edge_of(from, keyframe.id, candidate.registration.world_from_camera,
+                          covariance_of(candidate.registration.target_information.front()));
+  // A pose that the other targets, or the prior, determine tells nothing of this keyframe.
+  if (spread_of(edge.covariance).translation_sigma_m() > KeyframeGraph::tied_sigma_m) {
+    return candidate;
+  }
+  edge.may_be_wrong = true;
+  candidate.edge = edge;
   return candidate;
 }
 

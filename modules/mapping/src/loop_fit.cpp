@@ -3,6 +3,8 @@
 
 #include "tofmap/mapping/loop_fit.hpp"
 
+#include "tofmap/mapping/keyframe_graph.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -42,13 +44,14 @@ bool agree(const PoseEdge& one, const PoseEdge& other, std::span<const Keyframe>
   return prior_deviation_sigmas(prior, found(other)) < most_sigmas;
 }
 
-/// Whether a loop may move the path, or does not: it agrees with the path as it is, up to what
-/// registration corrects.
+/// Whether a loop may move the path, since others agree with it, or does not move it.
 bool is_supported(const PoseEdge& loop, const Loops& loops, std::span<const Keyframe> keyframes,
                   const LoopOptions& options) {
   const Pose found = at(keyframes, loop.from).world_from_camera * loop.from_from_to;
-  const MotionPrior as_believed = drift_prior(at(keyframes, loop.to).world_from_camera, 0, options);
-  if (prior_deviation_sigmas(as_believed, found) < most_sigmas) return true;
+  const Pose& believed = at(keyframes, loop.to).world_from_camera;
+  if ((found.translation() - believed.translation()).norm() <= KeyframeGraph::tied_sigma_m) {
+    return true;
+  }
   return std::ranges::count_if(loops, [&](const PoseEdge* other) {
            return agree(loop, *other, keyframes, options);
          }) >= least_agreeing;

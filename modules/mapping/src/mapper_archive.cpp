@@ -137,8 +137,9 @@ void MovingRegions::serialize(Archive& archive, unsigned) {
 template <class Archive>
 void RoomMapper::serialize(Archive& archive, unsigned) {
   archive& odometry_& moving_& keyframes_& frames_& edges_& loops_;
-  archive& unfitted_loops_& last_fit_& current_& map_& begun_maps_& lost_frames_& searched_;
-  archive& held_& recognitions_;
+  archive& unfitted_loops_& loop_awaits_others_& last_fit_& current_& map_& begun_maps_&
+      lost_frames_& searched_;
+  archive& held_& recognitions_& blind_joins_;
 }
 
 void RoomMapper::save(std::ostream& out) const {

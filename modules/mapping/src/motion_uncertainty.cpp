@@ -58,6 +58,11 @@ void MotionUncertainty::reset() {
   mean_squares_ = largest_sigmas_.cwiseAbs2();
 }
 
+void MotionUncertainty::forget_velocity() {
+  constexpr double times = 3;
+  joint_.bottomRightCorner<6, 6>() = (times * largest_sigmas_).cwiseAbs2().asDiagonal();
+}
+
 void MotionUncertainty::restart(const Covariance& of_pose) {
   joint_.topRows<6>().setZero();
   joint_.leftCols<6>().setZero();

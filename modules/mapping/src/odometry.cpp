@@ -127,6 +127,7 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
   }
   if (!last_) {
     result.status = TrackingStatus::first;
+    uncertainty_.forget_velocity();
     accept({timestamp_s, result.world_from_camera});
     return result;
   }

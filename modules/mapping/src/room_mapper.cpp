@@ -18,8 +18,8 @@
 namespace tofmap {
 namespace {
 
-/// Smallest number of keyframes between two fits. Loops mostly come one after the other, and are
-/// fitted together.
+/// Smallest number of keyframes between two fits, unless a recent loop still awaits others that
+/// agree with it. Loops mostly come one after the other, and are fitted together.
 constexpr int keyframes_between_fits = 10;
 
 /// Number of failed frames with a surface after which a new map begins. A single one may be a bad
@@ -36,6 +36,13 @@ constexpr std::ptrdiff_t least_frames_of_map = 3;
 /// taken at twice the distance there.
 constexpr int recent_keyframes = 15;
 constexpr double steps_on_earlier_visits = 2;
+
+/// Keyframes within this many keyframe spacings of each other see mostly the same.
+constexpr double steps_of_same_view = 3;
+
+/// Longest time without tracking after which the camera is still near where it was: at walking pace
+/// it has gone three metres, hardly into another room.
+constexpr double longest_blink_s = 2;
 
 /// Keyframes within this many keyframe spacings of an anchor share its submap, since their relative
 /// poses hardly change any more.
@@ -88,7 +95,9 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
   // After some time the camera may be anywhere, and odometry may register it with a wrong place
   // that looks similar.
   std::vector<const Keyframe*> around;
-  if (lost_frames_ < frames_until_given_up) around = keyframes_around();
+  if (lost_frames_ < frames_until_given_up && !was_blind(frame.timestamp_s)) {
+    around = keyframes_around();
+  }
   TrackingResult result = track_still(frame, around);
   odometry_.note_frame(frame.timestamp_s);
   if (!result.registered()) {
@@ -110,6 +119,12 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
   result.target_covariances.clear();
   result.registration.target_information.clear();
   return result;
+}
+
+/// Whether the camera can have been carried elsewhere since the last registered frame.
+bool RoomMapper::was_blind(double timestamp_s) const {
+  return !frames_.empty() && odometry_.is_after_gap(timestamp_s) &&
+         timestamp_s - frames_.back().timestamp_s > longest_blink_s;
 }
 
 /// Registers a frame, then again without what moves in it and has moved in the keyframes around,
@@ -224,7 +239,10 @@ void RoomMapper::close_loops() {
     add_loop(*candidate.edge,
              (found.translation() - keyframe.world_from_camera.translation()).norm());
   }
-  if (unfitted_loops_ > 0 && keyframe.id - last_fit_ >= keyframes_between_fits) fit();
+  if (unfitted_loops_ > 0 &&
+      (loop_awaits_others_ || keyframe.id - last_fit_ >= keyframes_between_fits)) {
+    fit();
+  }
 }
 
 void RoomMapper::add_loop(const PoseEdge& edge, double error_m) {
@@ -286,7 +304,13 @@ std::vector<Stretch> RoomMapper::stretches() const {
 
 void RoomMapper::join_maps() {
   const auto join = find_join(recognitions_, map_, keyframes_.all(), loop_options_);
-  if (!join) return;
+  if (!join || looks_different(*join)) return;
+  const std::vector<Stretch> travelled = stretches();
+  const auto gap =
+      std::ranges::adjacent_find(travelled, [&](const Stretch& one, const Stretch& next) {
+        return next.map == map_ && next.begin_s - one.end_s > longest_blink_s;
+      });
+  if (gap != travelled.end()) ++blind_joins_;
   keyframes_.join(join->map, join->into, join->into_from_map);
   odometry_.move(join->into_from_map);
   moving_.move(join->into_from_map);
@@ -300,6 +324,31 @@ void RoomMapper::join_maps() {
     return keyframes_[edge.from].map == keyframes_[edge.to].map;
   });
   fit();
+}
+
+/// Whether things stand in one of two maps where the other one has free space, if they are joined:
+/// places of one plan differ in what was put there. A single keyframe may be deceived.
+bool RoomMapper::looks_different(const MapJoin& join) const {
+  constexpr int least_keyframes = 2;
+  int different = 0;
+  for (const Keyframe& keyframe : keyframes_.all()) {
+    if (keyframe.map != join.map) continue;
+    const Pose pose = join.into_from_map * keyframe.world_from_camera;
+    const Keyframe* nearest = nullptr;
+    double least_steps = steps_of_same_view;
+    for (const Keyframe& other : keyframes_.all()) {
+      if (other.map != join.into) continue;
+      const double steps = keyframe_spacing().between(other.world_from_camera, pose);
+      if (steps >= least_steps) continue;
+      nearest = &other;
+      least_steps = steps;
+    }
+    if (nearest == nullptr) continue;
+    const Motion difference =
+        MovingRegions(camera_).find(keyframe.cloud, pose, std::vector<const Keyframe*>{nearest});
+    different += difference.is_empty() ? 0 : 1;
+  }
+  return different >= least_keyframes;
 }
 
 void RoomMapper::finish() {
@@ -400,7 +449,8 @@ void RoomMapper::add_keyframe(const NewFrame& frame, std::span<const Keyframe* c
     const int target = result.targets[i];
     edges_.push_back(
         edge_of(keyframes_[target], id, result.world_from_camera, result.target_covariances[i]));
-    keyframes_.connect(target, id, spread_of(edges_.back().covariance));
+    // Targets are tied to each other, and may tell of different directions.
+    keyframes_.connect(target, id, result.spread);
   }
   odometry_.note_keyframe(id);
   current_ = id;
@@ -433,17 +483,22 @@ void RoomMapper::fit() {
   const Pose new_from_old_world = keyframes_[current_].world_from_camera * current_before.inverse();
   odometry_.move(new_from_old_world);
   moving_.move(new_from_old_world);
+  loop_awaits_others_ = false;
   auto loop = loops_.begin();
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     if (!edges_[i].may_be_wrong) continue;
     loop->mahalanobis_distance = fitted.edge_mahalanobis[i];
     loop->is_used = fitted.is_used[i];
+    if (!loop->is_used && edges_[i].to + keyframes_between_fits >= keyframes_.size()) {
+      loop_awaits_others_ = true;
+    }
     // The relative pose of both ends is now correct, so frames may be registered with either.
     if (loop->is_used) {
       keyframes_.connect(edges_[i].from, edges_[i].to, spread_of(edges_[i].covariance));
     }
     ++loop;
   }
+  keyframes_.tie_anew();
   unfitted_loops_ = 0;
   last_fit_ = keyframes_.size() - 1;
 }

@@ -162,6 +162,7 @@ MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options) {
           .separate = map.separate(),
           .separate_maps = static_cast<int>(map.separate_maps.size()),
           .joins = map.joins(),
+          .blind_joins = map.blind_joins,
           .unused_loops = map.unused_loops(),
           .position_sigma_m = map.least_certain.spread.translation_sigma_m(),
           .least_certain_frame = map.least_certain.frame,
@@ -312,6 +313,7 @@ RoomMap MapRun::finish() {
     }
   }
   map.loops = mapper_.loops();
+  map.blind_joins = mapper_.blind_joins();
   map.frames = std::move(frames_);
   map.errors = errors_.survey();
   map.interrupted = is_interrupted_;

@@ -71,6 +71,10 @@ class KeyframeGraph {
   /// `id`.
   std::vector<std::optional<PoseSpread>> spreads_from(int id) const;
 
+  /// Connects keyframes whose registration with each other left a direction open again, if others
+  /// lead from one to the other by now with less spread than `tied_sigma_m`, as after a loop.
+  void tie_anew();
+
   /// Standard deviation of a relative pose up to which a frame can be registered with both
   /// keyframes at once: what registration tolerates where surfaces do not coincide.
   static constexpr double tied_sigma_m = 0.03;

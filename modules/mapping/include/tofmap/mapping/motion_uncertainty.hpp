@@ -41,6 +41,10 @@ class MotionUncertainty {
   /// noted changes.
   void reset();
 
+  /// The camera may already move at the first frame: sets the covariance of the velocity to that of
+  /// three times the largest changes.
+  void forget_velocity();
+
   /// Sets the covariance of the pose, as if it were measured from another place from now on. That
   /// of the velocity remains.
   void restart(const Covariance& of_pose = Covariance::Zero());

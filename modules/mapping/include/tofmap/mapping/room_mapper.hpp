@@ -70,14 +70,14 @@ struct AddedFrame {
 /// edges of odometry and loops. Submaps and frames move with their keyframes, so no frame is
 /// integrated again.
 ///
-/// When tracking is lost, a new map begins: once three frames with a surface could not be
-/// registered, the first of them is the origin of a map of its own, and the others are tracked in
-/// it. Every keyframe of the newest map is compared with those of the other maps that the camera
-/// can have come to in the time (can_travel()); when three keyframes recognise places of another
-/// map and agree, both maps are joined. Maps that never are stay maps of their own. People, doors
-/// and other things that move are found (MovingRegions); they have no part in registration,
-/// keyframes and surface. A map of fewer than three frames is dropped again when the next one
-/// begins.
+/// When tracking is lost, or after more than two seconds without frames, a new map begins: once
+/// three frames with a surface could not be registered, the first of them is the origin of a map of
+/// its own, and the others are tracked in it. Every keyframe of the newest map is compared with
+/// those of the other maps that the camera can have come to in the time (can_travel()); when three
+/// keyframes recognise places of another map and agree, both maps are joined. Maps that never are
+/// stay maps of their own. People, doors and other things that move are found (MovingRegions); they
+/// have no part in registration, keyframes and surface. A map of fewer than three frames is dropped
+/// again when the next one begins.
 class RoomMapper {
  public:
   RoomMapper(const CameraModel& camera, const OdometryOptions& odometry,
@@ -91,8 +91,9 @@ class RoomMapper {
   /// Otherwise copies of one image would count as independent observations of its points.
   AddedFrame add_frame(const NewFrame& frame);
 
-  /// Fits the pose graph if it has loop constraints that were not fitted yet. Must be called after
-  /// the last frame.
+  /// Fits the pose graph if it has edges that were not fitted yet: loops, and those of keyframes
+  /// out of whose clouds something that moves was taken, which are measured again. Must be called
+  /// after the last frame.
   void finish();
 
   /// The maps, by their numbers, the one with most registered frames first. Empty if no frame was
@@ -102,6 +103,9 @@ class RoomMapper {
   Trajectory trajectory(int map) const;
   /// Current poses of all keyframes of a map.
   Trajectory keyframe_trajectory(int map) const;
+  /// How often maps were joined although the camera could have been carried to another place: it
+  /// had not been tracked for more than a second.
+  int blind_joins() const { return blind_joins_; }
   /// The keyframe of a map whose position relative to the first one is least certain by what
   /// registrations tell (KeyframeGraph::spreads_from()). The map must have a keyframe.
   PoseCertainty least_certain(int map) const;
@@ -146,6 +150,7 @@ class RoomMapper {
   };
 
   TrackingResult track(NewFrame& frame);
+  bool was_blind(double timestamp_s) const;
   TrackingResult track_still(NewFrame& frame, std::span<const Keyframe* const> around);
   std::vector<LateFrame> start_map();
   std::vector<LateFrame> drop_fragment();
@@ -154,6 +159,7 @@ class RoomMapper {
   void recognise_place();
   std::vector<Stretch> stretches() const;
   void join_maps();
+  bool looks_different(const MapJoin& join) const;
   void add_loop(const PoseEdge& edge, double error_m);
   KeyframeSpacing keyframe_spacing() const;
   Pose pose_of(const RegisteredFrame& frame) const;
@@ -178,13 +184,15 @@ class RoomMapper {
   std::vector<PoseEdge> edges_;
   std::vector<Loop> loops_;  ///< in the order of their edges
   int unfitted_loops_ = 0;
-  int last_fit_ = 0;            ///< id of the newest keyframe in the last fit
-  int current_ = 0;             ///< id of the keyframe that the latest frame belongs to
-  int map_ = 0;                 ///< the map that frames are added to
+  bool loop_awaits_others_ = false;  ///< whether the last fit left out a recent loop
+  int last_fit_ = 0;                 ///< id of the newest keyframe in the last fit
+  int current_ = 0;                  ///< id of the keyframe that the latest frame belongs to
+  int map_ = 0;                      ///< the map that frames are added to
   int begun_maps_ = 1;          ///< number of maps so far, with those that were joined or dropped
   int lost_frames_ = 0;         ///< number of frames since the last registered one
   int searched_ = 0;            ///< number of keyframes for which loops were searched
   std::vector<NewFrame> held_;  ///< frames with a surface since the last registered one
+  int blind_joins_ = 0;
   std::vector<PoseEdge> recognitions_;  ///< from a keyframe of another map to one of `map_`
 };
 

@@ -123,6 +123,7 @@ struct RoomMap {
   MapCloud surface;                        ///< in world coordinates
   std::vector<SeparateMap> separate_maps;  ///< the other maps, the one with most frames first
   std::vector<Loop> loops;                 ///< all loops that were found, used or not
+  int blind_joins = 0;                     ///< RoomMapper::blind_joins()
   PoseCertainty least_certain;             ///< RoomMapper::least_certain(); zero without keyframes
   std::vector<FrameRecord> frames;         ///< all frames, in order
   ErrorSurvey errors;                      ///< MapRun::errors at the end of the run
