@@ -5,6 +5,7 @@
 //
 //     bench_device_soak [URI [FRAMES]]
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -33,7 +34,7 @@ double memory_mb() {
 void soak(const std::string& uri, int frames) {
   using Clock = std::chrono::steady_clock;
   tofmap::OpenNi2Source source(uri, {});
-  const int lines = 10;
+  const int frames_per_line = std::max(1, frames / 10);
   auto last = Clock::now();
   std::printf("%s\n%8s %10s %12s %12s %10s\n", uri.c_str(), "frames", "per second", "unpaired",
               "lost", "memory MB");
@@ -42,9 +43,9 @@ void soak(const std::string& uri, int frames) {
       std::printf("the device ended after %d frames\n", i - 1);
       return;
     }
-    if (i % (frames / lines) != 0) continue;
+    if (i % frames_per_line != 0) continue;
     const auto now = Clock::now();
-    const double rate = frames / lines / std::chrono::duration<double>(now - last).count();
+    const double rate = frames_per_line / std::chrono::duration<double>(now - last).count();
     last = now;
     const tofmap::PairingCounts counts = source.counts();
     std::printf("%8d %10.1f %12d %12d %10.1f\n", i, rate, counts.dropped(), counts.lost,

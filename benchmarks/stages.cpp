@@ -45,7 +45,7 @@ void unwrap_by(benchmark::State& state, const std::string& method) {
   UnwrapOptions options;
   options.method = find_named<UnwrapMethod>(method).value();
   Unwrapper unwrapper(e.simulator.sensor(), options);
-  for (auto _ : state) benchmark::DoNotOptimize(unwrapper.unwrap(e.frame));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(unwrapper.unwrap(e.frame));
 }
 BENCHMARK_CAPTURE(unwrap_by, pixel, "pixel")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(unwrap_by, single, "single")->Unit(benchmark::kMillisecond);
@@ -54,7 +54,7 @@ BENCHMARK_CAPTURE(unwrap_by, joint, "joint")->Unit(benchmark::kMillisecond);
 
 void filter(benchmark::State& state) {
   const Example& e = example();
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(apply_filters(e.prepared.unwrapped.image, e.frame,
                                            e.simulator.sensor().modulation, e.rays,
                                            e.options.filters));
@@ -64,7 +64,7 @@ BENCHMARK(filter)->Unit(benchmark::kMillisecond);
 
 void make_cloud(benchmark::State& state) {
   const Example& e = example();
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(surface_cloud(e.prepared.filtered.image, e.rays, e.options.cloud));
   }
 }
@@ -73,7 +73,7 @@ BENCHMARK(make_cloud)->Unit(benchmark::kMillisecond);
 /// Registers a frame with one keyframe, the frame before it.
 void register_frame(benchmark::State& state) {
   const Example& e = example();
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     state.PauseTiming();
     Odometry odometry(e.simulator.sensor().camera, e.options.odometry, e.options.registration,
                       e.options.loops);
@@ -89,7 +89,7 @@ BENCHMARK(register_frame)->Unit(benchmark::kMillisecond);
 void integrate_into_map(benchmark::State& state) {
   const Example& e = example();
   SurfaceMap map(e.options.map);
-  for (auto _ : state) map.integrate(*e.prepared.cloud, Pose::Identity());
+  for ([[maybe_unused]] auto _ : state) map.integrate(*e.prepared.cloud, Pose::Identity());
 }
 BENCHMARK(integrate_into_map)->Unit(benchmark::kMillisecond);
 

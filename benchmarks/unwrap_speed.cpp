@@ -53,7 +53,7 @@ void unwrap_frames(benchmark::State& state, const std::string& method, const Siz
   UnwrapOptions options;
   options.method = find_named<UnwrapMethod>(method).value();
   Unwrapper unwrapper(e.sensor, options);
-  for (auto _ : state) benchmark::DoNotOptimize(unwrapper.unwrap(e.frame));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(unwrapper.unwrap(e.frame));
   state.SetItemsProcessed(state.iterations());
 }
 
@@ -71,7 +71,8 @@ void pass_count_messages(benchmark::State& state, const Size& size) {
   model.assign(e.frame, unwrap_limits(e.sensor, 0),
                PhaseSigma(e.frame, estimate_phase_noise(e.frame)), 0, {});
   WrapCountPropagation propagation;
-  for (auto _ : state) benchmark::DoNotOptimize(propagation.run(model, iterations));
+  for ([[maybe_unused]] auto _ : state)
+    benchmark::DoNotOptimize(propagation.run(model, iterations));
   count_pixel_iterations(state, size, iterations);
 }
 
@@ -86,7 +87,7 @@ void pass_jump_messages(benchmark::State& state, const Size& size) {
                          unwrap_limits(e.sensor, 0), jump_method(UnwrapMethod::jump), options);
   JumpPropagation propagation;
   JumpBeliefs beliefs;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     propagation.run(jumps.evidence, iterations, beliefs, iterations);
     benchmark::DoNotOptimize(beliefs);
   }
@@ -100,7 +101,7 @@ void stream_bandwidth(benchmark::State& state) {
   std::vector<float> a(count);
   const std::vector<float> b(count, 1.0F);
   const std::vector<float> c(count, 2.0F);
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     for (std::size_t i = 0; i < count; ++i) a[i] = b[i] + 0.5F * c[i];
     benchmark::ClobberMemory();
   }
@@ -126,7 +127,7 @@ constexpr int fma_rounds = 1000;
 
 void fma_rate(benchmark::State& state) {
   float factor = 0.999F;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(factor);
     benchmark::DoNotOptimize(multiply_add(factor));
   }

@@ -160,10 +160,11 @@ ImageF blurred_ranges(const DualFrequencyFrame& frame, const Modulation& modulat
   const Plane a = blurred(frame.phase_a);
   const Plane b = blurred(frame.phase_b);
   constexpr double step_m = 0.04;  // much smaller than the error limit of 0.3 m
-  const double last_m = combined_range_m(modulation);
+  const auto steps = static_cast<int>(std::ceil(combined_range_m(modulation) / step_m));
   std::vector<std::complex<double>> turn_a;
   std::vector<std::complex<double>> turn_b;
-  for (double range_m = 0; range_m < last_m; range_m += step_m) {
+  for (int step = 0; step < steps; ++step) {
+    const double range_m = step * step_m;
     turn_a.push_back(std::polar(1.0, -two_pi * range_m / modulation.wavelength_a_m()));
     turn_b.push_back(std::polar(1.0, -two_pi * range_m / modulation.wavelength_b_m()));
   }

@@ -18,8 +18,8 @@ namespace {
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 Cloud::Ptr cloud_of(const RangeImage& image, const PixelRays& rays) {
-  const Cloud::Ptr cloud(new Cloud(static_cast<std::uint32_t>(image.cols()),
-                                   static_cast<std::uint32_t>(image.rows())));
+  Cloud::Ptr cloud(new Cloud(static_cast<std::uint32_t>(image.cols()),
+                             static_cast<std::uint32_t>(image.rows())));
   for (Eigen::Index i = 0; i < image.range_m.size(); ++i) {
     const float range_m = image.range_m.data()[i];  // NaN where invalid
     (*cloud)[static_cast<std::size_t>(i)] = {range_m * rays.x.data()[i], range_m * rays.y.data()[i],
@@ -31,7 +31,7 @@ Cloud::Ptr cloud_of(const RangeImage& image, const PixelRays& rays) {
 
 /// The indices of the valid pixels. PCL's searches abort the program if a point is NaN.
 pcl::IndicesPtr valid_pixels(const RangeImage& image) {
-  const pcl::IndicesPtr indices(new pcl::Indices);
+  pcl::IndicesPtr indices(new pcl::Indices);
   for (Eigen::Index i = 0; i < image.reason.size(); ++i) {
     if (image.reason.data()[i] == 0) indices->push_back(static_cast<pcl::index_t>(i));
   }

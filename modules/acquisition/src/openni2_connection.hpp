@@ -67,7 +67,7 @@ class OpenNi2Connection {
     Listener();
     Listener(const Listener&) = delete;
     Listener& operator=(const Listener&) = delete;
-    ~Listener();
+    ~Listener() override;
     void onDeviceDisconnected(const openni::DeviceInfo* device) override;
     void onDeviceStateChanged(const openni::DeviceInfo* device, openni::DeviceState state) override;
 
