@@ -15,7 +15,7 @@ without a ceiling, which many rays leave.
 
 A pair is right if six points, three metres from the source's sensor, are on average within 10 cm of
 their true places. Every other pose is wrong, and so is every pose of an impossible pair. Needs
-Debian's python3-vtk9 and python3-numpy.
+Debian's python3-vtk9, python3-open3d and python3-numpy.
 """
 import argparse
 import dataclasses
@@ -25,8 +25,7 @@ import subprocess
 import tempfile
 
 import numpy
-import vtk
-from vtk.util import numpy_support
+import open3d
 
 import laser_scans
 from laser_scans import Scanner, building, scan, standing
@@ -144,7 +143,8 @@ def impossible_pairs(seed, here):
     pairs = [two, two.moved("two courts, limit, moved", here.random),
              storeys, storeys.moved("storeys, moved", here.random),
              here.pair("storeys, limit", [office, upper], [office.rooms[4]] * 2, scanners=limits),
-             here.pair("rooms apart", [office] * 2, [office.rooms[0], office.rooms[5]]), twin, twin.moved("twin rooms, moved", here.random)]
+             here.pair("rooms apart", [office] * 2, [office.rooms[0], office.rooms[5]]),
+             twin, twin.moved("twin rooms, moved", here.random)]
     for pair in pairs:
         if pair.name.startswith(("two", "storeys")):
             pair.source.world_from_cloud[:3, 3] += lift
@@ -152,40 +152,10 @@ def impossible_pairs(seed, here):
     return pairs
 
 
-def read_ply(file):
-    reader = vtk.vtkPLYReader()
-    reader.SetFileName(file)
-    reader.Update()
-    points = numpy_support.vtk_to_numpy(reader.GetOutput().GetPoints().GetData())
-    return points.astype(float)
-
-
-def decompressed(data):
-    """The bytes of an LZF stream: runs of literal bytes, and copies of earlier ones."""
-    out, at = bytearray(), 0
-    while at < len(data):
-        control, at = data[at], at + 1
-        if control < 32:
-            out += data[at:at + control + 1]
-            at += control + 1
-            continue
-        length = control >> 5
-        if length == 7:
-            length, at = length + data[at], at + 1
-        start = len(out) - ((control & 31) << 8) - data[at] - 1
-        at += 1
-        for index in range(start, start + length + 2):
-            out.append(out[index])
-    return bytes(out)
-
-
-def read_pcd(file):
-    """The finite points of a compressed PCD file with the fields x, y and z."""
-    with open(file, "rb") as stored:
-        body = stored.read().split(b"DATA binary_compressed\n", 1)[1]
-    size = int.from_bytes(body[:4], "little")
-    points = numpy.frombuffer(decompressed(body[8:8 + size]), "<f4").reshape(3, -1).T
-    return points[numpy.isfinite(points).all(axis=1)].astype(float)
+def read_points(file):
+    """The finite points of a PLY or PCD file."""
+    cloud = open3d.io.read_point_cloud(file, remove_nan_points=True, remove_infinite_points=True)
+    return numpy.asarray(cloud.points)
 
 
 def real_pairs(folder, here):
@@ -193,14 +163,14 @@ def real_pairs(folder, here):
     def at(place):
         return numpy.loadtxt(f"{folder}/{place}")
     def street(name):
-        return read_ply(f"{folder}/small_gicp/{name}.ply")
+        return read_points(f"{folder}/small_gicp/{name}.ply")
     def room(index):
-        return read_pcd(f"{folder}/pcl_room/room_scan{index}.pcd")
+        return read_points(f"{folder}/pcl_room/room_scan{index}.pcd")
     source_pose = at("small_gicp/T_target_source.txt")
     outdoors = Pair("outdoors", True, Cloud(street("target")), Cloud(street("source"), source_pose),
                     source_pose[:3, 3].copy())
     rooms = Pair("real room", True, Cloud(room(1)), Cloud(room(2), ROOM_POSE), ROOM_POSE[:3, 3])
-    capture = Cloud(read_pcd(f"{folder}/pcl_captures/capture0001.pcd"))
+    capture = Cloud(read_points(f"{folder}/pcl_captures/capture0001.pcd"))
     return [outdoors, outdoors.moved("outdoors, moved", here.random), rooms,
             rooms.moved("real room, moved", here.random),
             Pair("real room, outdoors", False, rooms.target, outdoors.source, numpy.zeros(3)),
