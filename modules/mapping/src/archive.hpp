@@ -65,10 +65,14 @@ void serialize(Archive& archive, tofmap::RegistrationResult& result, unsigned) {
 }
 
 template <class Archive>
+void serialize(Archive& archive, tofmap::PoseSpread& spread, unsigned) {
+  archive& spread.rotation_rad2& spread.translation_m2;
+}
+
+template <class Archive>
 void serialize(Archive& archive, tofmap::TrackingResult& result, unsigned) {
   archive& result.status& result.world_from_camera& result.is_keyframe& result.targets;
-  archive& result.registration& result.target_covariances;
-  archive& result.spread.rotation_rad2& result.spread.translation_m2;
+  archive& result.registration& result.target_covariances& result.spread;
 }
 
 }  // namespace boost::serialization

@@ -148,16 +148,6 @@ std::optional<LoopCandidate> find_where_alike(const LoopSearch& search,
   return LoopCandidate{.from = found->from, .registration = found->registration, .edge = {}};
 }
 
-/// Whether a registration with an earlier keyframe is verified and does not contradict its free
-/// space.
-bool is_loop(const LoopSearch& search, const LoopCandidate& candidate) {
-  if (!is_verified(candidate.registration, search.options)) return false;
-  const Keyframe& other = search.keyframes[static_cast<std::size_t>(candidate.from)];
-  return !contradicts_free_space(
-      {search.keyframe.cloud.get(), candidate.registration.world_from_camera}, target_of(other),
-      search.camera);
-}
-
 }  // namespace
 
 std::vector<OptionField<LoopOptions>> LoopOptions::fields() {
@@ -200,6 +190,13 @@ bool is_verified(const RegistrationResult& result, const LoopOptions& options) {
          result.inlier_ratio >= options.min_inlier_ratio && result.degenerate_directions == 0;
 }
 
+bool confirms_place(const Keyframe& keyframe, const SurfaceCloud& cloud,
+                    const RegistrationResult& result, const CameraModel& camera,
+                    const LoopOptions& options) {
+  return is_verified(result, options) &&
+         !contradicts_free_space({&cloud, result.world_from_camera}, target_of(keyframe), camera);
+}
+
 Eigen::Matrix<double, 6, 6> covariance_of(const Eigen::Matrix<double, 6, 6>& information) {
   constexpr double unseen_rad = 0.5;
   constexpr double unseen_m = 1;
@@ -222,6 +219,13 @@ PoseEdge edge_of(const Keyframe& from, int to, const Pose& world_from_camera,
   rotation.bottomRightCorner<3, 3>() = rotation.topLeftCorner<3, 3>();
   edge.covariance = rotation * covariance * rotation.transpose();
   widen(edge, shared_sigma_rad, shared_sigma_m);
+  return edge;
+}
+
+PoseEdge loop_edge(const Keyframe& from, int to, const RegistrationResult& result) {
+  PoseEdge edge =
+      edge_of(from, to, result.world_from_camera, covariance_of(result.target_information.front()));
+  edge.may_be_wrong = true;
   return edge;
 }
 
@@ -259,20 +263,18 @@ LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyf
   const LoopSearch search{keyframe, keyframes, spreads, camera, options, registration};
   const auto earlier = search.candidates();
   LoopCandidate candidate = find_where_believed(search, earlier);
-  if (!is_loop(search, candidate)) {
+  if (candidate.from < 0 ||
+      !confirms_place(keyframes[static_cast<std::size_t>(candidate.from)], *keyframe.cloud,
+                      candidate.registration, camera, options)) {
     const auto alike = find_where_alike(search, earlier);
     if (!alike) return candidate;
     candidate = *alike;
   }
-  const Keyframe& from = keyframes[static_cast<std::size_t>(candidate.from)];
-  PoseEdge edge = edge_of(from, keyframe.id, candidate.registration.world_from_camera,
-                          covariance_of(candidate.registration.target_information.front()));
+  const PoseEdge edge = loop_edge(keyframes[static_cast<std::size_t>(candidate.from)], keyframe.id,
+                                  candidate.registration);
   // A pose that the other targets, or the prior, determine tells nothing of this keyframe.
-  if (spread_of(edge.covariance).translation_sigma_m() > KeyframeGraph::tied_sigma_m) {
-    return candidate;
-  }
-  edge.may_be_wrong = true;
-  candidate.edge = edge;
+  const double sigma_m = spread_of(edge.covariance).translation_sigma_m();
+  if (sigma_m <= KeyframeGraph::tied_sigma_m) candidate.edge = edge;
   return candidate;
 }
 

@@ -27,31 +27,32 @@ const Keyframe& at(std::span<const Keyframe> keyframes, int id) {
   return keyframes[static_cast<std::size_t>(id)];
 }
 
+/// Where a loop puts its later keyframe.
+Pose found_by(const PoseEdge& loop, std::span<const Keyframe> keyframes) {
+  return at(keyframes, loop.from).world_from_camera * loop.from_from_to;
+}
+
 /// Whether both loops correct the path in the same way: the correction by one loop moves the later
 /// keyframe of the other loop to where that loop puts it, up to the drift between both.
 bool agree(const PoseEdge& one, const PoseEdge& other, std::span<const Keyframe> keyframes,
            const LoopOptions& options) {
-  const auto found = [&](const PoseEdge& loop) {
-    return at(keyframes, loop.from).world_from_camera * loop.from_from_to;
-  };
   const auto path_between_m = [&](int a, int b) {
     return std::abs(at(keyframes, a).path_m - at(keyframes, b).path_m);
   };
-  const Pose correction = found(one) * at(keyframes, one.to).world_from_camera.inverse();
+  const Pose correction =
+      found_by(one, keyframes) * at(keyframes, one.to).world_from_camera.inverse();
   const MotionPrior prior =
       drift_prior(correction * at(keyframes, other.to).world_from_camera,
                   path_between_m(one.from, other.from) + path_between_m(one.to, other.to), options);
-  return prior_deviation_sigmas(prior, found(other)) < most_sigmas;
+  return prior_deviation_sigmas(prior, found_by(other, keyframes)) < most_sigmas;
 }
 
 /// Whether a loop may move the path, since others agree with it, or does not move it.
 bool is_supported(const PoseEdge& loop, const Loops& loops, std::span<const Keyframe> keyframes,
                   const LoopOptions& options) {
-  const Pose found = at(keyframes, loop.from).world_from_camera * loop.from_from_to;
   const Pose& believed = at(keyframes, loop.to).world_from_camera;
-  if ((found.translation() - believed.translation()).norm() <= KeyframeGraph::tied_sigma_m) {
-    return true;
-  }
+  const double moved_m = (found_by(loop, keyframes).translation() - believed.translation()).norm();
+  if (moved_m <= KeyframeGraph::tied_sigma_m) return true;
   return std::ranges::count_if(loops, [&](const PoseEdge* other) {
            return agree(loop, *other, keyframes, options);
          }) >= least_agreeing;

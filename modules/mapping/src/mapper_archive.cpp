@@ -100,7 +100,7 @@ void KeyframeGraph::serialize(Archive& archive, unsigned) {
 
 template <class Archive>
 void KeyframeGraph::Neighbour::serialize(Archive& archive, unsigned) {
-  archive& id& spread.rotation_rad2& spread.translation_m2;
+  archive& id& spread;
 }
 
 template <class Archive>

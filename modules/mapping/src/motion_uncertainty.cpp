@@ -7,7 +7,6 @@
 #include <Eigen/LU>
 
 namespace tofmap {
-
 namespace {
 
 /// How many times larger than recent changes the next ones may be, as a standard deviation.

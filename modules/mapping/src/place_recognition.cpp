@@ -3,8 +3,6 @@
 
 #include "tofmap/mapping/place_recognition.hpp"
 
-#include "tofmap/mapping/free_space.hpp"
-
 #include <algorithm>
 
 namespace tofmap {
@@ -42,12 +40,10 @@ std::optional<Recognition> recognise(const Keyframe& keyframe,
        most_alike(keyframe.place, std::move(candidates), most_candidates)) {
     const RegistrationResult result =
         register_near(*candidate, *keyframe.cloud, keyframes, camera, registration);
-    if (!is_verified(result, options) || !is_possible(*candidate, result.world_from_camera)) {
-      continue;
+    if (is_possible(*candidate, result.world_from_camera) &&
+        confirms_place(*candidate, *keyframe.cloud, result, camera, options)) {
+      found.push_back({candidate->id, result});
     }
-    const RegistrationTarget placed{keyframe.cloud.get(), result.world_from_camera};
-    if (contradicts_free_space(placed, target_of(*candidate), camera)) continue;
-    found.push_back({candidate->id, result});
   }
   if (found.empty()) return std::nullopt;
   std::ranges::stable_sort(found, std::ranges::greater(), support_of);

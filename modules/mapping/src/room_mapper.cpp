@@ -256,7 +256,8 @@ void RoomMapper::add_loop(const PoseEdge& edge, double error_m) {
 /// Searches for the place of the newest keyframe in those other maps that the camera can have
 /// travelled to, and joins maps if enough keyframes agree.
 void RoomMapper::recognise_place() {
-  if (begun_maps_ == 1) return;
+  const auto is_of_this = [&](const Keyframe& other) { return other.map == map_; };
+  if (std::ranges::all_of(keyframes_.all(), is_of_this)) return;
   const Keyframe& keyframe = keyframes_[keyframes_.size() - 1];
   const std::vector<Stretch> travelled = stretches();
   const auto can_be_at = [&](const Keyframe& other, const Pose& pose, double tolerance_m) {
@@ -275,7 +276,7 @@ void RoomMapper::recognise_place() {
       travel_tolerance_m + recognition_reach_m + recognition_reach_rad * since_begin_m;
   std::vector<const Keyframe*> candidates;
   for (const Keyframe& other : keyframes_.all()) {
-    if (other.map != map_ && can_be_at(other, other.world_from_camera, near_m)) {
+    if (!is_of_this(other) && can_be_at(other, other.world_from_camera, near_m)) {
       candidates.push_back(&other);
     }
   }
@@ -285,11 +286,8 @@ void RoomMapper::recognise_place() {
   const auto found = recognise(keyframe, std::move(candidates), is_possible, keyframes_.all(),
                                camera_, loop_options_, registration_);
   if (!found) return;
-  recognitions_.push_back(edge_of(keyframes_[found->from], keyframe.id,
-                                  found->registration.world_from_camera,
-                                  covariance_of(found->registration.target_information.front())));
-  recognitions_.back().may_be_wrong = true;
-  join_maps();
+  recognitions_.push_back(loop_edge(keyframes_[found->from], keyframe.id, found->registration));
+  join_maps(travelled);
 }
 
 /// The path of the camera through the maps.
@@ -302,10 +300,10 @@ std::vector<Stretch> RoomMapper::stretches() const {
   return stretches;
 }
 
-void RoomMapper::join_maps() {
+/// Joins the newest map with another one if enough recognitions agree. `travelled` are stretches().
+void RoomMapper::join_maps(std::span<const Stretch> travelled) {
   const auto join = find_join(recognitions_, map_, keyframes_.all(), loop_options_);
   if (!join || looks_different(*join)) return;
-  const std::vector<Stretch> travelled = stretches();
   const auto gap =
       std::ranges::adjacent_find(travelled, [&](const Stretch& one, const Stretch& next) {
         return next.map == map_ && next.begin_s - one.end_s > longest_blink_s;
@@ -330,25 +328,30 @@ void RoomMapper::join_maps() {
 /// places of one plan differ in what was put there. A single keyframe may be deceived.
 bool RoomMapper::looks_different(const MapJoin& join) const {
   constexpr int least_keyframes = 2;
+  const MovingRegions regions(camera_);
   int different = 0;
   for (const Keyframe& keyframe : keyframes_.all()) {
     if (keyframe.map != join.map) continue;
     const Pose pose = join.into_from_map * keyframe.world_from_camera;
-    const Keyframe* nearest = nullptr;
-    double least_steps = steps_of_same_view;
-    for (const Keyframe& other : keyframes_.all()) {
-      if (other.map != join.into) continue;
-      const double steps = keyframe_spacing().between(other.world_from_camera, pose);
-      if (steps >= least_steps) continue;
-      nearest = &other;
-      least_steps = steps;
-    }
-    if (nearest == nullptr) continue;
-    const Motion difference =
-        MovingRegions(camera_).find(keyframe.cloud, pose, std::vector<const Keyframe*>{nearest});
-    different += difference.is_empty() ? 0 : 1;
+    const Keyframe* other = keyframe_near(pose, join.into);
+    if (other == nullptr || regions.find(keyframe.cloud, pose, {&other, 1}).is_empty()) continue;
+    if (++different == least_keyframes) return true;
   }
-  return different >= least_keyframes;
+  return false;
+}
+
+/// The keyframe of a map that is nearest to a pose. Null if none sees mostly the same.
+const Keyframe* RoomMapper::keyframe_near(const Pose& pose, int map) const {
+  const Keyframe* nearest = nullptr;
+  double least_steps = steps_of_same_view;
+  for (const Keyframe& keyframe : keyframes_.all()) {
+    if (keyframe.map != map) continue;
+    const double steps = keyframe_spacing().between(keyframe.world_from_camera, pose);
+    if (steps >= least_steps) continue;
+    nearest = &keyframe;
+    least_steps = steps;
+  }
+  return nearest;
 }
 
 void RoomMapper::finish() {

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -67,8 +66,9 @@ Directions directions_from(std::span<const Eigen::Vector3d> points, const Eigen:
   constexpr int blocks_along_side = 16;
   const std::size_t blocks = direction_blocks(blocks_along_side);
   std::vector<bool> is_occupied(blocks);
-  for (const Eigen::Vector3d& point : points)
+  for (const Eigen::Vector3d& point : points) {
     is_occupied[direction_block(point - place, blocks_along_side)] = true;
+  }
   const std::size_t one_in = (points.size() + most_points - 1) / most_points;
   std::vector<bool> is_kept(blocks);
   std::size_t occupied = 0;
@@ -112,21 +112,20 @@ class NeighbourSearch {
     return found_;
   }
 
-  /// The mean distance to the four nearest directions. Empty if there are fewer.
-  std::optional<float> spacing_rad(std::size_t index) {
-    const std::vector<Neighbour>& around = of(index);
-    if (around.size() < spacing_neighbours) return std::nullopt;
-    float sum_rad = 0;
-    for (std::size_t i = 0; i < spacing_neighbours; ++i) sum_rad += around[i].angle_rad;
-    return sum_rad / spacing_neighbours;
-  }
-
  private:
   const Directions& directions_;
   pcl::Indices indices_;
   std::vector<float> squares_;
   std::vector<Neighbour> found_;
 };
+
+/// The mean distance to the four nearest of neighbouring directions. Empty if there are fewer.
+std::optional<float> spacing_rad(const std::vector<Neighbour>& around) {
+  if (around.size() < spacing_neighbours) return std::nullopt;
+  float sum_rad = 0;
+  for (std::size_t i = 0; i < spacing_neighbours; ++i) sum_rad += around[i].angle_rad;
+  return sum_rad / spacing_neighbours;
+}
 
 bool is_similar(float one, float other) {
   return one < similar_range * other && other < similar_range * one;
@@ -159,13 +158,13 @@ std::optional<Pattern> pattern_at(std::span<const Eigen::Vector3d> points,
   std::vector<double> differences;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t index = i * directions.units.size() / count;
-    const auto spacing_rad = search.spacing_rad(index);
-    if (!spacing_rad) continue;
     const std::vector<Neighbour>& around = search.of(index);
+    const auto here_rad = spacing_rad(around);
+    if (!here_rad) continue;
     hidden += is_hidden(directions.ranges, index, around) ? 1 : 0;
     for (std::size_t k = 0; k < spacing_neighbours; ++k) {
-      const auto other_rad = search_further.spacing_rad(around[k].index);
-      if (other_rad) differences.push_back(std::abs(std::log(*other_rad / *spacing_rad)));
+      const auto other_rad = spacing_rad(search_further.of(around[k].index));
+      if (other_rad) differences.push_back(std::abs(std::log(*other_rad / *here_rad)));
     }
   }
   if (differences.empty()) return std::nullopt;

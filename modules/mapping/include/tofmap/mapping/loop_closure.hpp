@@ -68,9 +68,10 @@ struct LoopCandidate {
 /// First, `keyframe` is registered with the three candidates that overlap it most, together, from
 /// its current pose with a prior of drift. If that is wider than ICP reaches, or if the result is
 /// not verified, the place is recognised among the candidates (recognise()), and the result is
-/// accepted if it is within three standard deviations of drift. A loop is found if the result is
-/// verified (is_verified()) and does not contradict the free space of the candidate. `keyframes`
-/// are in the order of their ids, from 0, and hold all earlier keyframes; later ones are ignored.
+/// accepted if it is within three standard deviations of drift. A loop is found if the candidate
+/// confirms the result (confirms_place()), and if its surfaces alone tie both keyframes
+/// (KeyframeGraph::tied_sigma_m). `keyframes` are in the order of their ids, from 0, and hold all
+/// earlier keyframes; later ones are ignored.
 LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyframes,
                         std::span<const std::optional<PoseSpread>> spreads,
                         const CameraModel& camera, const LoopOptions& options,
@@ -103,6 +104,12 @@ double support(const RegistrationResult& result);
 /// converged, reaches `min_overlap` and `min_inlier_ratio`, and has no degenerate direction.
 bool is_verified(const RegistrationResult& result, const LoopOptions& options);
 
+/// Whether a registration of a cloud near a keyframe is verified (is_verified()) and does not
+/// contradict the free space of the keyframe (contradicts_free_space()).
+bool confirms_place(const Keyframe& keyframe, const SurfaceCloud& cloud,
+                    const RegistrationResult& result, const CameraModel& camera,
+                    const LoopOptions& options);
+
 /// The covariance of a pose relative to a keyframe of whose surfaces a registration has this
 /// information. Along directions without information, the standard deviations are 1 m and 0.5 rad,
 /// farther than a registration would have found the keyframe from.
@@ -114,5 +121,9 @@ Eigen::Matrix<double, 6, 6> covariance_of(const Eigen::Matrix<double, 6, 6>& inf
 /// measure.
 PoseEdge edge_of(const Keyframe& from, int to, const Pose& world_from_camera,
                  const Eigen::Matrix<double, 6, 6>& covariance);
+
+/// The loop constraint from a registration of keyframe `to` near keyframe `from`, which was the
+/// first target: it tells what the surfaces of `from` alone constrain.
+PoseEdge loop_edge(const Keyframe& from, int to, const RegistrationResult& result);
 
 }  // namespace tofmap

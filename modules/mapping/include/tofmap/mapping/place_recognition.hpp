@@ -27,12 +27,11 @@ using IsPossiblePlace = std::function<bool(const Keyframe& candidate, const Pose
 /// Recognises the place that a keyframe sees among other keyframes.
 ///
 /// The keyframe is registered with each of the five candidates that look most similar, from the
-/// pose of that candidate (register_near()). A result counts if it is verified as for a loop
-/// (is_verified()), does not contradict the free space of the candidate (contradicts_free_space()),
-/// and is possible. Of these results, the one with the largest product of overlap and
-/// inlier ratio is returned. Empty if no result counts, or if one of another place reaches more
-/// than 90 % of that product. `keyframes` are all keyframes in the order of their ids, from 0, and
-/// must outlive the candidates, which are some of them.
+/// pose of that candidate (register_near()). A result counts if the place is possible and the
+/// candidate confirms it (confirms_place()). Of these results, the one with the largest product of
+/// overlap and inlier ratio is returned. Empty if no result counts, or if one of another place
+/// reaches more than 90 % of that product. `keyframes` are all keyframes in the order of their ids,
+/// from 0, and must outlive the candidates, which are some of them.
 std::optional<Recognition> recognise(const Keyframe& keyframe,
                                      std::vector<const Keyframe*> candidates,
                                      const IsPossiblePlace& is_possible,

@@ -91,9 +91,8 @@ class RoomMapper {
   /// Otherwise copies of one image would count as independent observations of its points.
   AddedFrame add_frame(const NewFrame& frame);
 
-  /// Fits the pose graph if it has edges that were not fitted yet: loops, and those of keyframes
-  /// out of whose clouds something that moves was taken, which are measured again. Must be called
-  /// after the last frame.
+  /// Fits the pose graph if it has loop constraints that were not fitted yet. Must be called after
+  /// the last frame.
   void finish();
 
   /// The maps, by their numbers, the one with most registered frames first. Empty if no frame was
@@ -104,7 +103,7 @@ class RoomMapper {
   /// Current poses of all keyframes of a map.
   Trajectory keyframe_trajectory(int map) const;
   /// How often maps were joined although the camera could have been carried to another place: it
-  /// had not been tracked for more than a second.
+  /// had not been tracked for more than two seconds.
   int blind_joins() const { return blind_joins_; }
   /// The keyframe of a map whose position relative to the first one is least certain by what
   /// registrations tell (KeyframeGraph::spreads_from()). The map must have a keyframe.
@@ -158,8 +157,9 @@ class RoomMapper {
   void close_loops();
   void recognise_place();
   std::vector<Stretch> stretches() const;
-  void join_maps();
+  void join_maps(std::span<const Stretch> travelled);
   bool looks_different(const MapJoin& join) const;
+  const Keyframe* keyframe_near(const Pose& pose, int map) const;
   void add_loop(const PoseEdge& edge, double error_m);
   KeyframeSpacing keyframe_spacing() const;
   Pose pose_of(const RegisteredFrame& frame) const;
@@ -192,7 +192,7 @@ class RoomMapper {
   int lost_frames_ = 0;         ///< number of frames since the last registered one
   int searched_ = 0;            ///< number of keyframes for which loops were searched
   std::vector<NewFrame> held_;  ///< frames with a surface since the last registered one
-  int blind_joins_ = 0;
+  int blind_joins_ = 0;         ///< see blind_joins()
   std::vector<PoseEdge> recognitions_;  ///< from a keyframe of another map to one of `map_`
 };
 
