@@ -141,8 +141,7 @@ std::vector<Eigen::Vector3d> outermost(const std::vector<Eigen::Vector3d>& point
     indices.push_back(static_cast<std::size_t>(farthest - points.begin()));
   }
   std::ranges::sort(indices);
-  const auto repeated = std::ranges::unique(indices);
-  indices.erase(repeated.begin(), repeated.end());
+  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
   std::vector<Eigen::Vector3d> out;
   for (const std::size_t index : indices) out.push_back(points[index]);
   return out;
