@@ -106,7 +106,8 @@ def five_rooms_once(random, differs):
 
 
 def carried_to_twin(random, differs):
-    """A look around in one twin, and, without the way there, in the other."""
+    """A look around in one twin, and, without the way there, in the other. What differs comes into
+    view last."""
     building, room, offsets, _ = twins(random, differs)
     middle_m = 0.45 * room.depth_m
     walks = []
@@ -114,7 +115,7 @@ def carried_to_twin(random, differs):
         door = x + room.door_m + random.uniform(-0.2, 0.2)
         walk = Walk([door, middle_m + random.uniform(-0.2, 0.2)], 150)
         walk.turn(30).go(door, 0.9).turn(140).go(door + 0.3, middle_m)
-        walks.append(walk)
+        walks.append(walk.turn(40, -40) if differs else walk)
     return building, walks
 
 

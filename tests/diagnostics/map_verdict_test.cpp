@@ -102,6 +102,14 @@ TEST(Verdict, MentionsJoinsThatDoNotMakeItWorse) {
             " Also: tracking was lost and found again 2 times, by places that were recognised.");
 }
 
+TEST(Verdict, MentionsJoinsThatWereTakenBack) {
+  MapEvidence evidence = good_evidence();
+  evidence.joins_taken_back = 1;
+  EXPECT_EQ(verdict_on(evidence), Verdict::good);
+  EXPECT_EQ(told_reasons(judge(evidence)),
+            " Also: 1 time, a place looked like one seen before, and differed from it later.");
+}
+
 TEST(Verdict, IsTheWorstOfAllThatIsKnown) {
   MapEvidence evidence = good_evidence();
   EXPECT_EQ(verdict_with_error(evidence, 0.01), Verdict::good);

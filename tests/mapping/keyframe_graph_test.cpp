@@ -139,6 +139,21 @@ TEST(KeyframeGraph, MovesAMapIntoAnotherOne) {
   }
 }
 
+TEST(KeyframeGraph, SeparatesTheKeyframesOfAMapThatWasJoined) {
+  KeyframeGraph graph;
+  for (int id = 0; id < 4; ++id) {
+    graph.add({.id = id, .world_from_camera = at(id), .map = 0, .taken_in = id / 2});
+    if (id > 0) graph.connect(id - 1, id, small_spread);
+  }
+  graph.separate(1);
+  const std::vector<int> tied{1, 0, 3, 2};
+  for (int id = 0; id < 4; ++id) {
+    EXPECT_EQ(graph[id].map, id / 2);
+    EXPECT_TRUE(graph[id].world_from_camera.isApprox(at(id))) << id;
+    EXPECT_EQ(graph.tied_to(id), std::vector{tied[static_cast<std::size_t>(id)]});
+  }
+}
+
 TEST(KeyframeGraph, ForgetsTheNewestKeyframes) {
   KeyframeGraph graph;
   for (int id = 0; id < 4; ++id) graph.add({.id = id, .world_from_camera = at(id)});

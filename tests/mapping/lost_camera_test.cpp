@@ -69,6 +69,28 @@ TEST_F(LostCamera, BeginsAMapThatIsJoinedWhereItRecognisesTheFirstOne) {
   }
 }
 
+TEST_F(LostCamera, IsTakenOutOfAMapThatLaterFramesDifferFrom) {
+  // A room of the same plan, in which a box stands that only the later frames see.
+  const Eigen::Vector3d middle_m = room_.pose(first + 45) * Eigen::Vector3d(-2.35, 0, 3.6);
+  const Eigen::Vector3d half_m = Eigen::Vector3d::Constant(0.25);
+  const Eigen::AlignedBox3d box(middle_m - half_m, middle_m + half_m);
+  bool was_joined = false;
+  for (int i = 0; i < 50; ++i) {
+    const TrackingResult result = add(room_.view(first + 6 + i, box)).tracking;
+    was_joined = was_joined || result.status == TrackingStatus::relocalised;
+    EXPECT_TRUE(result.registered() || i < 2) << i;
+  }
+  mapper_.finish();
+  EXPECT_TRUE(was_joined);
+  EXPECT_EQ(mapper_.joins_taken_back(), 1);
+  ASSERT_EQ(mapper_.maps(), (std::vector{0, 1}));
+  EXPECT_EQ(mapper_.trajectory(0).size(), std::size_t{frames});
+  EXPECT_EQ(mapper_.trajectory(1).size(), 50U);
+  for (const PoseEdge& edge : mapper_.edges()) {
+    EXPECT_EQ(mapper_.keyframes()[edge.from].map, mapper_.keyframes()[edge.to].map);
+  }
+}
+
 TEST_F(LostCamera, KeepsTheMapOfAnotherBuildingApart) {
   const Scenery flat("flat");
   RoomMapper alone(flat.camera(), {}, {}, {}, {});

@@ -23,26 +23,10 @@ const Vector3d room_min(-2.0, -1.2, -1);
 const Vector3d room_max(2.0, 1.2, 4);
 
 /// A box on the floor, half a metre wide, as high as a person; the y axis points down.
-struct Person {
-  Vector3d min;
-  Vector3d max;
-};
+using Person = Eigen::AlignedBox3d;
 
 Person person_at(double x, double z) {
-  return {{x - 0.25, -0.5, z - 0.15}, {x + 0.25, room_max.y(), z + 0.15}};
-}
-
-/// Range at which a ray from the origin meets the box. Empty if it passes by.
-std::optional<double> range_of(const Person& person, const Vector3d& origin, const Vector3d& ray) {
-  double nearest = 0;
-  double farthest = 100;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double one = (person.min[axis] - origin[axis]) / ray[axis];
-    const double other = (person.max[axis] - origin[axis]) / ray[axis];
-    nearest = std::max(nearest, std::min(one, other));
-    farthest = std::min(farthest, std::max(one, other));
-  }
-  return nearest < farthest ? std::optional(nearest) : std::nullopt;
+  return {Vector3d(x - 0.25, -0.5, z - 0.15), Vector3d(x + 0.25, room_max.y(), z + 0.15)};
 }
 
 /// A view of the room, and which of its pixels see the person.
@@ -59,7 +43,7 @@ View view_of(const std::optional<Person>& person, const Pose& world_from_camera)
     for (int u = 0; u < camera.width_px; ++u) {
       const Vector3d ray = world_from_camera.linear() * pixel_ray(camera, u, v);
       const auto range =
-          person ? range_of(*person, world_from_camera.translation(), ray) : std::nullopt;
+          person ? test::range_to(*person, world_from_camera.translation(), ray) : std::nullopt;
       view.sees_person.push_back(range ? 1 : 0);
       if (range) image.range_m(v, u) = static_cast<float>(*range);
     }

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include <Eigen/Geometry>
 
 #include <tofmap/core/camera.hpp>
 #include <tofmap/core/range_image.hpp>
@@ -43,6 +47,20 @@ inline RangeImage box_ranges(const CameraModel& camera, const Eigen::Vector3d& m
     }
   }
   return image;
+}
+
+/// Range at which a ray meets an axis-parallel box from outside. Empty if it passes by.
+inline std::optional<double> range_to(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin,
+                                      const Eigen::Vector3d& ray) {
+  double nearest = 0;
+  double farthest = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double one = (box.min()[axis] - origin[axis]) / ray[axis];
+    const double other = (box.max()[axis] - origin[axis]) / ray[axis];
+    nearest = std::max(nearest, std::min(one, other));
+    farthest = std::min(farthest, std::max(one, other));
+  }
+  return nearest < farthest ? std::optional(nearest) : std::nullopt;
 }
 
 inline Pose moved_by(const Eigen::Vector3d& rotation, const Eigen::Vector3d& translation) {

@@ -65,6 +65,11 @@ Judgement judge(const MapEvidence& evidence) {
         fmt::format("tracking was lost and found again {}, by places that were recognised",
                     counted(static_cast<std::size_t>(evidence.joins), "time")));
   }
+  if (evidence.joins_taken_back > 0) {
+    judgement.remarks.push_back(
+        fmt::format("{}, a place looked like one seen before, and differed from it later",
+                    counted(static_cast<std::size_t>(evidence.joins_taken_back), "time")));
+  }
   if (!evidence.is_seen_twice) hold_against(Verdict::doubtful, "no place was seen by two frames");
   if (evidence.is_interrupted) hold_against(Verdict::doubtful, "the run was interrupted");
   if (evidence.is_warned) hold_against(Verdict::doubtful, "there are warnings, see below");

@@ -57,6 +57,16 @@ void KeyframeGraph::join(int map, int into, const Pose& into_from_map) {
   }
 }
 
+void KeyframeGraph::separate(int taken_in) {
+  for (Keyframe& keyframe : keyframes_) {
+    const bool is_separated = keyframe.taken_in == taken_in;
+    if (is_separated) keyframe.map = taken_in;
+    std::erase_if(neighbours_[static_cast<std::size_t>(keyframe.id)], [&](const Neighbour& other) {
+      return ((*this)[other.id].taken_in == taken_in) != is_separated;
+    });
+  }
+}
+
 void KeyframeGraph::shrink(int size) {
   keyframes_.resize(static_cast<std::size_t>(size));
   neighbours_.resize(static_cast<std::size_t>(size));

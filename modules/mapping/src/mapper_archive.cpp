@@ -45,14 +45,16 @@ void serialize(Archive& archive, tofmap::SurfaceCloud& cloud, unsigned version) 
 template <class Archive>
 void save(Archive& archive, const tofmap::Keyframe& keyframe, unsigned) {
   archive << keyframe.id << keyframe.frame_index << keyframe.timestamp_s;
-  archive << keyframe.world_from_camera << keyframe.path_m << keyframe.map << *keyframe.cloud;
+  archive << keyframe.world_from_camera << keyframe.path_m << keyframe.map << keyframe.taken_in
+          << *keyframe.cloud;
 }
 
 template <class Archive>
 void load(Archive& archive, tofmap::Keyframe& keyframe, unsigned) {
   archive >> keyframe.id >> keyframe.frame_index >> keyframe.timestamp_s;
   auto cloud = std::make_shared<tofmap::SurfaceCloud>();
-  archive >> keyframe.world_from_camera >> keyframe.path_m >> keyframe.map >> *cloud;
+  archive >> keyframe.world_from_camera >> keyframe.path_m >> keyframe.map >> keyframe.taken_in >>
+      *cloud;
   keyframe.place = tofmap::PlaceDescriptor(*cloud);
   keyframe.cloud = std::move(cloud);
 }
@@ -139,7 +141,7 @@ void RoomMapper::serialize(Archive& archive, unsigned) {
   archive& odometry_& moving_& keyframes_& frames_& edges_& loops_;
   archive& unfitted_loops_& loop_awaits_others_& last_fit_& current_& map_& begun_maps_&
       lost_frames_& searched_;
-  archive& held_& recognitions_& blind_joins_;
+  archive& held_& recognitions_& blindly_joined_& differing_keyframes_& joins_taken_back_;
 }
 
 void RoomMapper::save(std::ostream& out) const {

@@ -5,12 +5,9 @@
 
 #include "tofmap/mapping/free_space.hpp"
 #include "tofmap/mapping/loop_fit.hpp"
-#include "tofmap/mapping/map_join.hpp"
-#include "tofmap/mapping/place_recognition.hpp"
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 #include <utility>
 
 #include <tofmap/core/timed.hpp>
@@ -29,20 +26,10 @@ constexpr std::size_t frames_until_lost = 3;
 /// Number of failed frames after which the motion before no longer predicts the camera's pose.
 constexpr int frames_until_given_up = 15;
 
-/// Smallest number of frames of a map. Fewer show something that passed in front of the camera.
-constexpr std::ptrdiff_t least_frames_of_map = 3;
-
 /// A keyframe with more than this many newer ones belongs to an earlier visit. New keyframes are
 /// taken at twice the distance there.
 constexpr int recent_keyframes = 15;
 constexpr double steps_on_earlier_visits = 2;
-
-/// Keyframes within this many keyframe spacings of each other see mostly the same.
-constexpr double steps_of_same_view = 3;
-
-/// Longest time without tracking after which the camera is still near where it was: at walking pace
-/// it has gone three metres, hardly into another room.
-constexpr double longest_blink_s = 2;
 
 /// Keyframes within this many keyframe spacings of an anchor share its submap, since their relative
 /// poses hardly change any more.
@@ -98,7 +85,12 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
   if (lost_frames_ < frames_until_given_up && !was_blind(frame.timestamp_s)) {
     around = keyframes_around();
   }
+  const Odometry before = odometry_;
   TrackingResult result = track_still(frame, around);
+  if (!result.registered() && is_joined()) {
+    odometry_ = before;
+    result = track_apart(frame, around);
+  }
   odometry_.note_frame(frame.timestamp_s);
   if (!result.registered()) {
     if (!frames_.empty()) ++lost_frames_;
@@ -110,8 +102,10 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
   result.is_keyframe = wants_keyframe(result, around);
   if (result.is_keyframe) {
     add_keyframe(frame, around, result);
-  } else if (!result.targets.empty()) {
-    current_ = result.targets.front();
+  } else if (const auto target = std::ranges::find_if(
+                 result.targets, [&](int id) { return is_own(keyframes_[id]); });
+             target != result.targets.end()) {
+    current_ = *target;
   }
   frames_.push_back({frame.timestamp_s, current_,
                      keyframes_[current_].world_from_camera.inverse() * result.world_from_camera,
@@ -119,12 +113,6 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
   result.target_covariances.clear();
   result.registration.target_information.clear();
   return result;
-}
-
-/// Whether the camera can have been carried elsewhere since the last registered frame.
-bool RoomMapper::was_blind(double timestamp_s) const {
-  return !frames_.empty() && odometry_.is_after_gap(timestamp_s) &&
-         timestamp_s - frames_.back().timestamp_s > longest_blink_s;
 }
 
 /// Registers a frame, then again without what moves in it and has moved in the keyframes around,
@@ -138,12 +126,14 @@ TrackingResult RoomMapper::track_still(NewFrame& frame, std::span<const Keyframe
   const auto cloud = moving_.without_known(frame.cloud, odometry_.expected_pose(frame.timestamp_s));
   const TrackingResult first = odometry_.track(frame.timestamp_s, *cloud, around);
   if (first.status != TrackingStatus::tracked) return first;
-  // The oldest keyframe saw what was behind a thing that has moved since.
+  // The oldest keyframe saw what was behind a thing that has moved since. Differences from a map
+  // that was joined tell of the join instead.
   std::vector<const Keyframe*> compared;
-  for (const int id : first.targets) compared.push_back(&keyframes_[id]);
-  if (std::ranges::find(first.targets, around.front()->id) == first.targets.end()) {
-    compared.push_back(around.front());
+  for (const int id : first.targets) {
+    if (is_own(keyframes_[id])) compared.push_back(&keyframes_[id]);
   }
+  const Keyframe* oldest = own(around).front();
+  if (std::ranges::find(compared, oldest) == compared.end()) compared.push_back(oldest);
   const Motion motion = moving_.find(frame.cloud, first.world_from_camera, compared);
   moving_.remember(motion);
   if (motion.is_empty()) return first;
@@ -158,46 +148,12 @@ TrackingResult RoomMapper::track_still(NewFrame& frame, std::span<const Keyframe
   return first;
 }
 
-/// Begins a map with the frames that could not be registered, in order. Returns what became of
-/// them, and of the frames of a map before that was too small to keep.
-std::vector<LateFrame> RoomMapper::start_map() {
-  std::vector<LateFrame> late = drop_fragment();
-  map_ = begun_maps_++;
-  odometry_.start_anew();
-  moving_ = MovingRegions(camera_);
-  lost_frames_ = 0;
-  for (NewFrame& frame : std::exchange(held_, {})) {
-    LateFrame& result = late.emplace_back(LateFrame{frame.index, track(frame)});
-    if (result.tracking.registered()) integrate(*frame.cloud);
-  }
-  return late;
-}
-
-/// Removes the newest map if it has too few frames to be of use. Nothing refers to it then but
-/// what was added last.
-std::vector<LateFrame> RoomMapper::drop_fragment() {
-  const auto is_of_newest = [&](const RegisteredFrame& frame) {
-    return keyframes_[frame.keyframe].map == map_;
-  };
-  const auto first = std::ranges::find_if(frames_, is_of_newest);
-  if (map_ + 1 != begun_maps_ || frames_.end() - first >= least_frames_of_map) return {};
-  std::vector<LateFrame> dropped;
-  for (auto frame = first; frame != frames_.end(); ++frame) {
-    dropped.push_back({frame->index, TrackingResult{}});
-  }
-  frames_.erase(first, frames_.end());
-  const auto is_kept = [&](const Keyframe& keyframe) { return keyframe.map != map_; };
-  const auto kept = static_cast<int>(std::ranges::count_if(keyframes_.all(), is_kept));
-  const auto refers_to_dropped = [&](const PoseEdge& edge) { return edge.to >= kept; };
-  std::erase_if(edges_, refers_to_dropped);
-  loops_.resize(static_cast<std::size_t>(std::ranges::count_if(edges_, &PoseEdge::may_be_wrong)));
-  unfitted_loops_ = std::min(unfitted_loops_, static_cast<int>(loops_.size()));
-  std::erase_if(recognitions_, refers_to_dropped);
-  std::erase_if(submaps_, [&](const Submap& submap) { return submap.anchor >= kept; });
-  submap_of_.resize(static_cast<std::size_t>(kept));
-  keyframes_.shrink(kept);
-  searched_ = std::min(searched_, kept);
-  return dropped;
+/// Those of the keyframes that were taken in the newest map, whatever it was joined with since.
+std::vector<const Keyframe*> RoomMapper::own(std::span<const Keyframe* const> keyframes) const {
+  std::vector<const Keyframe*> found;
+  std::ranges::copy_if(keyframes, std::back_inserter(found),
+                       [&](const Keyframe* keyframe) { return is_own(*keyframe); });
+  return found;
 }
 
 KeyframeSpacing RoomMapper::keyframe_spacing() const {
@@ -228,6 +184,10 @@ void RoomMapper::integrate(const SurfaceCloud& cloud) {
 void RoomMapper::close_loops() {
   if (searched_ == keyframes_.size()) return;
   searched_ = keyframes_.size();
+  if (is_joined() && differs_from_others(keyframes_[keyframes_.size() - 1]) &&
+      ++differing_keyframes_ >= least_differing_keyframes) {
+    take_join_back();
+  }
   recognise_place();
   if (!loop_options_.close) return;
   const Keyframe& keyframe = keyframes_[keyframes_.size() - 1];
@@ -253,118 +213,8 @@ void RoomMapper::add_loop(const PoseEdge& edge, double error_m) {
   ++unfitted_loops_;
 }
 
-/// Searches for the place of the newest keyframe in those other maps that the camera can have
-/// travelled to, and joins maps if enough keyframes agree.
-void RoomMapper::recognise_place() {
-  const auto is_of_this = [&](const Keyframe& other) { return other.map == map_; };
-  if (std::ranges::all_of(keyframes_.all(), is_of_this)) return;
-  const Keyframe& keyframe = keyframes_[keyframes_.size() - 1];
-  const std::vector<Stretch> travelled = stretches();
-  const auto can_be_at = [&](const Keyframe& other, const Pose& pose, double tolerance_m) {
-    return can_travel(travelled,
-                      {.into = other.map,
-                       .map = map_,
-                       .into_from_map = pose * keyframe.world_from_camera.inverse(),
-                       .edges = {}},
-                      tolerance_m);
-  };
-  // The camera may be some way from the keyframe that recognises it, and turned, which moves the
-  // begin of its map.
-  const double since_begin_m =
-      (keyframe.world_from_camera.translation() - travelled.back().begin_m).norm();
-  const double near_m =
-      travel_tolerance_m + recognition_reach_m + recognition_reach_rad * since_begin_m;
-  std::vector<const Keyframe*> candidates;
-  for (const Keyframe& other : keyframes_.all()) {
-    if (!is_of_this(other) && can_be_at(other, other.world_from_camera, near_m)) {
-      candidates.push_back(&other);
-    }
-  }
-  const auto is_possible = [&](const Keyframe& other, const Pose& pose) {
-    return can_be_at(other, pose, travel_tolerance_m);
-  };
-  const auto found = recognise(keyframe, std::move(candidates), is_possible, keyframes_.all(),
-                               camera_, loop_options_, registration_);
-  if (!found) return;
-  recognitions_.push_back(loop_edge(keyframes_[found->from], keyframe.id, found->registration));
-  join_maps(travelled);
-}
-
-/// The path of the camera through the maps.
-std::vector<Stretch> RoomMapper::stretches() const {
-  std::vector<Stretch> stretches;
-  for (const RegisteredFrame& frame : frames_) {
-    add_position(stretches, keyframes_[frame.keyframe].map, frame.timestamp_s,
-                 pose_of(frame).translation());
-  }
-  return stretches;
-}
-
-/// Joins the newest map with another one if enough recognitions agree. `travelled` are stretches().
-void RoomMapper::join_maps(std::span<const Stretch> travelled) {
-  const auto join = find_join(recognitions_, map_, keyframes_.all(), loop_options_);
-  if (!join || looks_different(*join)) return;
-  const auto gap =
-      std::ranges::adjacent_find(travelled, [&](const Stretch& one, const Stretch& next) {
-        return next.map == map_ && next.begin_s - one.end_s > longest_blink_s;
-      });
-  if (gap != travelled.end()) ++blind_joins_;
-  keyframes_.join(join->map, join->into, join->into_from_map);
-  odometry_.move(join->into_from_map);
-  moving_.move(join->into_from_map);
-  map_ = join->into;
-  for (const PoseEdge& edge : join->edges) {
-    const Pose found = keyframes_[edge.from].world_from_camera * edge.from_from_to;
-    const Pose& believed = keyframes_[edge.to].world_from_camera;
-    add_loop(edge, (found.translation() - believed.translation()).norm());
-  }
-  std::erase_if(recognitions_, [&](const PoseEdge& edge) {
-    return keyframes_[edge.from].map == keyframes_[edge.to].map;
-  });
-  fit();
-}
-
-/// Whether things stand in one of two maps where the other one has free space, if they are joined:
-/// places of one plan differ in what was put there. A single keyframe may be deceived.
-bool RoomMapper::looks_different(const MapJoin& join) const {
-  constexpr int least_keyframes = 2;
-  const MovingRegions regions(camera_);
-  int different = 0;
-  for (const Keyframe& keyframe : keyframes_.all()) {
-    if (keyframe.map != join.map) continue;
-    const Pose pose = join.into_from_map * keyframe.world_from_camera;
-    const Keyframe* other = keyframe_near(pose, join.into);
-    if (other == nullptr || regions.find(keyframe.cloud, pose, {&other, 1}).is_empty()) continue;
-    if (++different == least_keyframes) return true;
-  }
-  return false;
-}
-
-/// The keyframe of a map that is nearest to a pose. Null if none sees mostly the same.
-const Keyframe* RoomMapper::keyframe_near(const Pose& pose, int map) const {
-  const Keyframe* nearest = nullptr;
-  double least_steps = steps_of_same_view;
-  for (const Keyframe& keyframe : keyframes_.all()) {
-    if (keyframe.map != map) continue;
-    const double steps = keyframe_spacing().between(keyframe.world_from_camera, pose);
-    if (steps >= least_steps) continue;
-    nearest = &keyframe;
-    least_steps = steps;
-  }
-  return nearest;
-}
-
 void RoomMapper::finish() {
   if (unfitted_loops_ > 0) fit();
-}
-
-std::vector<int> RoomMapper::maps() const {
-  std::map<int, int> frames_of;
-  for (const RegisteredFrame& frame : frames_) ++frames_of[keyframes_[frame.keyframe].map];
-  std::vector<int> maps;
-  for (const auto& [map, frames] : frames_of) maps.push_back(map);
-  std::ranges::stable_sort(maps, std::ranges::greater(), [&](int map) { return frames_of[map]; });
-  return maps;
 }
 
 Trajectory RoomMapper::trajectory(int map) const {
@@ -426,7 +276,7 @@ bool RoomMapper::wants_keyframe(const TrackingResult& result,
   if (result.spread.translation_sigma_m() > odometry_options_.keyframe_translation_m / 2) {
     return true;
   }
-  return std::ranges::none_of(around, [&](const Keyframe* keyframe) {
+  return std::ranges::none_of(own(around), [&](const Keyframe* keyframe) {
     const bool is_of_earlier_visit = keyframe->id + recent_keyframes < keyframes_.size();
     return keyframe_spacing().between(keyframe->world_from_camera, pose) <
            (is_of_earlier_visit ? steps_on_earlier_visits : 1);
@@ -447,7 +297,7 @@ void RoomMapper::add_keyframe(const NewFrame& frame, std::span<const Keyframe* c
   }
   submap_of_.push_back(submap_for(id, result.world_from_camera, around));
   keyframes_.add({id, frame.index, frame.timestamp_s, result.world_from_camera, frame.cloud, path_m,
-                  PlaceDescriptor(*frame.cloud), map_});
+                  PlaceDescriptor(*frame.cloud), map_, newest_map()});
   for (std::size_t i = 0; i < result.targets.size(); ++i) {
     const int target = result.targets[i];
     edges_.push_back(
@@ -464,7 +314,7 @@ void RoomMapper::add_keyframe(const NewFrame& frame, std::span<const Keyframe* c
 int RoomMapper::submap_for(int id, const Pose& pose, std::span<const Keyframe* const> around) {
   int nearest = -1;
   double least_steps = submap_radius_steps;
-  for (const Keyframe* keyframe : around) {
+  for (const Keyframe* keyframe : own(around)) {
     const int submap = submap_of_[static_cast<std::size_t>(keyframe->id)];
     const int anchor = submaps_[static_cast<std::size_t>(submap)].anchor;
     const double steps = keyframe_spacing().between(keyframes_[anchor].world_from_camera, pose);

@@ -139,9 +139,10 @@ int RoomMap::degenerate() const {
 }
 
 int RoomMap::joins() const {
-  return static_cast<int>(std::ranges::count_if(frames, [](const FrameRecord& record) {
+  const auto made = std::ranges::count_if(frames, [](const FrameRecord& record) {
     return record.tracking.status == TrackingStatus::relocalised;
-  }));
+  });
+  return static_cast<int>(made) - joins_taken_back;
 }
 
 int RoomMap::unused_loops() const {
@@ -163,6 +164,7 @@ MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options) {
           .separate_maps = static_cast<int>(map.separate_maps.size()),
           .joins = map.joins(),
           .blind_joins = map.blind_joins,
+          .joins_taken_back = map.joins_taken_back,
           .unused_loops = map.unused_loops(),
           .position_sigma_m = map.least_certain.spread.translation_sigma_m(),
           .least_certain_frame = map.least_certain.frame,
@@ -314,6 +316,7 @@ RoomMap MapRun::finish() {
   }
   map.loops = mapper_.loops();
   map.blind_joins = mapper_.blind_joins();
+  map.joins_taken_back = mapper_.joins_taken_back();
   map.frames = std::move(frames_);
   map.errors = errors_.survey();
   map.interrupted = is_interrupted_;

@@ -52,6 +52,10 @@ class KeyframeGraph {
   /// Moves all keyframes of a map into another one.
   void join(int map, int into, const Pose& into_from_map);
 
+  /// Makes all keyframes that were taken in a map a map of their own again, at their poses. They
+  /// are no longer connected with others.
+  void separate(int taken_in);
+
   /// Removes the newest keyframes, those with an id of at least `size`. None of the others may be
   /// connected with one of them.
   void shrink(int size);

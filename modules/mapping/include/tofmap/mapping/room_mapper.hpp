@@ -104,7 +104,9 @@ class RoomMapper {
   Trajectory keyframe_trajectory(int map) const;
   /// How often maps were joined although the camera could have been carried to another place: it
   /// had not been tracked for more than two seconds.
-  int blind_joins() const { return blind_joins_; }
+  int blind_joins() const { return static_cast<int>(blindly_joined_.size()); }
+  /// How often a join was taken back.
+  int joins_taken_back() const { return joins_taken_back_; }
   /// The keyframe of a map whose position relative to the first one is least certain by what
   /// registrations tell (KeyframeGraph::spreads_from()). The map must have a keyframe.
   PoseCertainty least_certain(int map) const;
@@ -148,6 +150,10 @@ class RoomMapper {
     SurfaceMap surface;
   };
 
+  /// Number of keyframes that must differ from a map to tell that they show another place. A single
+  /// one may be deceived.
+  static constexpr int least_differing_keyframes = 2;
+
   TrackingResult track(NewFrame& frame);
   bool was_blind(double timestamp_s) const;
   TrackingResult track_still(NewFrame& frame, std::span<const Keyframe* const> around);
@@ -158,7 +164,14 @@ class RoomMapper {
   void recognise_place();
   std::vector<Stretch> stretches() const;
   void join_maps(std::span<const Stretch> travelled);
-  bool looks_different(const MapJoin& join) const;
+  int differing_keyframes(const MapJoin& join) const;
+  bool differs_from_others(const Keyframe& keyframe) const;
+  TrackingResult track_apart(NewFrame& frame, std::span<const Keyframe* const> around);
+  void take_join_back();
+  int newest_map() const { return begun_maps_ - 1; }
+  bool is_joined() const { return map_ != newest_map(); }
+  bool is_own(const Keyframe& keyframe) const { return keyframe.taken_in == newest_map(); }
+  std::vector<const Keyframe*> own(std::span<const Keyframe* const> keyframes) const;
   const Keyframe* keyframe_near(const Pose& pose, int map) const;
   void add_loop(const PoseEdge& edge, double error_m);
   KeyframeSpacing keyframe_spacing() const;
@@ -192,7 +205,9 @@ class RoomMapper {
   int lost_frames_ = 0;         ///< number of frames since the last registered one
   int searched_ = 0;            ///< number of keyframes for which loops were searched
   std::vector<NewFrame> held_;  ///< frames with a surface since the last registered one
-  int blind_joins_ = 0;         ///< see blind_joins()
+  std::vector<int> blindly_joined_;  ///< the newer maps of blind_joins()
+  int differing_keyframes_ = 0;      ///< of the newest map, from the map that it was joined with
+  int joins_taken_back_ = 0;
   std::vector<PoseEdge> recognitions_;  ///< from a keyframe of another map to one of `map_`
 };
 

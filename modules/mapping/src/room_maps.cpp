@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// How RoomMapper begins maps, joins them, and takes a join back.
+
+#include "tofmap/mapping/free_space.hpp"
+#include "tofmap/mapping/map_join.hpp"
+#include "tofmap/mapping/place_recognition.hpp"
+#include "tofmap/mapping/room_mapper.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace tofmap {
+namespace {
+
+/// Smallest number of frames of a map. Fewer show something that passed in front of the camera.
+constexpr std::ptrdiff_t least_frames_of_map = 3;
+
+/// Keyframes within this many keyframe spacings of each other see mostly the same.
+constexpr double steps_of_same_view = 3;
+
+/// Longest time without tracking after which the camera is still near where it was: at walking pace
+/// it has gone three metres, hardly into another room.
+constexpr double longest_blink_s = 2;
+
+}  // namespace
+
+/// Whether the camera can have been carried elsewhere since the last registered frame.
+bool RoomMapper::was_blind(double timestamp_s) const {
+  return !frames_.empty() && odometry_.is_after_gap(timestamp_s) &&
+         timestamp_s - frames_.back().timestamp_s > longest_blink_s;
+}
+
+/// Begins a map with the frames that could not be registered, in order. Returns what became of
+/// them, and of the frames of a map before that was too small to keep.
+std::vector<LateFrame> RoomMapper::start_map() {
+  std::vector<LateFrame> late = drop_fragment();
+  map_ = begun_maps_++;
+  odometry_.start_anew();
+  moving_ = MovingRegions(camera_);
+  lost_frames_ = 0;
+  for (NewFrame& frame : std::exchange(held_, {})) {
+    LateFrame& result = late.emplace_back(LateFrame{frame.index, track(frame)});
+    if (result.tracking.registered()) integrate(*frame.cloud);
+  }
+  return late;
+}
+
+/// Removes the newest map if it has too few frames to be of use. Nothing refers to it then but
+/// what was added last.
+std::vector<LateFrame> RoomMapper::drop_fragment() {
+  const auto is_of_newest = [&](const RegisteredFrame& frame) {
+    return keyframes_[frame.keyframe].map == map_;
+  };
+  const auto first = std::ranges::find_if(frames_, is_of_newest);
+  if (map_ + 1 != begun_maps_ || frames_.end() - first >= least_frames_of_map) return {};
+  std::vector<LateFrame> dropped;
+  for (auto frame = first; frame != frames_.end(); ++frame) {
+    dropped.push_back({frame->index, TrackingResult{}});
+  }
+  frames_.erase(first, frames_.end());
+  const auto is_kept = [&](const Keyframe& keyframe) { return keyframe.map != map_; };
+  const auto kept = static_cast<int>(std::ranges::count_if(keyframes_.all(), is_kept));
+  const auto refers_to_dropped = [&](const PoseEdge& edge) { return edge.to >= kept; };
+  std::erase_if(edges_, refers_to_dropped);
+  loops_.resize(static_cast<std::size_t>(std::ranges::count_if(edges_, &PoseEdge::may_be_wrong)));
+  unfitted_loops_ = std::min(unfitted_loops_, static_cast<int>(loops_.size()));
+  std::erase_if(recognitions_, refers_to_dropped);
+  std::erase_if(submaps_, [&](const Submap& submap) { return submap.anchor >= kept; });
+  submap_of_.resize(static_cast<std::size_t>(kept));
+  keyframes_.shrink(kept);
+  searched_ = std::min(searched_, kept);
+  return dropped;
+}
+
+/// Searches for the place of the newest keyframe in those other maps that the camera can have
+/// travelled to, and joins maps if enough keyframes agree.
+void RoomMapper::recognise_place() {
+  const auto is_of_this = [&](const Keyframe& other) { return other.map == map_; };
+  if (std::ranges::all_of(keyframes_.all(), is_of_this)) return;
+  const Keyframe& keyframe = keyframes_[keyframes_.size() - 1];
+  const std::vector<Stretch> travelled = stretches();
+  const auto can_be_at = [&](const Keyframe& other, const Pose& pose, double tolerance_m) {
+    return can_travel(travelled,
+                      {.into = other.map,
+                       .map = map_,
+                       .into_from_map = pose * keyframe.world_from_camera.inverse(),
+                       .edges = {}},
+                      tolerance_m);
+  };
+  // The camera may be some way from the keyframe that recognises it, and turned, which moves the
+  // begin of its map.
+  const double since_begin_m =
+      (keyframe.world_from_camera.translation() - travelled.back().begin_m).norm();
+  const double near_m =
+      travel_tolerance_m + recognition_reach_m + recognition_reach_rad * since_begin_m;
+  std::vector<const Keyframe*> candidates;
+  for (const Keyframe& other : keyframes_.all()) {
+    if (!is_of_this(other) && can_be_at(other, other.world_from_camera, near_m)) {
+      candidates.push_back(&other);
+    }
+  }
+  const auto is_possible = [&](const Keyframe& other, const Pose& pose) {
+    return can_be_at(other, pose, travel_tolerance_m);
+  };
+  const auto found = recognise(keyframe, std::move(candidates), is_possible, keyframes_.all(),
+                               camera_, loop_options_, registration_);
+  if (!found) return;
+  recognitions_.push_back(loop_edge(keyframes_[found->from], keyframe.id, found->registration));
+  join_maps(travelled);
+}
+
+/// The path of the camera through the maps.
+std::vector<Stretch> RoomMapper::stretches() const {
+  std::vector<Stretch> stretches;
+  for (const RegisteredFrame& frame : frames_) {
+    add_position(stretches, keyframes_[frame.keyframe].map, frame.timestamp_s,
+                 pose_of(frame).translation());
+  }
+  return stretches;
+}
+
+/// Joins the newest map with another one if enough recognitions agree. `travelled` are stretches().
+void RoomMapper::join_maps(std::span<const Stretch> travelled) {
+  const auto join = find_join(recognitions_, map_, keyframes_.all(), loop_options_);
+  if (!join) return;
+  differing_keyframes_ = differing_keyframes(*join);
+  if (differing_keyframes_ >= least_differing_keyframes) return;
+  const auto gap =
+      std::ranges::adjacent_find(travelled, [&](const Stretch& one, const Stretch& next) {
+        return next.map == map_ && next.begin_s - one.end_s > longest_blink_s;
+      });
+  if (gap != travelled.end()) blindly_joined_.push_back(map_);
+  keyframes_.join(join->map, join->into, join->into_from_map);
+  odometry_.move(join->into_from_map);
+  moving_.move(join->into_from_map);
+  map_ = join->into;
+  for (const PoseEdge& edge : join->edges) {
+    const Pose found = keyframes_[edge.from].world_from_camera * edge.from_from_to;
+    const Pose& believed = keyframes_[edge.to].world_from_camera;
+    add_loop(edge, (found.translation() - believed.translation()).norm());
+  }
+  std::erase_if(recognitions_, [&](const PoseEdge& edge) {
+    return keyframes_[edge.from].map == keyframes_[edge.to].map;
+  });
+  fit();
+}
+
+/// Number of keyframes of the newest map that see things in free space of another map, or see
+/// through things there, if both are joined: places of one plan differ in what was put there.
+int RoomMapper::differing_keyframes(const MapJoin& join) const {
+  int count = 0;
+  for (const Keyframe& keyframe : keyframes_.all()) {
+    if (keyframe.map != join.map) continue;
+    Keyframe placed = keyframe;
+    placed.map = join.into;
+    placed.world_from_camera = join.into_from_map * keyframe.world_from_camera;
+    count += differs_from_others(placed) ? 1 : 0;
+  }
+  return count;
+}
+
+/// Whether a keyframe of the newest map sees a region that stands in free space of another one that
+/// it was joined with, or sees through one there.
+bool RoomMapper::differs_from_others(const Keyframe& keyframe) const {
+  const Keyframe* other = keyframe_near(keyframe.world_from_camera, keyframe.map);
+  return other != nullptr && !MovingRegions(camera_)
+                                  .find(keyframe.cloud, keyframe.world_from_camera, {&other, 1})
+                                  .is_empty();
+}
+
+/// Registers a frame with the keyframes of its own map alone, after that with all keyframes of the
+/// maps that were joined has failed. If it fits the one and contradicts the others, the join is
+/// taken back.
+TrackingResult RoomMapper::track_apart(NewFrame& frame, std::span<const Keyframe* const> around) {
+  TrackingResult result = track_still(frame, own(around));
+  if (!result.registered()) return result;
+  const Keyframe* other = keyframe_near(result.world_from_camera, map_);
+  if (other != nullptr && contradicts_free_space({frame.cloud.get(), result.world_from_camera},
+                                                 target_of(*other), camera_)) {
+    const Pose before = keyframes_[current_].world_from_camera;
+    take_join_back();
+    result.world_from_camera =
+        keyframes_[current_].world_from_camera * before.inverse() * result.world_from_camera;
+  }
+  return result;
+}
+
+/// Makes the newest map one of its own again, without the edges to others.
+void RoomMapper::take_join_back() {
+  const auto joins = [&](const PoseEdge& edge) {
+    return is_own(keyframes_[edge.from]) != is_own(keyframes_[edge.to]);
+  };
+  std::vector<Loop> kept;
+  auto loop = loops_.begin();
+  for (const PoseEdge& edge : edges_) {
+    if (!edge.may_be_wrong) continue;
+    if (!joins(edge)) kept.push_back(*loop);
+    ++loop;
+  }
+  loops_ = std::move(kept);
+  std::erase_if(edges_, joins);
+  map_ = newest_map();
+  keyframes_.separate(map_);
+  std::erase(blindly_joined_, map_);
+  ++joins_taken_back_;
+  fit();
+}
+
+/// The keyframe of a map that is nearest to a pose, among those of maps that the newest one was
+/// joined with. Null if none sees mostly the same.
+const Keyframe* RoomMapper::keyframe_near(const Pose& pose, int map) const {
+  const Keyframe* nearest = nullptr;
+  double least_steps = steps_of_same_view;
+  for (const Keyframe& keyframe : keyframes_.all()) {
+    if (keyframe.map != map || is_own(keyframe)) continue;
+    const double steps = keyframe_spacing().between(keyframe.world_from_camera, pose);
+    if (steps >= least_steps) continue;
+    nearest = &keyframe;
+    least_steps = steps;
+  }
+  return nearest;
+}
+
+std::vector<int> RoomMapper::maps() const {
+  std::map<int, int> frames_of;
+  for (const RegisteredFrame& frame : frames_) ++frames_of[keyframes_[frame.keyframe].map];
+  std::vector<int> maps;
+  for (const auto& [map, frames] : frames_of) maps.push_back(map);
+  std::ranges::stable_sort(maps, std::ranges::greater(), [&](int map) { return frames_of[map]; });
+  return maps;
+}
+
+}  // namespace tofmap
