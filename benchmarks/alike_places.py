@@ -12,6 +12,8 @@ places. A map is
 - WRONG: a loop was used, or maps were joined, between different places (an error of more than 0.2 m
   or 10 degrees between the two frames), or a position has an error of more than 5 cm without a
   warning or a verdict that says to check the result,
+- by look: maps were joined that do not belong together, after the camera was not tracked for more
+  than two seconds, and the verdict says that this was by look alone,
 - unknown: anything else, so several maps that are right, or a warning.
 Maps are made from a copy of the recording without its truth, which would change the verdict. Each
 map is aligned with the truth by itself. Recordings and maps stay in OUT_DIR; recordings that are

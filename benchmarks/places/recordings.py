@@ -13,7 +13,8 @@ from places.walk import FRAME_RATE_HZ
 
 CARRIED_S = 4  # time without frames while the camera is carried
 LEAST_CLEARANCE_M = 0.3
-TRUTH = ("groundtruth.txt", "range_truth", "label_truth", "scene.ply", "options.yaml")
+TRUTH = ("groundtruth.txt", "range_truth", "label_truth", "moving_truth", "scene.ply",
+         "options.yaml")
 
 
 def run(*command):

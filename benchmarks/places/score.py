@@ -80,12 +80,17 @@ class Score:
     used: int
     wrong_loops: int
     wrong_joins: int
+    joins_by_look: int
     verdict: str
     is_warned: bool
 
     @property
     def outcome(self):
-        """`right`: one map of all frames; `unknown`: several maps, or a warning; else `WRONG`."""
+        """`right`: one map of all frames; `unknown`: several maps, or a warning; `by look`: maps
+        that do not belong together were joined, but the verdict tells of each such join that it is
+        by look alone; else `WRONG`."""
+        if 0 < self.wrong_joins <= self.joins_by_look:
+            return "by look"
         if self.wrong_loops or self.wrong_joins or (
                 self.worst_m > NOTICED_M and not self.is_warned):
             return "WRONG"
@@ -122,4 +127,5 @@ def score(recorded, result):
         wrong_loops=sum(bool(is_wrong(path, truth, one, [other])[0]) for path in paths
                         for one, other in used if one in path.row_of and other in path.row_of),
         wrong_joins=sum(wrong_joins(path, truth, frames) for path in paths),
+        joins_by_look=report["summary"]["joins"]["by_look_alone"],
         verdict=verdict, is_warned=verdict != "good" or bool(report["warnings"]))

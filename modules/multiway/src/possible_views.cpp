@@ -71,10 +71,10 @@ std::vector<Place> best_of_grid(std::span<const Eigen::Vector3f> points_m,
                                 const Eigen::AlignedBox3d& box_m, double apart_m) {
   std::vector<Place> all;
   for (int i = 0; i < along_axis * along_axis * along_axis; ++i) {
-    const Eigen::Vector3d cell(i % along_axis, i / along_axis % along_axis,
+    const Eigen::Vector3i cell(i % along_axis, i / along_axis % along_axis,
                                i / (along_axis * along_axis));
-    all.push_back(
-        rated(points_m, box_m.min() + box_m.sizes().cwiseProduct(cell) / (along_axis - 1)));
+    all.push_back(rated(points_m, box_m.min() + box_m.sizes().cwiseProduct(cell.cast<double>()) /
+                                                    (along_axis - 1)));
   }
   std::ranges::stable_sort(all, std::ranges::less(), &Place::hidden_share);
   std::vector<Place> best;

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include <boost/crc.hpp>
+#include <fmt/format.h>
 
 #include <tofmap/core/error.hpp>
 
@@ -46,9 +47,10 @@ void check_identity(std::istream& in, const std::vector<std::string>& now,
   std::string there;
   for (const std::string& line : now) {
     if (std::getline(in, there) && there == line) continue;
-    throw UsageError(folder.string() + ": the interrupted run has '" + there + "', this run has '" +
-                     line +
-                     "'; give the same recording and options, or start anew without --resume");
+    throw UsageError(fmt::format(
+        "{}: the interrupted run has '{}', this run has '{}'; give the same recording and options, "
+        "or start anew without --resume",
+        folder.string(), there, line));
   }
 }
 

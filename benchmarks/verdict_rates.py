@@ -1,0 +1,84 @@
+#!/usr/bin/python3
+# SPDX-FileCopyrightText: 2026 the tofmap authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Counts how often `tofmap map` says to check a map that is wrong, and one that is right.
+
+    benchmarks/verdict_rates.py BUILD_DIR OUT_DIR RECORDING... [--jobs N]
+
+The recordings have ground truth, such as those that alike_places.py, moving_things.py,
+violent_turns.py and `tofmap simulate` make. Each is mapped without its truth, which would change
+the verdict. A map is wrong if the position of a frame is off by more than 5 cm, in the map that the
+frame is in, after the rigid alignment that fits that map best. It is questioned if its verdict is
+not "Looks right." Rows are printed as they come, and the rates last. Maps stay in OUT_DIR, and are
+used again. Needs Debian's python3-numpy and python3-scipy.
+"""
+import argparse
+import concurrent.futures
+import pathlib
+import shutil
+
+from places.recordings import run, without_truth
+from places.score import NOTICED_M, score
+
+HEADER = ("| recording | frames in each map | ATE, mm | largest error, mm | verdict | |\n"
+          "|---|---|---|---|---|---|")
+
+
+def map_of(tofmap, out, recorded):
+    """Maps a recording without its truth, if that was not done before."""
+    result = out / f"{recorded.name}_verdict"
+    if not (result / "report.json").exists():
+        copy = without_truth(recorded)
+        run(tofmap, "map", copy, "--out", result, "--set", "report.frames=0", "pictures.frames=0")
+        shutil.rmtree(copy)
+    return result
+
+
+def measure(tofmap, out, recorded):
+    """The score of the map of a recording, or why there is none."""
+    try:
+        return recorded.name, score(recorded, map_of(tofmap, out, recorded))
+    except RuntimeError as error:  # no map
+        return recorded.name, str(error)
+
+
+def row_of(name, found):
+    is_wrong, is_questioned = found.worst_m > NOTICED_M, found.verdict != "good"
+    remark = {(True, False): "MISSED", (False, True): "for nothing"}.get(
+        (is_wrong, is_questioned), "")
+    ate_mm = "; ".join(f"{1000 * ate_m:.1f}" for ate_m in found.ate_m)
+    return (f"| {name} | {' + '.join(map(str, found.registered))} of {found.frames} | {ate_mm} | "
+            f"{1000 * found.worst_m:.0f} | {found.verdict} | {remark} |")
+
+
+def rate(questioned, what):
+    if not questioned:
+        return f"no {what} maps"
+    return (f"{sum(questioned)} of {len(questioned)} {what} maps are questioned "
+            f"({100 * sum(questioned) / len(questioned):.0f} %)")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("build", type=pathlib.Path, help="folder of the build")
+    parser.add_argument("out", type=pathlib.Path, help="folder of maps")
+    parser.add_argument("recordings", type=pathlib.Path, nargs="+")
+    parser.add_argument("--jobs", type=int, default=1, help="recordings to work on side by side")
+    arguments = parser.parse_args()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    tofmap = arguments.build / "apps" / "tofmap"
+    questioned = {True: [], False: []}
+    print(HEADER, flush=True)
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        for name, found in pool.map(lambda one: measure(tofmap, arguments.out, one),
+                                    arguments.recordings):
+            if isinstance(found, str):
+                print(f"| {name} | {found} | | | | |", flush=True)
+                continue
+            print(row_of(name, found), flush=True)
+            questioned[found.worst_m > NOTICED_M].append(found.verdict != "good")
+    print(f"\n{rate(questioned[True], 'wrong')}; {rate(questioned[False], 'right')}")
+
+
+if __name__ == "__main__":
+    main()
