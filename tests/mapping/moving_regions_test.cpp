@@ -78,6 +78,16 @@ Motion motion_between(const View& before, const View& now,
   return MovingRegions(test::small_camera()).find(now.cloud, world_from_camera, keyframes);
 }
 
+TEST(MovingRegions, AreLeftOutOfTheBackgroundWhetherTheyMoveOrNot) {
+  const View view = view_of(person_at(0.3, 2), test::moved_by({0.02, -0.04, 0.01}, {0.1, 0, 0}));
+  const MovingRegions regions(test::small_camera());
+  const Left left = left_in(*regions.background(view.cloud), view);
+  EXPECT_LT(left.of_person, 0.02);
+  EXPECT_GT(left.of_room, 0.9);
+  const View empty = view_of({}, Pose::Identity());
+  EXPECT_EQ(regions.background(empty.cloud), empty.cloud);
+}
+
 TEST(MovingRegions, AreEmptyInARoomWhereNothingMoves) {
   const Pose moved = test::moved_by({0.02, -0.04, 0.01}, {0.1, -0.05, 0.08});
   const View now = view_of(person_at(0.3, 2), moved);

@@ -66,6 +66,27 @@ TEST(MovingPeople, AreErasedAndTheRoomIsNot) {
   EXPECT_LT(room.share(), 0.1);
 }
 
+TEST(MovingPeople, WhoAreThereFromTheBeginningDoNotTakeTheCameraWithThem) {
+  // Two people near the camera cover a third of its image, and walk on with it.
+  constexpr int frames = 16;
+  SimulatorOptions options;
+  options.width_px = 88;
+  options.height_px = 72;
+  options.people = 2;
+  options.people_range_m = 1;
+  Simulator simulator(make_scene("hall"), options);
+  MapHooks hooks;
+  hooks.keep_going = [](int done) { return done < frames; };
+  const RoomMap map = map_room(simulator, {}, hooks);
+  ASSERT_GE(static_cast<int>(map.trajectory.size()), frames);
+  const Pose first = simulator.simulate(0).world_from_camera;
+  for (int i = 1; i < frames; ++i) {
+    const Pose truth = first.inverse() * simulator.simulate(i).world_from_camera;
+    const Pose& found = map.trajectory[static_cast<std::size_t>(i)].world_from_camera;
+    EXPECT_LT((truth.inverse() * found).translation().norm(), 0.01) << i;
+  }
+}
+
 TEST(MovingPeople, DoNotTakeTheCameraWithThem) {
   constexpr int frames = 60;
   Simulator simulator = room_with_a_person();

@@ -35,6 +35,25 @@ std::vector<std::size_t> neighbours(const CellGrid& grid, std::size_t cell) {
   return beside;
 }
 
+/// Distance between a surface and another one beside it in the image at which they are two things.
+constexpr float apart_m = 0.3F;
+
+/// Whether a surface seems to go on from the one above it in a column of cells: the point above is
+/// near the line through the next two points, as where a floor meets a wall.
+bool goes_on_from_above(const CellGrid& grid, const std::vector<std::size_t>& column,
+                        std::size_t i) {
+  if (i + 1 == column.size()) return true;
+  const Eigen::Vector3f& point = grid.point_m(column[i]);
+  const Eigen::Vector3f along = (point - grid.point_m(column[i + 1])).normalized();
+  return (grid.point_m(column[i - 1]) - point).cross(along).norm() < apart_m;
+}
+
+bool hides_what_is_above(const CellGrid& grid, const std::vector<std::size_t>& column,
+                         std::size_t i) {
+  return grid.range_m(column[i - 1]) > grid.range_m(column[i]) + apart_m &&
+         !goes_on_from_above(grid, column, i);
+}
+
 SurfacePoint no_point() {
   constexpr float none = std::numeric_limits<float>::quiet_NaN();
   SurfacePoint point{};
@@ -131,6 +150,26 @@ Cells<int> grow_regions(const CellGrid& grid, const Cells<int>& seeds, const Cel
     for (const Grown& grown : region) regions[grown.cell] = value;
   }
   return regions;
+}
+
+Cells<int> front_regions(const CellGrid& grid) {
+  Cells<int> front(grid.size(), no_region);
+  const auto cols = static_cast<std::size_t>(grid.cols());
+  for (std::size_t col = 0; col < cols; ++col) {
+    std::vector<std::size_t> column;
+    for (std::size_t cell = col; cell < grid.size(); cell += cols) {
+      if (grid.has_surface(cell)) column.push_back(cell);
+    }
+    bool is_in_front = false;
+    for (std::size_t i = 1; i < column.size(); ++i) {
+      if (!grid.are_joined(column[i - 1], column[i])) {
+        is_in_front = hides_what_is_above(grid, column, i) ||
+                      (is_in_front && goes_on_from_above(grid, column, i));
+      }
+      if (is_in_front) front[column[i]] = growing;
+    }
+  }
+  return grow_regions(grid, front, Cells<char>(grid.size(), 0));
 }
 
 std::shared_ptr<const SurfaceCloud> without_regions(const SurfaceCloud& cloud, const CellGrid& grid,

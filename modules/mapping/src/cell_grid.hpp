@@ -67,6 +67,12 @@ inline constexpr int growing = 0;
 /// seeds and result, `no_region` stands for all other cells.
 Cells<int> grow_regions(const CellGrid& grid, const Cells<int>& seeds, const Cells<char>& barred);
 
+/// Things that stand in front of others, as regions (grow_regions()). Their seeds are the cells
+/// below a surface that is at least 0.3 m farther away, downwards as far as the surface goes on.
+/// People and furniture are such things; walls, doors and columns mostly are not, since they reach
+/// up to the ceiling or the border of the image. The camera must be held upright.
+Cells<int> front_regions(const CellGrid& grid);
+
 /// A cloud without the points of regions: those whose cell, or a cell beside it, is in a region and
 /// has nearly the same range. They become like those of pixels without a range.
 std::shared_ptr<const SurfaceCloud> without_regions(const SurfaceCloud& cloud, const CellGrid& grid,

@@ -29,6 +29,10 @@ constexpr double alike_difference = 0.3;
 /// Largest correction by a loop, in standard deviations of drift.
 constexpr double most_drift_sigmas = 3;
 
+/// Largest correction by a place that was recognised farther away than ICP reaches. The drift would
+/// be larger in one of twenty cases; another place that looks the same is more likely then.
+constexpr double most_recognised_sigmas = 2;
+
 /// The search for a loop of a keyframe.
 struct LoopSearch {
   const Keyframe& keyframe;
@@ -140,7 +144,7 @@ std::optional<LoopCandidate> find_where_alike(const LoopSearch& search,
   if (earlier.empty()) return std::nullopt;
   const auto before = search.keyframes.first(static_cast<std::size_t>(keyframe.id));
   const auto has_drifted_to = [&](const Keyframe& other, const Pose& pose) {
-    return prior_deviation_sigmas(search.drift_from(other), pose) <= most_drift_sigmas;
+    return prior_deviation_sigmas(search.drift_from(other), pose) <= most_recognised_sigmas;
   };
   const auto found = recognise(keyframe, std::move(earlier), has_drifted_to, before, search.camera,
                                search.options, search.registration);

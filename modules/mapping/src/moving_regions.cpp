@@ -148,6 +148,12 @@ CloudPointer MovingRegions::without_known(const CloudPointer& cloud,
   return has_region(regions) ? without_regions(*cloud, grid, regions) : cloud;
 }
 
+CloudPointer MovingRegions::background(const CloudPointer& cloud) const {
+  const CellGrid grid(*cloud, camera_);
+  const Cells<int> front = front_regions(grid);
+  return has_region(front) ? without_regions(*cloud, grid, front) : cloud;
+}
+
 Motion MovingRegions::find(const CloudPointer& cloud, const Pose& world_from_camera,
                            std::span<const Keyframe* const> keyframes) const {
   Motion motion{.still = cloud, .keyframes = {}, .points = {}};

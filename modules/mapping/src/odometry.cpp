@@ -40,6 +40,9 @@ bool is_elsewhere(const RegistrationResult& one, const RegistrationResult& other
 constexpr double suspect_sigmas = 4;
 constexpr double suspect_share = 0.75;
 
+/// Smallest inlier ratio of a registration that fits as usual, relative to recent ones.
+constexpr double least_inlier_share = 0.95;
+
 /// Largest rotation from the last pose that is tried: a turn by 30 degrees and what ICP adds.
 constexpr double reach_rad = 0.6;
 constexpr std::size_t most_rotations = 4;
@@ -237,10 +240,13 @@ bool Odometry::is_suspect(const Attempt& attempt) const {
 /// new, few points fit, but those that have a correspondence do.
 bool Odometry::is_credible(const RegistrationResult& result) const {
   constexpr double least_share = 0.5;
-  constexpr double least_inlier_share = 0.95;
   const double share = support(result) / usual_support_;
   if (result.status != RegistrationStatus::converged) return share >= suspect_share;
-  return share >= least_share || result.inlier_ratio >= least_inlier_share * usual_inlier_ratio_;
+  return share >= least_share || fits_as_usual(result);
+}
+
+bool Odometry::fits_as_usual(const RegistrationResult& result) const {
+  return result.inlier_ratio >= least_inlier_share * usual_inlier_ratio_;
 }
 
 /// Whether a successful registration contradicts the free space of the keyframe that it overlaps

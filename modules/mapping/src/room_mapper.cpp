@@ -5,6 +5,7 @@
 
 #include "tofmap/mapping/free_space.hpp"
 #include "tofmap/mapping/loop_fit.hpp"
+#include "tofmap/mapping/slip_search.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -34,6 +35,27 @@ constexpr double steps_on_earlier_visits = 2;
 /// Keyframes within this many keyframe spacings of an anchor share its submap, since their relative
 /// poses hardly change any more.
 constexpr double submap_radius_steps = 4;
+
+/// Number of frames since the begin of a map, or since something in front was found to move, in
+/// which the background is registered by itself.
+constexpr int frames_until_trusted = 15;
+
+/// Whether a registration with fewer points contradicts another one: they differ by more than
+/// registrations of still scenes do, by what the former knows.
+bool contradicts(const RegistrationResult& one, const RegistrationResult& other) {
+  constexpr double least_m = 0.005;
+  constexpr double least_sigmas = 6;
+  const Pose& a = one.world_from_camera;
+  const Pose& b = other.world_from_camera;
+  const Eigen::AngleAxisd turn(a.linear() * b.linear().transpose());
+  Eigen::Matrix<double, 6, 1> twist;
+  twist << turn.angle() * turn.axis(), a.translation() - b.translation();
+  double squared_sigmas = 0;
+  for (const auto& information : one.target_information) {
+    squared_sigmas += twist.dot(information * twist);
+  }
+  return twist.tail<3>().norm() > least_m && squared_sigmas > least_sigmas * least_sigmas;
+}
 
 }  // namespace
 
@@ -124,7 +146,8 @@ TrackingResult RoomMapper::track_still(NewFrame& frame, std::span<const Keyframe
   }
   const Odometry before = odometry_;
   const auto cloud = moving_.without_known(frame.cloud, odometry_.expected_pose(frame.timestamp_s));
-  const TrackingResult first = odometry_.track(frame.timestamp_s, *cloud, around);
+  TrackingResult first = odometry_.track(frame.timestamp_s, *cloud, around);
+  const auto background = track_background(frame.timestamp_s, cloud, around, before, first);
   if (first.status != TrackingStatus::tracked) return first;
   // The oldest keyframe saw what was behind a thing that has moved since. Differences from a map
   // that was joined tell of the join instead.
@@ -136,16 +159,46 @@ TrackingResult RoomMapper::track_still(NewFrame& frame, std::span<const Keyframe
   if (std::ranges::find(compared, oldest) == compared.end()) compared.push_back(oldest);
   const Motion motion = moving_.find(frame.cloud, first.world_from_camera, compared);
   moving_.remember(motion);
-  if (motion.is_empty()) return first;
-  frame.cloud = motion.still;
   for (const CleanedKeyframe& keyframe : motion.keyframes) {
     keyframes_.set_cloud(keyframe.id, keyframe.cloud);
   }
+  frame.cloud = motion.still;
+  if (background) frame.cloud = moving_.background(frame.cloud);
+  if (motion.is_empty()) return first;
   const Odometry after_first = std::exchange(odometry_, before);
-  const TrackingResult second = odometry_.track(frame.timestamp_s, *frame.cloud, around);
+  TrackingResult second = odometry_.track(frame.timestamp_s, *frame.cloud, around);
   if (second.registered()) return second;
   odometry_ = after_first;
   return first;
+}
+
+/// In the first second of a map nobody knows how the camera moves, so people who are there from the
+/// beginning may take it with them. Then, and whenever a cloud fits worse than is usual, it is also
+/// registered without the things in front of others. If that contradicts `all`, the registration of
+/// the whole cloud, something in front moves: `all` is replaced, and the result is true.
+bool RoomMapper::track_background(double timestamp_s,
+                                  const std::shared_ptr<const SurfaceCloud>& cloud,
+                                  std::span<const Keyframe* const> around, const Odometry& before,
+                                  TrackingResult& all) {
+  if (around.empty()) return false;
+  const bool is_trusted = ++frames_since_front_moved_ > frames_until_trusted;
+  if (is_trusted && all.status == TrackingStatus::tracked &&
+      before.fits_as_usual(all.registration)) {
+    return false;
+  }
+  const auto background = moving_.background(cloud);
+  if (background == cloud) return false;
+  const Odometry after_all = std::exchange(odometry_, before);
+  const TrackingResult behind = odometry_.track(timestamp_s, *background, around);
+  if (behind.status == TrackingStatus::tracked &&
+      (all.status != TrackingStatus::tracked ||
+       contradicts(behind.registration, all.registration))) {
+    frames_since_front_moved_ = 0;
+    all = behind;
+    return true;
+  }
+  odometry_ = after_all;
+  return false;
 }
 
 /// Those of the keyframes that were taken in the newest map, whatever it was joined with since.
@@ -262,7 +315,7 @@ MapCloud RoomMapper::surface(int map) const {
     const Keyframe& anchor = keyframes_[submap.anchor];
     if (anchor.map == map) whole.add(submap.surface, anchor.world_from_camera);
   }
-  const MapCloud surface = whole.extract();
+  MapCloud surface = whole.extract();
   if (!surface_options_.drop_free_space_violations) return surface;
   std::vector<Keyframe> seen_by;
   std::ranges::copy_if(keyframes_.all(), std::back_inserter(seen_by),
@@ -327,15 +380,34 @@ int RoomMapper::submap_for(int id, const Pose& pose, std::span<const Keyframe* c
   return static_cast<int>(submaps_.size()) - 1;
 }
 
-void RoomMapper::fit() {
+/// Moves all keyframes, and what is known of the last frame with them.
+void RoomMapper::set_poses(std::span<const Pose> poses) {
   const Pose current_before = keyframes_[current_].world_from_camera;
-  const LoopFit fitted = fit_loops(keyframes_.all(), edges_, loop_options_);
   for (int id = 0; id < keyframes_.size(); ++id) {
-    keyframes_.set_pose(id, fitted.poses[static_cast<std::size_t>(id)]);
+    keyframes_.set_pose(id, poses[static_cast<std::size_t>(id)]);
   }
   const Pose new_from_old_world = keyframes_[current_].world_from_camera * current_before.inverse();
   odometry_.move(new_from_old_world);
   moving_.move(new_from_old_world);
+}
+
+/// Searches for slips that explain the loops since the last fit, and mends them.
+void RoomMapper::mend_slips() {
+  std::vector<PoseEdge> loops;
+  std::ranges::copy_if(edges_, std::back_inserter(loops), &PoseEdge::may_be_wrong);
+  for (auto loop = loops.end() - unfitted_loops_; loop != loops.end(); ++loop) {
+    const auto slip =
+        find_slip(*loop, keyframes_.all(), edges_, camera_, loop_options_, registration_);
+    if (!slip) continue;
+    edges_ = without_slip(edges_, *slip);
+    set_poses(fit_loops(keyframes_.all(), edges_, loop_options_).poses);
+  }
+}
+
+void RoomMapper::fit() {
+  mend_slips();
+  const LoopFit fitted = fit_loops(keyframes_.all(), edges_, loop_options_);
+  set_poses(fitted.poses);
   loop_awaits_others_ = false;
   auto loop = loops_.begin();
   for (std::size_t i = 0; i < edges_.size(); ++i) {

@@ -41,6 +41,7 @@ std::vector<LateFrame> RoomMapper::start_map() {
   odometry_.start_anew();
   moving_ = MovingRegions(camera_);
   lost_frames_ = 0;
+  frames_since_front_moved_ = 0;
   for (NewFrame& frame : std::exchange(held_, {})) {
     LateFrame& result = late.emplace_back(LateFrame{frame.index, track(frame)});
     if (result.tracking.registered()) integrate(*frame.cloud);

@@ -68,7 +68,7 @@ struct LoopCandidate {
 /// First, `keyframe` is registered with the three candidates that overlap it most, together, from
 /// its current pose with a prior of drift. If that is wider than ICP reaches, or if the result is
 /// not verified, the place is recognised among the candidates (recognise()), and the result is
-/// accepted if it is within three standard deviations of drift. A loop is found if the candidate
+/// accepted if it is within two standard deviations of drift. A loop is found if the candidate
 /// confirms the result (confirms_place()), and if its surfaces alone tie both keyframes
 /// (KeyframeGraph::tied_sigma_m). `keyframes` are in the order of their ids, from 0, and hold all
 /// earlier keyframes; later ones are ignored.

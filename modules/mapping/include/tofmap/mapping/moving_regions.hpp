@@ -58,6 +58,10 @@ class MovingRegions {
   std::shared_ptr<const SurfaceCloud> without_known(
       const std::shared_ptr<const SurfaceCloud>& cloud, const Pose& world_from_camera) const;
 
+  /// A frame's cloud without things in front of others. The same object if there are none.
+  std::shared_ptr<const SurfaceCloud> background(
+      const std::shared_ptr<const SurfaceCloud>& cloud) const;
+
   /// What moves in a frame whose pose is known, compared with keyframes. The result is the same for
   /// any number of threads.
   Motion find(const std::shared_ptr<const SurfaceCloud>& cloud, const Pose& world_from_camera,

@@ -120,6 +120,9 @@ class Odometry {
   TrackingResult track(double timestamp_s, const SurfaceCloud& cloud,
                        std::span<const Keyframe* const> around);
 
+  /// Whether nearly as many correspondences of a registration fit its pose as is usual.
+  bool fits_as_usual(const RegistrationResult& result) const;
+
   /// Must be called for every frame after registration was tried, whether here or elsewhere. The
   /// frame period of the camera is estimated from the timestamps.
   void note_frame(double timestamp_s);

@@ -74,10 +74,16 @@ struct AddedFrame {
 /// three frames with a surface could not be registered, the first of them is the origin of a map of
 /// its own, and the others are tracked in it. Every keyframe of the newest map is compared with
 /// those of the other maps that the camera can have come to in the time (can_travel()); when three
-/// keyframes recognise places of another map and agree, both maps are joined. Maps that never are
-/// stay maps of their own. People, doors and other things that move are found (MovingRegions); they
-/// have no part in registration, keyframes and surface. A map of fewer than three frames is dropped
-/// again when the next one begins.
+/// keyframes recognise places of another map and agree, both maps are joined. Maps that never
+/// are stay maps of their own. The keyframes and submaps of a map stay apart from those of the
+/// maps that it was joined with, so that the join can be taken back: when two later keyframes
+/// differ from what the other map has there, or when a frame fits its own map alone. A map of
+/// fewer than three frames is dropped again when the next one begins.
+///
+/// People, doors and other things that move are found (MovingRegions); they have no part in
+/// registration, keyframes and surface. In the first second of a map, and whenever a frame fits
+/// worse than is usual, the background is also registered without the things in front of it,
+/// and decides.
 class RoomMapper {
  public:
   RoomMapper(const CameraModel& camera, const OdometryOptions& odometry,
@@ -157,6 +163,9 @@ class RoomMapper {
   TrackingResult track(NewFrame& frame);
   bool was_blind(double timestamp_s) const;
   TrackingResult track_still(NewFrame& frame, std::span<const Keyframe* const> around);
+  bool track_background(double timestamp_s, const std::shared_ptr<const SurfaceCloud>& cloud,
+                        std::span<const Keyframe* const> around, const Odometry& before,
+                        TrackingResult& all);
   std::vector<LateFrame> start_map();
   std::vector<LateFrame> drop_fragment();
   void integrate(const SurfaceCloud& cloud);
@@ -181,6 +190,8 @@ class RoomMapper {
   void add_keyframe(const NewFrame& frame, std::span<const Keyframe* const> around,
                     const TrackingResult& result);
   int submap_for(int id, const Pose& pose, std::span<const Keyframe* const> around);
+  void set_poses(std::span<const Pose> poses);
+  void mend_slips();
   void fit();
 
   CameraModel camera_;
@@ -205,8 +216,9 @@ class RoomMapper {
   int lost_frames_ = 0;         ///< number of frames since the last registered one
   int searched_ = 0;            ///< number of keyframes for which loops were searched
   std::vector<NewFrame> held_;  ///< frames with a surface since the last registered one
-  std::vector<int> blindly_joined_;  ///< the newer maps of blind_joins()
-  int differing_keyframes_ = 0;      ///< of the newest map, from the map that it was joined with
+  std::vector<int> blindly_joined_;   ///< the newer maps of blind_joins()
+  int frames_since_front_moved_ = 0;  ///< since the begin of the map, or since that was found
+  int differing_keyframes_ = 0;       ///< of the newest map, from the map that it was joined with
   int joins_taken_back_ = 0;
   std::vector<PoseEdge> recognitions_;  ///< from a keyframe of another map to one of `map_`
 };

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <tofmap/core/camera.hpp>
+#include <tofmap/mapping/keyframe.hpp>
+#include <tofmap/mapping/loop_closure.hpp>
+#include <tofmap/registration/pose_graph.hpp>
+#include <tofmap/registration/projective_icp.hpp>
+
+namespace tofmap {
+
+/// A slip of odometry: a keyframe was registered beside its place, and all later ones with it.
+struct Slip {
+  int at = 0;                   ///< id of the first keyframe that is off
+  std::vector<PoseEdge> edges;  ///< from keyframes before it, registered anew
+};
+
+/// Searches for a slip that explains a loop which puts its later keyframe elsewhere.
+///
+/// After a slip, all keyframes are off by the same correction. Therefore each keyframe between both
+/// ends of the loop is registered at its corrected pose with those that odometry registered it with
+/// (`edges`). A slip is found if the result is at that pose, confirms the place as a loop does
+/// (confirms_place()), and fits no worse than at the believed pose. Of several, the one that fits
+/// best is returned. Corrections of less than KeyframeGraph::tied_sigma_m, which are drift, and of
+/// more than half a metre at the keyframe, which odometry would not have accepted, are no slips.
+/// `keyframes` are in the order of their ids, from 0.
+std::optional<Slip> find_slip(const PoseEdge& loop, std::span<const Keyframe> keyframes,
+                              std::span<const PoseEdge> edges, const CameraModel& camera,
+                              const LoopOptions& options, const RegistrationOptions& registration);
+
+/// Edges without the slip: those of odometry that lead from a keyframe before it to a later one are
+/// replaced by those of the slip. Loops stay, in their order.
+std::vector<PoseEdge> without_slip(std::span<const PoseEdge> edges, const Slip& slip);
+
+}  // namespace tofmap
