@@ -9,8 +9,8 @@ The recordings have ground truth, such as those that alike_places.py, moving_thi
 violent_turns.py and `tofmap simulate` make. Each is mapped without its truth, which would change
 the verdict. A map is wrong if the position of a frame is off by more than 5 cm, in the map that the
 frame is in, after the rigid alignment that fits that map best. It is questioned if its verdict is
-not "Looks right." Rows are printed as they come, and the rates last. Maps stay in OUT_DIR, and are
-used again. Needs Debian's python3-numpy and python3-scipy.
+not "Looks right." The rates come last; recordings without a map, since the program failed, are
+counted apart. Maps stay in OUT_DIR, under the names of the recordings, and are used again. Needs Debian's python3-numpy and python3-scipy.
 """
 import argparse
 import concurrent.futures
@@ -29,8 +29,11 @@ def map_of(tofmap, out, recorded):
     result = out / f"{recorded.name}_verdict"
     if not (result / "report.json").exists():
         copy = without_truth(recorded)
-        run(tofmap, "map", copy, "--out", result, "--set", "report.frames=0", "pictures.frames=0")
-        shutil.rmtree(copy)
+        try:
+            run(tofmap, "map", copy, "--out", result, "--set", "report.frames=0",
+                "pictures.frames=0")
+        finally:
+            shutil.rmtree(copy)
     return result
 
 
@@ -39,7 +42,7 @@ def measure(tofmap, out, recorded):
     try:
         return recorded.name, score(recorded, map_of(tofmap, out, recorded))
     except RuntimeError as error:  # no map
-        return recorded.name, str(error)
+        return recorded.name, " ".join(str(error).split())
 
 
 def row_of(name, found):
@@ -65,19 +68,24 @@ def main():
     parser.add_argument("recordings", type=pathlib.Path, nargs="+")
     parser.add_argument("--jobs", type=int, default=1, help="recordings to work on side by side")
     arguments = parser.parse_args()
+    if len({recorded.name for recorded in arguments.recordings}) < len(arguments.recordings):
+        parser.error("recordings must have different names")
     arguments.out.mkdir(parents=True, exist_ok=True)
     tofmap = arguments.build / "apps" / "tofmap"
     questioned = {True: [], False: []}
+    without_map = 0
     print(HEADER, flush=True)
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         for name, found in pool.map(lambda one: measure(tofmap, arguments.out, one),
                                     arguments.recordings):
             if isinstance(found, str):
                 print(f"| {name} | {found} | | | | |", flush=True)
+                without_map += 1
                 continue
             print(row_of(name, found), flush=True)
             questioned[found.worst_m > NOTICED_M].append(found.verdict != "good")
-    print(f"\n{rate(questioned[True], 'wrong')}; {rate(questioned[False], 'right')}")
+    print(f"\n{rate(questioned[True], 'wrong')}; {rate(questioned[False], 'right')}; "
+          f"{without_map} without a map")
 
 
 if __name__ == "__main__":

@@ -148,7 +148,7 @@ Json summary_json(const RoomMap& map) {
           {"frames_with_degenerate_directions", map.degenerate()},
           {"loops", loops_json(map)},
           {"joins",
-           {{"kept", map.joins()},
+           {{"kept", map.joins},
             {"by_look_alone", map.blind_joins},
             {"taken_back", map.joins_taken_back}}},
           {"least_certain",

@@ -3,6 +3,7 @@
 
 #include "support/box_room.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -82,6 +83,21 @@ TEST_F(SeenThrough, LetsKeyframesThatAgreeOutvoteOthers) {
   EXPECT_TRUE(keeps({0.1, 0.1, 2}));
   keyframes_.resize(5);
   EXPECT_FALSE(keeps({0.1, 0.1, 2}));
+}
+
+TEST_F(SeenThrough, DropsWhatThreeKeyframesSeeThroughAtLast) {
+  // An object at 2 m that four keyframes see before it goes.
+  const Keyframe seeing{.id = 0,
+                        .world_from_camera = Pose::Identity(),
+                        .cloud = std::make_shared<const SurfaceCloud>(test::box_cloud(
+                            small_camera(), {-9, -9, -9}, {9, 9, 2}, Pose::Identity()))};
+  keyframes_.insert(keyframes_.begin(), 4, seeing);
+  EXPECT_FALSE(keeps({0.1, 0.1, 2}));
+  std::ranges::reverse(keyframes_);
+  EXPECT_TRUE(keeps({0.1, 0.1, 2})) << "it has come";
+  std::ranges::reverse(keyframes_);
+  keyframes_.pop_back();
+  EXPECT_TRUE(keeps({0.1, 0.1, 2})) << "two may be deceived";
 }
 
 TEST_F(SeenThrough, SaysNothingWhereAKeyframeHasNoSurface) {

@@ -139,13 +139,13 @@ TEST(KeyframeGraph, MovesAMapIntoAnotherOne) {
   }
 }
 
-TEST(KeyframeGraph, SeparatesTheKeyframesOfAMapThatWasJoined) {
+TEST(KeyframeGraph, SeparatesMapsThatWereJoined) {
   KeyframeGraph graph;
   for (int id = 0; id < 4; ++id) {
     graph.add({.id = id, .world_from_camera = at(id), .map = 0, .taken_in = id / 2});
     if (id > 0) graph.connect(id - 1, id, small_spread);
   }
-  graph.separate(1);
+  graph.assign_maps(std::vector{0, 1});
   const std::vector<int> tied{1, 0, 3, 2};
   for (int id = 0; id < 4; ++id) {
     EXPECT_EQ(graph[id].map, id / 2);

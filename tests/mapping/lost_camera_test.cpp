@@ -59,6 +59,8 @@ TEST_F(LostCamera, BeginsAMapThatIsJoinedWhereItRecognisesTheFirstOne) {
   }
   EXPECT_EQ(relocalised, 1);
   mapper_.finish();
+  EXPECT_EQ(mapper_.joins(), 1);
+  EXPECT_EQ(mapper_.blind_joins(), 0);
   ASSERT_EQ(mapper_.maps(), std::vector{0});
   const Trajectory trajectory = mapper_.trajectory(0);
   ASSERT_EQ(trajectory.size(), frames + 40U) << "nothing that was seen is lost";
@@ -83,9 +85,16 @@ TEST_F(LostCamera, IsTakenOutOfAMapThatLaterFramesDifferFrom) {
   mapper_.finish();
   EXPECT_TRUE(was_joined);
   EXPECT_EQ(mapper_.joins_taken_back(), 1);
+  EXPECT_EQ(mapper_.joins(), 0);
   ASSERT_EQ(mapper_.maps(), (std::vector{0, 1}));
   EXPECT_EQ(mapper_.trajectory(0).size(), std::size_t{frames});
-  EXPECT_EQ(mapper_.trajectory(1).size(), 50U);
+  const Trajectory apart = mapper_.trajectory(1);
+  ASSERT_EQ(apart.size(), 50U);
+  const Pose& begin = apart.front().world_from_camera;
+  EXPECT_LT(begin.translation().norm(), 0.01) << "its first camera is its origin";
+  const Pose truth = room_.pose(first + 6).inverse() * room_.pose(first + 55);
+  const Pose error = truth.inverse() * begin.inverse() * apart.back().world_from_camera;
+  EXPECT_LT(error.translation().norm(), 0.02);
   for (const PoseEdge& edge : mapper_.edges()) {
     EXPECT_EQ(mapper_.keyframes()[edge.from].map, mapper_.keyframes()[edge.to].map);
   }

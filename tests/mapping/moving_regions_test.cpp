@@ -149,7 +149,9 @@ TEST(MovingRegions, ArePresumedToMoveOnForASecond) {
 TEST(MovingRegions, DoNotExplainAWrongPose) {
   const View before = view_of(person_at(0.3, 2), Pose::Identity());
   const Pose wrong = test::moved_by({0, 0, 0}, {0, 0, -0.3});
-  EXPECT_TRUE(motion_between(before, before, wrong).is_empty());
+  const Motion motion = motion_between(before, before, wrong);
+  EXPECT_TRUE(motion.is_empty());
+  EXPECT_TRUE(motion.contradicts_pose);
 }
 
 TEST(MovingRegions, MoveWithTheWorld) {

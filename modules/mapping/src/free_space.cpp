@@ -10,15 +10,26 @@
 namespace tofmap {
 namespace {
 
+/// Number of keyframes that must see through a point after the last one that agrees with it, for it
+/// to be gone. One or two may be deceived.
+constexpr int views_until_gone = 3;
+
+/// `views` are in the order of time.
 bool violates_free_space(const MapPoint& point, const std::vector<KeyframeView>& views) {
   int free_space_violation = 0;
   int agreeing = 0;
+  int seen_through_since = 0;
   for (const KeyframeView& view : views) {
     const Observation observation = view.judge(point.getVector3fMap().cast<double>());
-    free_space_violation += observation == Observation::sees_through ? 1 : 0;
-    agreeing += observation == Observation::agrees ? 1 : 0;
+    if (observation == Observation::sees_through) {
+      ++free_space_violation;
+      ++seen_through_since;
+    } else if (observation == Observation::agrees) {
+      ++agreeing;
+      seen_through_since = 0;
+    }
   }
-  return free_space_violation > agreeing;
+  return free_space_violation > agreeing || seen_through_since >= views_until_gone;
 }
 
 /// How many points of a cloud a view agrees with, and how many it sees through.

@@ -57,13 +57,13 @@ void KeyframeGraph::join(int map, int into, const Pose& into_from_map) {
   }
 }
 
-void KeyframeGraph::separate(int taken_in) {
+void KeyframeGraph::assign_maps(std::span<const int> map_of) {
   for (Keyframe& keyframe : keyframes_) {
-    const bool is_separated = keyframe.taken_in == taken_in;
-    if (is_separated) keyframe.map = taken_in;
-    std::erase_if(neighbours_[static_cast<std::size_t>(keyframe.id)], [&](const Neighbour& other) {
-      return ((*this)[other.id].taken_in == taken_in) != is_separated;
-    });
+    keyframe.map = map_of[static_cast<std::size_t>(keyframe.taken_in)];
+  }
+  for (const Keyframe& keyframe : keyframes_) {
+    std::erase_if(neighbours_[static_cast<std::size_t>(keyframe.id)],
+                  [&](const Neighbour& other) { return (*this)[other.id].map != keyframe.map; });
   }
 }
 

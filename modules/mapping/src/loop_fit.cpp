@@ -32,10 +32,15 @@ Pose found_by(const PoseEdge& loop, std::span<const Keyframe> keyframes) {
   return at(keyframes, loop.from).world_from_camera * loop.from_from_to;
 }
 
-/// Whether both loops correct the path in the same way: the correction by one loop moves the later
-/// keyframe of the other loop to where that loop puts it, up to the drift between both.
+/// Whether both loops correct the path of the same map in the same way: the correction by one loop
+/// moves the later keyframe of the other loop to where that loop puts it, up to the drift between
+/// both.
 bool agree(const PoseEdge& one, const PoseEdge& other, std::span<const Keyframe> keyframes,
            const LoopOptions& options) {
+  if (at(keyframes, one.from).map != at(keyframes, other.from).map ||
+      at(keyframes, one.to).map != at(keyframes, other.to).map) {
+    return false;
+  }
   const auto path_between_m = [&](int a, int b) {
     return std::abs(at(keyframes, a).path_m - at(keyframes, b).path_m);
   };

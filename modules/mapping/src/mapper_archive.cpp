@@ -132,6 +132,11 @@ void RoomMapper::RegisteredFrame::serialize(Archive& archive, unsigned) {
 }
 
 template <class Archive>
+void RoomMapper::JoinedMaps::serialize(Archive& archive, unsigned) {
+  archive& map& into& found_in& is_blind;
+}
+
+template <class Archive>
 void MovingRegions::serialize(Archive& archive, unsigned) {
   archive& known_;
 }
@@ -141,7 +146,7 @@ void RoomMapper::serialize(Archive& archive, unsigned) {
   archive& odometry_& moving_& keyframes_& frames_& edges_& loops_;
   archive& unfitted_loops_& loop_awaits_others_& last_fit_& current_& map_& begun_maps_&
       lost_frames_& searched_;
-  archive& frames_since_front_moved_& held_& recognitions_& blindly_joined_& differing_keyframes_&
+  archive& frames_since_front_moved_& held_& recognitions_& joins_& differing_keyframes_&
       joins_taken_back_;
 }
 

@@ -156,7 +156,7 @@ CloudPointer MovingRegions::background(const CloudPointer& cloud) const {
 
 Motion MovingRegions::find(const CloudPointer& cloud, const Pose& world_from_camera,
                            std::span<const Keyframe* const> keyframes) const {
-  Motion motion{.still = cloud, .keyframes = {}, .points = {}};
+  Motion motion{.still = cloud, .keyframes = {}, .points = {}, .contradicts_pose = false};
   const CellGrid grid(*cloud, camera_);
   const RegistrationTarget placed{cloud.get(), world_from_camera};
   const KeyframeView view(placed, camera_, margin_m);
@@ -166,7 +166,8 @@ Motion MovingRegions::find(const CloudPointer& cloud, const Pose& world_from_cam
   std::vector<Comparison> comparisons;
   for (const Keyframe* keyframe : keyframes) comparisons.push_back(compare(*keyframe));
   Evidence evidence = gather(grid, comparisons);
-  if (evidence.is_of_wrong_pose()) return motion;
+  motion.contradicts_pose = evidence.is_of_wrong_pose();
+  if (motion.contradicts_pose) return motion;
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
     if (auto cleaned = clean(*keyframes[i], comparisons[i])) {
       motion.keyframes.push_back(std::move(*cleaned));

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <utility>
 
 #include <tofmap/core/timed.hpp>
@@ -91,7 +92,7 @@ AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
   }
   const int map_before = map_;
   timed(added.loop_ms, [&] { close_loops(); });
-  if (map_ != map_before) {
+  if (map_ != map_before && is_joined()) {
     added.tracking.status = TrackingStatus::relocalised;
     added.tracking.world_from_camera = pose_of(frames_.back());
   }
@@ -172,10 +173,11 @@ TrackingResult RoomMapper::track_still(NewFrame& frame, std::span<const Keyframe
   return first;
 }
 
-/// In the first second of a map nobody knows how the camera moves, so people who are there from the
-/// beginning may take it with them. Then, and whenever a cloud fits worse than is usual, it is also
-/// registered without the things in front of others. If that contradicts `all`, the registration of
-/// the whole cloud, something in front moves: `all` is replaced, and the result is true.
+/// In the first 15 frames of a map the motion of the camera is not known yet, and registration
+/// may lock onto people who are there from the beginning. Then, and whenever a cloud fits worse
+/// than is usual, it is also registered without the things in front of others. If that
+/// contradicts `all`, the registration of the whole cloud, something in front moves: `all` is
+/// replaced, and the result is true.
 bool RoomMapper::track_background(double timestamp_s,
                                   const std::shared_ptr<const SurfaceCloud>& cloud,
                                   std::span<const Keyframe* const> around, const Odometry& before,
@@ -401,6 +403,32 @@ void RoomMapper::mend_slips() {
     if (!slip) continue;
     edges_ = without_slip(edges_, *slip);
     set_poses(fit_loops(keyframes_.all(), edges_, loop_options_).poses);
+    rebuild_submaps(slip->at);
+  }
+}
+
+/// Separates the submaps that have keyframes on both sides of a slip, which have moved relative to
+/// each other. Their surface is rebuilt from the keyframes: that of other frames cannot be told
+/// apart any more.
+void RoomMapper::rebuild_submaps(int at) {
+  std::map<int, int> later_half;  // by the index of the submap
+  for (int id = at; id < keyframes_.size(); ++id) {
+    int& submap = submap_of_[static_cast<std::size_t>(id)];
+    if (submaps_[static_cast<std::size_t>(submap)].anchor >= at) continue;
+    const auto [half, is_new] = later_half.try_emplace(submap, static_cast<int>(submaps_.size()));
+    if (is_new) submaps_.push_back({id, SurfaceMap(surface_options_)});
+    submap = half->second;
+  }
+  for (const auto& [earlier, later] : later_half) {
+    submaps_[static_cast<std::size_t>(earlier)].surface = SurfaceMap(surface_options_);
+    for (const Keyframe& keyframe : keyframes_.all()) {
+      const int submap = submap_of_[static_cast<std::size_t>(keyframe.id)];
+      if (submap != earlier && submap != later) continue;
+      const Pose anchor_from_world =
+          keyframes_[submaps_[static_cast<std::size_t>(submap)].anchor].world_from_camera.inverse();
+      submaps_[static_cast<std::size_t>(submap)].surface.integrate(
+          *keyframe.cloud, anchor_from_world * keyframe.world_from_camera);
+    }
   }
 }
 

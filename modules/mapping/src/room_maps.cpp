@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <utility>
 
 namespace tofmap {
@@ -133,7 +134,10 @@ void RoomMapper::join_maps(std::span<const Stretch> travelled) {
       std::ranges::adjacent_find(travelled, [&](const Stretch& one, const Stretch& next) {
         return next.map == map_ && next.begin_s - one.end_s > longest_blink_s;
       });
-  if (gap != travelled.end()) blindly_joined_.push_back(map_);
+  joins_.push_back({.map = map_,
+                    .into = join->into,
+                    .found_in = newest_map(),
+                    .is_blind = gap != travelled.end()});
   keyframes_.join(join->map, join->into, join->into_from_map);
   odometry_.move(join->into_from_map);
   moving_.move(join->into_from_map);
@@ -149,27 +153,28 @@ void RoomMapper::join_maps(std::span<const Stretch> travelled) {
   fit();
 }
 
-/// Number of keyframes of the newest map that see things in free space of another map, or see
-/// through things there, if both are joined: places of one plan differ in what was put there.
+/// Number of keyframes of the newest map that differ from another map if both are joined: places of
+/// one plan differ in what was put there. Counts no further than the join needs.
 int RoomMapper::differing_keyframes(const MapJoin& join) const {
   int count = 0;
   for (const Keyframe& keyframe : keyframes_.all()) {
-    if (keyframe.map != join.map) continue;
-    Keyframe placed = keyframe;
-    placed.map = join.into;
-    placed.world_from_camera = join.into_from_map * keyframe.world_from_camera;
-    count += differs_from_others(placed) ? 1 : 0;
+    if (keyframe.map != join.map || count == least_differing_keyframes) continue;
+    Keyframe moved = keyframe;
+    moved.map = join.into;
+    moved.world_from_camera = join.into_from_map * keyframe.world_from_camera;
+    count += differs_from_others(moved) ? 1 : 0;
   }
   return count;
 }
 
 /// Whether a keyframe of the newest map sees a region that stands in free space of another one that
-/// it was joined with, or sees through one there.
+/// it was joined with, or sees through one there, or contradicts it as a whole.
 bool RoomMapper::differs_from_others(const Keyframe& keyframe) const {
   const Keyframe* other = keyframe_near(keyframe.world_from_camera, keyframe.map);
-  return other != nullptr && !MovingRegions(camera_)
-                                  .find(keyframe.cloud, keyframe.world_from_camera, {&other, 1})
-                                  .is_empty();
+  if (other == nullptr) return false;
+  const Motion motion =
+      MovingRegions(camera_).find(keyframe.cloud, keyframe.world_from_camera, {&other, 1});
+  return motion.contradicts_pose || !motion.is_empty();
 }
 
 /// Registers a frame with the keyframes of its own map alone, after that with all keyframes of the
@@ -189,25 +194,52 @@ TrackingResult RoomMapper::track_apart(NewFrame& frame, std::span<const Keyframe
   return result;
 }
 
-/// Makes the newest map one of its own again, without the edges to others.
+/// Undoes the joins that keyframes of the newest map have led to.
 void RoomMapper::take_join_back() {
-  const auto joins = [&](const PoseEdge& edge) {
-    return is_own(keyframes_[edge.from]) != is_own(keyframes_[edge.to]);
+  const auto taken_back =
+      std::erase_if(joins_, [&](const JoinedMaps& join) { return join.found_in == newest_map(); });
+  joins_taken_back_ += static_cast<int>(taken_back);
+  std::vector<int> map_of(static_cast<std::size_t>(begun_maps_));
+  std::iota(map_of.begin(), map_of.end(), 0);
+  for (const JoinedMaps& join : joins_) std::ranges::replace(map_of, join.map, join.into);
+  keyframes_.assign_maps(map_of);
+  drop_edges_between_maps();
+  map_ = newest_map();
+  differing_keyframes_ = 0;
+  fit();
+  for (const int map : map_of) return_to_origin(map);
+}
+
+/// Drops the edges, and with them the loops, between keyframes of different maps.
+void RoomMapper::drop_edges_between_maps() {
+  const auto is_between = [&](const PoseEdge& edge) {
+    return keyframes_[edge.from].map != keyframes_[edge.to].map;
   };
+  const auto fitted = static_cast<std::ptrdiff_t>(loops_.size()) - unfitted_loops_;
   std::vector<Loop> kept;
-  auto loop = loops_.begin();
+  std::ptrdiff_t index = 0;
+  unfitted_loops_ = 0;
   for (const PoseEdge& edge : edges_) {
     if (!edge.may_be_wrong) continue;
-    if (!joins(edge)) kept.push_back(*loop);
-    ++loop;
+    if (!is_between(edge)) {
+      kept.push_back(loops_[static_cast<std::size_t>(index)]);
+      unfitted_loops_ += index >= fitted ? 1 : 0;
+    }
+    ++index;
   }
   loops_ = std::move(kept);
-  std::erase_if(edges_, joins);
-  map_ = newest_map();
-  keyframes_.separate(map_);
-  std::erase(blindly_joined_, map_);
-  ++joins_taken_back_;
-  fit();
+  std::erase_if(edges_, is_between);
+}
+
+/// Moves a map so that its first keyframe is the origin of its world.
+void RoomMapper::return_to_origin(int map) {
+  const auto first = std::ranges::find(keyframes_.all(), map, &Keyframe::map);
+  if (first == keyframes_.all().end()) return;
+  const Pose origin_from_world = first->world_from_camera.inverse();
+  keyframes_.join(map, map, origin_from_world);
+  if (map != map_) return;
+  odometry_.move(origin_from_world);
+  moving_.move(origin_from_world);
 }
 
 /// The keyframe of a map that is nearest to a pose, among those of maps that the newest one was
@@ -223,6 +255,10 @@ const Keyframe* RoomMapper::keyframe_near(const Pose& pose, int map) const {
     least_steps = steps;
   }
   return nearest;
+}
+
+int RoomMapper::blind_joins() const {
+  return static_cast<int>(std::ranges::count_if(joins_, &JoinedMaps::is_blind));
 }
 
 std::vector<int> RoomMapper::maps() const {

@@ -138,13 +138,6 @@ int RoomMap::degenerate() const {
   }));
 }
 
-int RoomMap::joins() const {
-  const auto made = std::ranges::count_if(frames, [](const FrameRecord& record) {
-    return record.tracking.status == TrackingStatus::relocalised;
-  });
-  return static_cast<int>(made) - joins_taken_back;
-}
-
 int RoomMap::unused_loops() const {
   return static_cast<int>(
       std::ranges::count_if(loops, [](const Loop& loop) { return !loop.is_used; }));
@@ -162,7 +155,7 @@ MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options) {
           .registered = static_cast<int>(map.trajectory.size()),
           .separate = map.separate(),
           .separate_maps = static_cast<int>(map.separate_maps.size()),
-          .joins = map.joins(),
+          .joins = map.joins,
           .blind_joins = map.blind_joins,
           .joins_taken_back = map.joins_taken_back,
           .unused_loops = map.unused_loops(),
@@ -315,6 +308,7 @@ RoomMap MapRun::finish() {
     }
   }
   map.loops = mapper_.loops();
+  map.joins = mapper_.joins();
   map.blind_joins = mapper_.blind_joins();
   map.joins_taken_back = mapper_.joins_taken_back();
   map.frames = std::move(frames_);

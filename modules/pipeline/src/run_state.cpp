@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* file_name = "state.bin";
 // Raise the number after the comma whenever the stored data change between two releases.
-constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 15";
+constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 16";
 
 /// The camera, frequencies and options of a run, one per line. A run can only resume a run with the
 /// same lines.

@@ -18,7 +18,9 @@ namespace tofmap {
 /// plus three standard deviations of the surface along its normal. The keyframe agrees with the
 /// point if the point lies within that distance of the surface at its pixel. A keyframe that has no
 /// surface at one of the nine pixels does not see through the point. A point is removed if more
-/// keyframes see through it than agree with it. The result is the same for any number of threads.
+/// keyframes see through it than agree with it, or if at least three see through it after the last
+/// one that agrees: it is gone. `keyframes` are in the order of time. The result is the same for
+/// any number of threads.
 MapCloud without_free_space_violations(const MapCloud& map, std::span<const Keyframe> keyframes,
                                        const CameraModel& camera, double margin_m);
 

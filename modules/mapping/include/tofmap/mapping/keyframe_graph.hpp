@@ -52,9 +52,9 @@ class KeyframeGraph {
   /// Moves all keyframes of a map into another one.
   void join(int map, int into, const Pose& into_from_map);
 
-  /// Makes all keyframes that were taken in a map a map of their own again, at their poses. They
-  /// are no longer connected with others.
-  void separate(int taken_in);
+  /// Assigns keyframes to maps anew, by the map that they were taken in: `map_of[taken_in]`.
+  /// Keyframes of different maps are no longer connected.
+  void assign_maps(std::span<const int> map_of);
 
   /// Removes the newest keyframes, those with an id of at least `size`. None of the others may be
   /// connected with one of them.

@@ -33,6 +33,9 @@ struct Motion {
   std::shared_ptr<const SurfaceCloud> still;
   std::vector<CleanedKeyframe> keyframes;  ///< those in which something moved since
   std::vector<MovingPoint> points;         ///< one for each cell of the grid that moves
+  /// Whether more contradicts the keyframes than agrees with them: the pose, or the place, is
+  /// wrong. Nothing is said to move then.
+  bool contradicts_pose = false;
 
   bool is_empty() const { return points.empty() && keyframes.empty(); }
 };
@@ -43,7 +46,7 @@ struct Motion {
 /// before; where the frame sees through a surface of a keyframe, that surface is gone. Such points
 /// are the evidence. From them, regions grow over the image, as far as the depth is continuous and
 /// no keyframe agrees that the surface was there before. What moved in the frame before is expected
-/// to move still, for a second after the last evidence: somebody who walks ahead of the camera, at
+/// to move still, for 15 frames after the last evidence: somebody who walks ahead of the camera, at
 /// its pace, covers what keyframes could see through.
 ///
 /// Regions are found on a coarse grid of about 1/32 rad; those of fewer than six of its cells are
@@ -58,7 +61,10 @@ class MovingRegions {
   std::shared_ptr<const SurfaceCloud> without_known(
       const std::shared_ptr<const SurfaceCloud>& cloud, const Pose& world_from_camera) const;
 
-  /// A frame's cloud without things in front of others. The same object if there are none.
+  /// A frame's cloud without things in front of others: whatever begins below a surface that is at
+  /// least 0.3 m farther away, as people and furniture do. Walls and columns reach up to the
+  /// ceiling or the border of the image, if the camera is held upright. The same object if there
+  /// are none.
   std::shared_ptr<const SurfaceCloud> background(
       const std::shared_ptr<const SurfaceCloud>& cloud) const;
 

@@ -81,7 +81,7 @@ struct AddedFrame {
 /// fewer than three frames is dropped again when the next one begins.
 ///
 /// People, doors and other things that move are found (MovingRegions); they have no part in
-/// registration, keyframes and surface. In the first second of a map, and whenever a frame fits
+/// registration, keyframes and surface. In the first 15 frames of a map, and whenever a frame fits
 /// worse than is usual, the background is also registered without the things in front of it,
 /// and decides.
 class RoomMapper {
@@ -110,8 +110,10 @@ class RoomMapper {
   Trajectory keyframe_trajectory(int map) const;
   /// How often maps were joined although the camera could have been carried to another place: it
   /// had not been tracked for more than two seconds.
-  int blind_joins() const { return static_cast<int>(blindly_joined_.size()); }
-  /// How often a join was taken back.
+  int blind_joins() const;
+  /// Number of joins of maps that were not taken back, with blind_joins().
+  int joins() const { return static_cast<int>(joins_.size()); }
+  /// Number of joins that were taken back.
   int joins_taken_back() const { return joins_taken_back_; }
   /// The keyframe of a map whose position relative to the first one is least certain by what
   /// registrations tell (KeyframeGraph::spreads_from()). The map must have a keyframe.
@@ -150,6 +152,17 @@ class RoomMapper {
     void serialize(Archive& archive, unsigned version);
   };
 
+  /// Two maps that were joined.
+  struct JoinedMaps {
+    int map = 0;            ///< the one whose keyframes were moved
+    int into = 0;           ///< the one that they belong to since
+    int found_in = 0;       ///< the map whose keyframes recognised it; Keyframe::taken_in
+    bool is_blind = false;  ///< see blind_joins()
+
+    template <class Archive>
+    void serialize(Archive& archive, unsigned version);
+  };
+
   /// A submap: the surface seen from near one keyframe, the anchor, in the frame of the anchor.
   struct Submap {
     int anchor = 0;
@@ -177,6 +190,8 @@ class RoomMapper {
   bool differs_from_others(const Keyframe& keyframe) const;
   TrackingResult track_apart(NewFrame& frame, std::span<const Keyframe* const> around);
   void take_join_back();
+  void drop_edges_between_maps();
+  void return_to_origin(int map);
   int newest_map() const { return begun_maps_ - 1; }
   bool is_joined() const { return map_ != newest_map(); }
   bool is_own(const Keyframe& keyframe) const { return keyframe.taken_in == newest_map(); }
@@ -192,6 +207,7 @@ class RoomMapper {
   int submap_for(int id, const Pose& pose, std::span<const Keyframe* const> around);
   void set_poses(std::span<const Pose> poses);
   void mend_slips();
+  void rebuild_submaps(int at);
   void fit();
 
   CameraModel camera_;
@@ -216,7 +232,7 @@ class RoomMapper {
   int lost_frames_ = 0;         ///< number of frames since the last registered one
   int searched_ = 0;            ///< number of keyframes for which loops were searched
   std::vector<NewFrame> held_;  ///< frames with a surface since the last registered one
-  std::vector<int> blindly_joined_;   ///< the newer maps of blind_joins()
+  std::vector<JoinedMaps> joins_;     ///< those not taken back, in order
   int frames_since_front_moved_ = 0;  ///< since the begin of the map, or since that was found
   int differing_keyframes_ = 0;       ///< of the newest map, from the map that it was joined with
   int joins_taken_back_ = 0;

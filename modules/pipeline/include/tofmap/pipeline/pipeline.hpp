@@ -123,6 +123,7 @@ struct RoomMap {
   MapCloud surface;                        ///< in world coordinates
   std::vector<SeparateMap> separate_maps;  ///< the other maps, the one with most frames first
   std::vector<Loop> loops;                 ///< all loops that were found, used or not
+  int joins = 0;                           ///< RoomMapper::joins()
   int blind_joins = 0;                     ///< RoomMapper::blind_joins()
   int joins_taken_back = 0;                ///< RoomMapper::joins_taken_back()
   PoseCertainty least_certain;             ///< RoomMapper::least_certain(); zero without keyframes
@@ -134,7 +135,6 @@ struct RoomMap {
   int repeated() const;      ///< number of frames that repeat the frame before them
   int degenerate() const;    ///< number of frames with a degenerate direction of motion
   int separate() const;      ///< number of frames that are registered in separate maps
-  int joins() const;         ///< number of joins of maps that were not taken back
   int unused_loops() const;  ///< number of loops that the poses of the keyframes do not follow
 };
 
