@@ -26,8 +26,9 @@ namespace tofmap {
 /// Options of Odometry, and of where RoomMapper takes keyframes.
 struct OdometryOptions {
   /// A frame becomes a keyframe if it is at least this far, or `keyframe_rotation_rad` in rotation,
-  /// from each keyframe around it, and twice as far from those of an earlier visit, or if its pose
-  /// relative to them is uncertain by half as much (one standard deviation); 0.01 … 10 m.
+  /// from each keyframe of its map around it, and twice as far from those of an earlier visit, or
+  /// if its pose relative to them is uncertain by half as much (one standard deviation); 0.01 … 10
+  /// m.
   double keyframe_translation_m = 0.25;
   /// Rotation from each keyframe around it that makes a frame a keyframe, 0.01 … 3.2 rad. See
   /// `keyframe_translation_m`.

@@ -62,13 +62,13 @@ struct AddedFrame {
 
 /// Tracks the camera, closes loops, and keeps trajectory and map consistent.
 ///
-/// Odometry registers each frame with the keyframes around it. At a place that is seen again, these
-/// are the keyframes of the first visit. A frame belongs to the keyframe it overlaps most, and its
-/// surface to the submap around that keyframe. Thus the number of keyframes and the size of the map
-/// grow with the surface seen, not with time. A loop constraint connects a keyframe with a much
-/// earlier one that saw the same place, and the pose graph fits the poses of all keyframes to the
-/// edges of odometry and loops. Submaps and frames move with their keyframes, so no frame is
-/// integrated again.
+/// Odometry registers each frame with the keyframes around it. At a place that is seen again,
+/// these are the keyframes of the first visit. A frame belongs to the keyframe of its own map
+/// that it overlaps most, and its surface to the submap around that keyframe. Thus the number
+/// of keyframes and the size of the map grow with the surface seen, not with time, as long as
+/// tracking is not lost. A loop constraint connects a keyframe with a much earlier one that saw
+/// the same place, and the pose graph fits the poses of all keyframes to the edges of odometry
+/// and loops. Submaps and frames move with their keyframes, so no frame is integrated again.
 ///
 /// When tracking is lost, or after more than two seconds without frames, a new map begins: once
 /// three frames with a surface could not be registered, the first of them is the origin of a map of
