@@ -3,6 +3,7 @@
 
 #include "tofmap/mapping/odometry.hpp"
 
+#include "registration_choice.hpp"
 #include "tofmap/mapping/free_space.hpp"
 #include "tofmap/mapping/rotation_search.hpp"
 
@@ -17,21 +18,10 @@ namespace {
 /// to have kept its motion.
 constexpr double periods_of_steady_tracking = 3.5;
 
-/// Share by which the support of a registration must exceed that of another one that ends
-/// elsewhere.
-constexpr double clear_share = 1.1;
-
-bool is_clearly_better(const RegistrationResult& one, const RegistrationResult& other) {
-  return support(one) > clear_share * support(other);
-}
-
 bool is_elsewhere(const RegistrationResult& one, const RegistrationResult& other) {
   constexpr double apart_m = 0.1;
   constexpr double apart_rad = 0.05;
-  const Pose& a = one.world_from_camera;
-  const Pose& b = other.world_from_camera;
-  return (a.translation() - b.translation()).norm() > apart_m ||
-         rotation_angle_rad(a, b) > apart_rad;
+  return !are_near(one.world_from_camera, other.world_from_camera, apart_m, apart_rad);
 }
 
 /// A registered frame is tried from other rotations as well if its pose differs from the predicted

@@ -3,6 +3,8 @@
 
 #include "tofmap/mapping/place_recognition.hpp"
 
+#include "registration_choice.hpp"
+
 #include <algorithm>
 
 namespace tofmap {
@@ -20,11 +22,9 @@ bool is_same_place(const Recognition& one, const Recognition& other,
   const auto map_of = [&](const Recognition& place) {
     return keyframes[static_cast<std::size_t>(place.from)].map;
   };
-  const Pose& pose = one.registration.world_from_camera;
-  const Pose& other_pose = other.registration.world_from_camera;
   return map_of(one) == map_of(other) &&
-         (pose.translation() - other_pose.translation()).norm() < recognition_reach_m / 2 &&
-         rotation_angle_rad(pose, other_pose) < recognition_reach_rad / 2;
+         are_near(one.registration.world_from_camera, other.registration.world_from_camera,
+                  recognition_reach_m / 2, recognition_reach_rad / 2);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "tofmap/mapping/slip_search.hpp"
 
+#include "registration_choice.hpp"
 #include "tofmap/mapping/free_space.hpp"
 #include "tofmap/mapping/keyframe_graph.hpp"
 
@@ -14,17 +15,9 @@ namespace {
 /// Largest correction of a keyframe that is a slip.
 constexpr double farthest_m = 0.5;
 
-/// Factor by which the corrected pose must fit better than the believed one.
-constexpr double clearly_better = 1.1;
-
 /// How far registration may end from its initial pose: the drift between the slip and the loop.
 constexpr double tolerance_m = 0.05;
 constexpr double tolerance_rad = 0.03;
-
-bool is_near(const Pose& one, const Pose& other, double distance_m, double angle_rad) {
-  return (one.translation() - other.translation()).norm() < distance_m &&
-         rotation_angle_rad(one, other) < angle_rad;
-}
 
 using Others = std::vector<const Keyframe*>;
 
@@ -80,19 +73,19 @@ std::optional<RegistrationResult> SlipSearch::slip_at(int id, const Others& othe
                                                       const Pose& corrected) const {
   const Keyframe& keyframe = at(id);
   const Pose& believed = keyframe.world_from_camera;
-  if (!is_near(corrected, believed, farthest_m, options.max_rotation_rad) ||
+  if (!are_near(corrected, believed, farthest_m, options.max_rotation_rad) ||
       contradicts_free_space({keyframe.cloud.get(), corrected}, target_of(*others.front()),
                              camera)) {
     return std::nullopt;
   }
   RegistrationResult result = register_at(corrected, id, others);
-  if (!is_near(result.world_from_camera, corrected, tolerance_m, tolerance_rad) ||
+  if (!are_near(result.world_from_camera, corrected, tolerance_m, tolerance_rad) ||
       !confirms_place(*others.front(), *keyframe.cloud, result, camera, options)) {
     return std::nullopt;
   }
   const RegistrationResult again = register_at(believed, id, others);
-  const bool stays = is_near(again.world_from_camera, believed, tolerance_m, tolerance_rad);
-  if (stays && support(result) < clearly_better * support(again)) return std::nullopt;
+  const bool stays = are_near(again.world_from_camera, believed, tolerance_m, tolerance_rad);
+  if (stays && !is_clearly_better(result, again)) return std::nullopt;
   return result;
 }
 

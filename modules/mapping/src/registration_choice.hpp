@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <tofmap/core/camera.hpp>
+#include <tofmap/mapping/loop_closure.hpp>
+
+namespace tofmap {
+
+/// Whether two poses are within a distance and an angle of each other.
+inline bool are_near(const Pose& one, const Pose& other, double distance_m, double angle_rad) {
+  return (one.translation() - other.translation()).norm() < distance_m &&
+         rotation_angle_rad(one, other) < angle_rad;
+}
+
+/// Whether a registration explains at least 10 % more than another one (support()).
+inline bool is_clearly_better(const RegistrationResult& one, const RegistrationResult& other) {
+  constexpr double clear_factor = 1.1;
+  return support(one) > clear_factor * support(other);
+}
+
+}  // namespace tofmap
