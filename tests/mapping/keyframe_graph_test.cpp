@@ -21,8 +21,8 @@ PoseSpread spread(double sigma_m) { return {0.01 * sigma_m * sigma_m, sigma_m * 
 
 const PoseSpread small_spread = spread(0.002);
 
-/// A camera that goes ten metres along x and back again, a keyframe a metre, each tied to the one
-/// before it.
+/// A camera that goes ten metres along x and back again, a keyframe a metre, each connected with
+/// the one before it.
 KeyframeGraph there_and_back() {
   KeyframeGraph graph;
   for (int id = 0; id <= 20; ++id) {
@@ -61,11 +61,11 @@ KeyframeGraph past_a_bare_wall() {
 
 TEST(KeyframeGraph, DoesNotTieKeyframesWhoseRelativePoseIsUncertain) {
   KeyframeGraph graph = past_a_bare_wall();
-  EXPECT_TRUE(graph.tied_to(1).empty());
+  EXPECT_TRUE(graph.well_connected_to(1).empty());
   EXPECT_EQ(ids(graph.around(1, at(0), 5, {1, 1})), (std::vector<int>{1}));
   // Registered again, with more in view.
   graph.connect(2, 1, spread(0.01));
-  EXPECT_EQ(graph.tied_to(1), (std::vector<int>{2}));
+  EXPECT_EQ(graph.well_connected_to(1), (std::vector<int>{2}));
 }
 
 TEST(KeyframeGraph, AddsUpTheUncertaintyOfRegistrations) {
@@ -95,16 +95,16 @@ TEST(KeyframeGraph, TiesKeyframesAnewThatALoopHasTied) {
     graph.add({id, id, 0.1 * id, at(id), nullptr});
     if (id > 0) graph.connect(id - 1, id, id == 4 ? spread(0.3) : small_spread);
   }
-  const auto is_tied = [&] {
-    const std::vector<int> tied = graph.tied_to(3);
-    return std::ranges::find(tied, 4) != tied.end();
+  const auto is_well_connected = [&] {
+    const std::vector<int> connected = graph.well_connected_to(3);
+    return std::ranges::find(connected, 4) != connected.end();
   };
-  graph.tie_anew();
-  EXPECT_FALSE(is_tied());
+  graph.reconnect();
+  EXPECT_FALSE(is_well_connected());
   graph.connect(0, 7, small_spread);
-  EXPECT_FALSE(is_tied()) << "seven registrations lead there";
-  graph.tie_anew();
-  EXPECT_TRUE(is_tied());
+  EXPECT_FALSE(is_well_connected()) << "seven registrations lead there";
+  graph.reconnect();
+  EXPECT_TRUE(is_well_connected());
 }
 
 TEST(KeyframeGraph, MeasuresTurnsAsWell) {
@@ -146,11 +146,11 @@ TEST(KeyframeGraph, SeparatesMapsThatWereJoined) {
     if (id > 0) graph.connect(id - 1, id, small_spread);
   }
   graph.assign_maps(std::vector{0, 1});
-  const std::vector<int> tied{1, 0, 3, 2};
+  const std::vector<int> partner{1, 0, 3, 2};
   for (int id = 0; id < 4; ++id) {
     EXPECT_EQ(graph[id].map, id / 2);
     EXPECT_TRUE(graph[id].world_from_camera.isApprox(at(id))) << id;
-    EXPECT_EQ(graph.tied_to(id), std::vector{tied[static_cast<std::size_t>(id)]});
+    EXPECT_EQ(graph.well_connected_to(id), std::vector{partner[static_cast<std::size_t>(id)]});
   }
 }
 

@@ -223,7 +223,7 @@ TEST_F(Turning, NeedsNoNewKeyframesWhereAPlaceIsSeenAgain) {
   EXPECT_LT(keyframes, 50U);
   EXPECT_EQ(thrice.keyframe_trajectory(0).size(), keyframes);
   EXPECT_EQ(thrice.trajectory(0).size(), 216U);
-  // One standard deviation of the loop that ties the last keyframe to the first one.
+  // One standard deviation of the loop that connects the last keyframe with the first one.
   EXPECT_LT(last_error_m(thrice, camera_at(0).inverse() * camera_at(215)), 2.8e-3);
 }
 

@@ -77,7 +77,7 @@ std::vector<const Keyframe*> KeyframeGraph::around(int id, const Pose& pose, int
   const auto steps_away = [&](int other) {
     return steps.between((*this)[other].world_from_camera, pose);
   };
-  std::vector<int> ids = tied_to(id);
+  std::vector<int> ids = well_connected_to(id);
   // Of keyframes at equal distance, the most recent ones are taken.
   std::ranges::sort(ids, std::ranges::greater());
   std::ranges::stable_sort(ids, std::ranges::less(), steps_away);
@@ -89,7 +89,7 @@ std::vector<const Keyframe*> KeyframeGraph::around(int id, const Pose& pose, int
   return keyframes;
 }
 
-std::vector<int> KeyframeGraph::tied_to(int id) const {
+std::vector<int> KeyframeGraph::well_connected_to(int id) const {
   std::map<int, double> reached_m2{{id, 0.0}};  // the variance along the connections so far
   std::map<int, double> border_m2 = reached_m2;
   for (int hops = 0; hops < max_hops; ++hops) {
@@ -97,7 +97,7 @@ std::vector<int> KeyframeGraph::tied_to(int id) const {
     for (const auto& [from, variance_m2] : border_m2) {
       for (const Neighbour& neighbour : neighbours_[static_cast<std::size_t>(from)]) {
         const double sum_m2 = variance_m2 + neighbour.spread.translation_m2;
-        if (sum_m2 > tied_sigma_m * tied_sigma_m) continue;
+        if (sum_m2 > well_connected_sigma_m * well_connected_sigma_m) continue;
         const auto [known, is_new] = reached_m2.try_emplace(neighbour.id, sum_m2);
         if (!is_new && known->second <= sum_m2) continue;
         known->second = sum_m2;
@@ -106,11 +106,11 @@ std::vector<int> KeyframeGraph::tied_to(int id) const {
     }
     border_m2 = std::move(next_m2);
   }
-  std::vector<int> tied;
+  std::vector<int> found;
   for (const auto& [other, variance_m2] : reached_m2) {
-    if (other != id) tied.push_back(other);
+    if (other != id) found.push_back(other);
   }
-  return tied;
+  return found;
 }
 
 std::vector<std::optional<PoseSpread>> KeyframeGraph::spreads_from(int id) const {
@@ -135,10 +135,10 @@ std::vector<std::optional<PoseSpread>> KeyframeGraph::spreads_from(int id) const
   return spreads;
 }
 
-void KeyframeGraph::tie_anew() {
-  constexpr double tied_m2 = tied_sigma_m * tied_sigma_m;
+void KeyframeGraph::reconnect() {
+  constexpr double well_connected_m2 = well_connected_sigma_m * well_connected_sigma_m;
   const auto is_loose = [](const Neighbour& neighbour) {
-    return neighbour.spread.translation_m2 > tied_m2;
+    return neighbour.spread.translation_m2 > well_connected_m2;
   };
   for (int id = 0; id < size(); ++id) {
     const std::vector<Neighbour> neighbours = neighbours_[static_cast<std::size_t>(id)];
@@ -146,7 +146,7 @@ void KeyframeGraph::tie_anew() {
     const auto spreads = spreads_from(id);
     for (const Neighbour& neighbour : neighbours) {
       const std::optional<PoseSpread>& spread = spreads[static_cast<std::size_t>(neighbour.id)];
-      if (spread && spread->translation_m2 <= tied_m2) connect(id, neighbour.id, *spread);
+      if (spread && spread->translation_m2 <= well_connected_m2) connect(id, neighbour.id, *spread);
     }
   }
 }

@@ -73,8 +73,10 @@ bool LoopSearch::is_within(double reach_m, double reach_rad, const Keyframe& oth
 /// odometry anyway.
 bool LoopSearch::may_see_the_same(const Keyframe& other) const {
   const std::optional<PoseSpread>& spread = spreads[static_cast<std::size_t>(other.id)];
-  const bool is_tied = spread && spread->translation_sigma_m() <= KeyframeGraph::tied_sigma_m;
-  if (other.map != keyframe.map || (is_tied && other.id + options.min_keyframes > keyframe.id)) {
+  const bool is_well_connected =
+      spread && spread->translation_sigma_m() <= KeyframeGraph::well_connected_sigma_m;
+  if (other.map != keyframe.map ||
+      (is_well_connected && other.id + options.min_keyframes > keyframe.id)) {
     return false;
   }
   return is_within(options.radius_m, options.max_rotation_rad, other);
@@ -278,7 +280,7 @@ LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyf
                                   candidate.registration);
   // A pose that the other targets, or the prior, determine tells nothing of this keyframe.
   const double sigma_m = spread_of(edge.covariance).translation_sigma_m();
-  if (sigma_m <= KeyframeGraph::tied_sigma_m) candidate.edge = edge;
+  if (sigma_m <= KeyframeGraph::well_connected_sigma_m) candidate.edge = edge;
   return candidate;
 }
 

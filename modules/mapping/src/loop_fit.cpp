@@ -57,7 +57,7 @@ bool is_supported(const PoseEdge& loop, const Loops& loops, std::span<const Keyf
                   const LoopOptions& options) {
   const Pose& believed = at(keyframes, loop.to).world_from_camera;
   const double moved_m = (found_by(loop, keyframes).translation() - believed.translation()).norm();
-  if (moved_m <= KeyframeGraph::tied_sigma_m) return true;
+  if (moved_m <= KeyframeGraph::well_connected_sigma_m) return true;
   return std::ranges::count_if(loops, [&](const PoseEdge* other) {
            return agree(loop, *other, keyframes, options);
          }) >= least_agreeing;

@@ -357,7 +357,7 @@ void RoomMapper::add_keyframe(const NewFrame& frame, std::span<const Keyframe* c
     const int target = result.targets[i];
     edges_.push_back(
         edge_of(keyframes_[target], id, result.world_from_camera, result.target_covariances[i]));
-    // Targets are tied to each other, and may tell of different directions.
+    // Targets are well connected, and may constrain different directions.
     keyframes_.connect(target, id, result.spread);
   }
   odometry_.note_keyframe(id);
@@ -451,7 +451,7 @@ void RoomMapper::fit() {
     }
     ++loop;
   }
-  keyframes_.tie_anew();
+  keyframes_.reconnect();
   unfitted_loops_ = 0;
   last_fit_ = keyframes_.size() - 1;
 }

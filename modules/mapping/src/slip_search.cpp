@@ -100,7 +100,8 @@ std::optional<Slip> find_slip(const PoseEdge& loop, std::span<const Keyframe> ke
   const Pose found = first.world_from_camera * loop.from_from_to;
   const Pose correction = found * last.world_from_camera.inverse();
   const double moved_m = (found.translation() - last.world_from_camera.translation()).norm();
-  if (first.taken_in != last.taken_in || moved_m < KeyframeGraph::tied_sigma_m) return std::nullopt;
+  if (first.taken_in != last.taken_in || moved_m < KeyframeGraph::well_connected_sigma_m)
+    return std::nullopt;
   std::optional<Slip> best;
   double best_support = 0;
   for (int id = loop.from + 1; id <= loop.to; ++id) {

@@ -205,11 +205,11 @@ class Registration {
     for (CloudPair& pair : out_.pairs) {
       pair.target_from_source =
           between_own_frames(pair.target_from_source, *levels(pair.source), *levels(pair.target));
-      if (pair.verdict == PairVerdict::registered) tie(pair);
+      if (pair.verdict == PairVerdict::registered) connect(pair);
     }
   }
 
-  void tie(const CloudPair& pair) {
+  void connect(const CloudPair& pair) {
     for (const auto& [one, other] :
          {std::pair(pair.source, pair.target), std::pair(pair.target, pair.source)}) {
       RegisteredCloud& registered = cloud(one);

@@ -93,8 +93,9 @@ CameraModel thinned_camera(const TumOptions& options, const ImageU16& first) {
   camera.height_px = static_cast<int>(first.rows());
   camera.fx_px = options.fx_px / n;
   camera.fy_px = options.fy_px / n;
-  camera.cx_px = (options.cx_px - n / 2) / n;
-  camera.cy_px = (options.cy_px - n / 2) / n;
+  const int first_px = n / 2;  // of the pixels that thinned() takes
+  camera.cx_px = (options.cx_px - first_px) / n;
+  camera.cy_px = (options.cy_px - first_px) / n;
   return camera;
 }
 

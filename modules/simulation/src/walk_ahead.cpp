@@ -92,7 +92,8 @@ std::vector<WalkPlace> WalkAhead::places(int step) const {
   add(wanted);
   for (int i = 0; i < angles * ranges; ++i) {
     const double angle_rad = half_angle_rad * (2.0 * (i % angles) / (angles - 1) - 1);
-    const double share = static_cast<double>(i / angles) / (ranges - 1);
+    const int of_range = i / angles;
+    const double share = static_cast<double>(of_range) / (ranges - 1);
     const double range_m = range_m_ * (least_share + (largest_share - least_share) * share);
     if (range_m >= least_camera_gap_m) add(place_at(angle_rad, range_m));
   }

@@ -61,14 +61,15 @@ class KeyframeGraph {
   void shrink(int size);
 
   /// At most `count` keyframes around a pose: keyframe `id`, and those nearest to the pose among
-  /// the keyframes that are tied to it. Keyframe `id` comes last, the others come in the order of
+  /// its well-connected keyframes. Keyframe `id` comes last, the others come in the order of
   /// their ids. `steps` is the unit of distance. The pointers are valid until a keyframe is added.
   std::vector<const Keyframe*> around(int id, const Pose& pose, int count,
                                       const KeyframeSpacing& steps) const;
 
-  /// Ids of the keyframes that are tied to a keyframe, without itself: at most five registrations
-  /// connect both, and these add up to at most `tied_sigma_m` of spread in translation.
-  std::vector<int> tied_to(int id) const;
+  /// Ids of the keyframes that are well connected with a keyframe, without itself: at most five
+  /// registrations connect both, and these add up to at most `well_connected_sigma_m` of spread in
+  /// translation.
+  std::vector<int> well_connected_to(int id) const;
 
   /// For each keyframe, the spread of its pose relative to keyframe `id`, along the connections
   /// that give the smallest spread in translation. Empty for a keyframe that nothing connects with
@@ -76,12 +77,13 @@ class KeyframeGraph {
   std::vector<std::optional<PoseSpread>> spreads_from(int id) const;
 
   /// Connects keyframes whose registration with each other left a direction open again, if others
-  /// lead from one to the other by now with less spread than `tied_sigma_m`, as after a loop.
-  void tie_anew();
+  /// lead from one to the other by now with less spread than `well_connected_sigma_m`, as after a
+  /// loop.
+  void reconnect();
 
   /// Standard deviation of a relative pose up to which a frame can be registered with both
   /// keyframes at once: what registration tolerates where surfaces do not coincide.
-  static constexpr double tied_sigma_m = 0.03;
+  static constexpr double well_connected_sigma_m = 0.03;
 
  private:
   friend class boost::serialization::access;

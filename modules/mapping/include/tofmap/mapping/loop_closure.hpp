@@ -61,7 +61,7 @@ struct LoopCandidate {
 /// `spreads` tell for each keyframe how uncertain its pose relative to `keyframe` is, as far as
 /// registrations can tell; the drift is that of the path in addition. Candidates are keyframes of
 /// the same map with an id that is smaller by at least `min_keyframes`, or with a spread that no
-/// frame can be registered across (KeyframeGraph::tied_sigma_m). Their cameras are within
+/// frame can be registered across (KeyframeGraph::well_connected_sigma_m). Their cameras are within
 /// `radius_m` and `max_rotation_rad` of the camera of `keyframe`, plus three standard deviations of
 /// drift.
 ///
@@ -69,9 +69,9 @@ struct LoopCandidate {
 /// its current pose with a prior of drift. If that is wider than ICP reaches, or if the result is
 /// not verified, the place is recognised among the candidates (recognise()), and the result is
 /// accepted if it is within two standard deviations of drift. A loop is found if the candidate
-/// confirms the result (confirms_place()), and if its surfaces alone tie both keyframes
-/// (KeyframeGraph::tied_sigma_m). `keyframes` are in the order of their ids, from 0, and hold all
-/// earlier keyframes; later ones are ignored.
+/// confirms the result (confirms_place()), and if its surfaces alone connect both well
+/// (KeyframeGraph::well_connected_sigma_m). `keyframes` are in the order of their ids, from 0, and
+/// hold all earlier keyframes; later ones are ignored.
 LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyframes,
                         std::span<const std::optional<PoseSpread>> spreads,
                         const CameraModel& camera, const LoopOptions& options,

@@ -27,10 +27,10 @@ struct Slip {
 /// (`edges`). A slip is found if the result is at that pose, confirms the place as a loop does
 /// (confirms_place()), and fits clearly better (by 10 %) than at the believed pose, unless
 /// registration does not even stay there. Of several, the one that fits best is returned.
-/// Corrections of less than KeyframeGraph::tied_sigma_m, which are drift, and of more than half a
-/// metre at the keyframe, which odometry would not have accepted, are no slips. Neither is a
-/// keyframe across which a later one was registered with earlier ones alone. Empty as well if both
-/// ends were taken in different maps. `keyframes` are in the order of their ids, from 0.
+/// Corrections of less than KeyframeGraph::well_connected_sigma_m, which are drift, and of more
+/// than half a metre at the keyframe, which odometry would not have accepted, are no slips. Neither
+/// is a keyframe across which a later one was registered with earlier ones alone. Empty as well if
+/// both ends were taken in different maps. `keyframes` are in the order of their ids, from 0.
 std::optional<Slip> find_slip(const PoseEdge& loop, std::span<const Keyframe> keyframes,
                               std::span<const PoseEdge> edges, const CameraModel& camera,
                               const LoopOptions& options, const RegistrationOptions& registration);
