@@ -4,7 +4,9 @@
 #include "support/box_room.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -40,6 +42,20 @@ class SeenThrough : public testing::Test {
     MapCloud map;
     map.push_back(point);
     return !without_free_space_violations(map, keyframes_, small_camera(), margin_m).empty();
+  }
+
+  /// Calls `change` with column, row and point of all pixels of all keyframes.
+  template <class Change>
+  void change_points(const Change& change) {
+    for (Keyframe& keyframe : keyframes_) {
+      SurfaceCloud cloud = *keyframe.cloud;
+      for (int row = 0; row < static_cast<int>(cloud.height); ++row) {
+        for (int col = 0; col < static_cast<int>(cloud.width); ++col) {
+          change(col, row, cloud.at(col, row));
+        }
+      }
+      keyframe.cloud = std::make_shared<const SurfaceCloud>(cloud);
+    }
   }
 
   std::vector<Keyframe> keyframes_;
@@ -100,13 +116,43 @@ TEST_F(SeenThrough, DropsWhatThreeKeyframesSeeThroughAtLast) {
   EXPECT_TRUE(keeps({0.1, 0.1, 2})) << "two may be deceived";
 }
 
-TEST_F(SeenThrough, SaysNothingWhereAKeyframeHasNoSurface) {
-  for (Keyframe& keyframe : keyframes_) {
-    SurfaceCloud nothing = *keyframe.cloud;
-    for (SurfacePoint& point : nothing.points) point.normal_z = NAN;
-    keyframe.cloud = std::make_shared<const SurfaceCloud>(nothing);
-  }
+TEST_F(SeenThrough, SaysNothingWhereAKeyframeHasNoRange) {
+  change_points([](int, int, SurfacePoint& point) { point.z = point.normal_z = NAN; });
   EXPECT_TRUE(keeps({0.1, 0.1, 2}));
+}
+
+TEST_F(SeenThrough, KnowsFreeSpaceByRangesWithoutNormalsButNoSurface) {
+  change_points([](int, int, SurfacePoint& point) { point.normal_z = NAN; });
+  EXPECT_FALSE(keeps({0.1, 0.1, 2}));
+  // Three keyframes that agreed would outvote the two that see through.
+  const auto seeing = std::make_shared<const SurfaceCloud>(
+      test::box_cloud(small_camera(), {-9, -9, -9}, {9, 9, 2}, Pose::Identity()));
+  keyframes_.resize(2);
+  for (int i = 2; i < 5; ++i) {
+    keyframes_.push_back({.id = i, .world_from_camera = Pose::Identity(), .cloud = seeing});
+  }
+  std::ranges::reverse(keyframes_);
+  EXPECT_TRUE(keeps({0.1, 0.1, 2}));
+  change_points([](int, int, SurfacePoint& point) { point.normal_z = NAN; });
+  EXPECT_FALSE(keeps({0.1, 0.1, 2}));
+}
+
+TEST_F(SeenThrough, NeedsSixOfNinePixelsWithRanges) {
+  keyframes_.resize(1);
+  // The point projects to the pixel (col, row) of the keyframe at the origin.
+  const Vector3d point_m(0.1, 0.1, 2);
+  const std::optional<Eigen::Vector2d> pixel = project(small_camera(), point_m);
+  const int col = static_cast<int>(std::round(pixel->x()));
+  const int row = static_cast<int>(std::round(pixel->y()));
+  const auto remove = [](SurfacePoint& point) { point.z = point.normal_z = NAN; };
+  change_points([&](int c, int, SurfacePoint& point) {
+    if (c == col + 1) remove(point);
+  });
+  EXPECT_FALSE(keeps(point_m)) << "six";
+  change_points([&](int c, int r, SurfacePoint& point) {
+    if (c == col - 1 && r == row) remove(point);
+  });
+  EXPECT_TRUE(keeps(point_m)) << "five";
 }
 
 TEST_F(SeenThrough, IsNoneBetweenKeyframesOfOneRoomAndMuchWhereOneIsMisplaced) {

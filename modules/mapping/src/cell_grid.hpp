@@ -73,8 +73,9 @@ Cells<int> grow_regions(const CellGrid& grid, const Cells<int>& seeds, const Cel
 /// up to the ceiling or the border of the image. The camera must be held upright.
 Cells<int> front_regions(const CellGrid& grid);
 
-/// A cloud without the points of regions: those whose cell, or a cell beside it, is in a region and
-/// has nearly the same range. They become like those of pixels without a range.
+/// A cloud without the surface of regions: points whose cell, or a cell beside it, is in a region
+/// and has nearly the same range, lose their normals. So they take no part in registration and map;
+/// their positions still tell that the space before them is free.
 std::shared_ptr<const SurfaceCloud> without_regions(const SurfaceCloud& cloud, const CellGrid& grid,
                                                     const Cells<int>& regions);
 

@@ -15,7 +15,7 @@ KeyframeView::KeyframeView(const RegistrationTarget& seen, const CameraModel& ca
       camera_(camera),
       margin_m_(margin_m) {
   for (const SurfacePoint& point : cloud_.points) {
-    if (point.has_normal()) farthest_m_ = std::max(farthest_m_, point.z);
+    if (point.has_position()) farthest_m_ = std::max(farthest_m_, point.z);
   }
 }
 
@@ -36,26 +36,40 @@ Observation KeyframeView::judge(const Eigen::Vector3d& world_m) const {
   if (!before) return Observation::nothing;
   if (std::abs(*before) <= 1) return Observation::agrees;
   if (*before < 0) return Observation::nothing;  // the point is occluded
-  // At the outline of an object, a small error of the pose makes a point project onto the
-  // background. So the point must be in front of the surfaces around as well.
+  return is_free_around(row, col, at_m) ? Observation::sees_through : Observation::nothing;
+}
+
+/// Whether a point is in front of what is seen at a pixel and at those around it. At the outline of
+/// an object, a small error of the pose makes a point project onto the background: so one pixel
+/// that does not see through the point decides, and at least two thirds of the pixels must do so.
+bool KeyframeView::is_free_around(int row, int col, const Eigen::Vector3f& point_m) const {
+  constexpr int least_pixels = 6;
+  int seen_through = 0;
   for (int r = row - 1; r <= row + 1; ++r) {
     for (int c = col - 1; c <= col + 1; ++c) {
-      const std::optional<float> beside = share_before(r, c, at_m);
-      if (!beside || *beside <= 1) return Observation::nothing;
+      const std::optional<float> before = share_before(r, c, point_m);
+      if (!before) continue;
+      if (*before <= 1) return false;
+      ++seen_through;
     }
   }
-  return Observation::sees_through;
+  return seen_through >= least_pixels;
 }
 
 /// Distance of a point in front of the surface at a pixel, divided by the tolerance; negative if
-/// the point is behind the surface. Empty if the pixel has no surface.
+/// the point is behind the surface. Empty if the pixel has no range, and if it has no normal and
+/// does not see through the point: a surface of unknown direction agrees with no point.
 std::optional<float> KeyframeView::share_before(int row, int col,
                                                 const Eigen::Vector3f& point_m) const {
   constexpr float sigmas = 3;
   const SurfacePoint& surface = cloud_.at(col, row);
-  if (!surface.has_normal()) return std::nullopt;
-  const Eigen::Vector3f normal = surface.getNormalVector3fMap();
   const Eigen::Vector3f at_m = surface.getVector3fMap();
+  if (!surface.has_normal()) {
+    const float tolerated_m = static_cast<float>(margin_m_) + sigmas * surface.sigma_m;
+    const float share = (at_m.norm() - point_m.norm()) / tolerated_m;
+    return share > 1 ? std::optional(share) : std::nullopt;  // NaN without a range
+  }
+  const Eigen::Vector3f normal = surface.getNormalVector3fMap();
   const float sigma_m = surface.sigma_m * std::abs(normal.dot(at_m.normalized()));
   const float tolerated_m = static_cast<float>(margin_m_) + sigmas * sigma_m;
   return normal.dot(point_m - at_m) / tolerated_m;

@@ -11,22 +11,24 @@ namespace tofmap {
 
 /// What a point in the world is to a keyframe.
 enum class Observation {
-  nothing,       ///< out of view, occluded, or at a pixel without a surface around it
+  nothing,       ///< out of view, occluded, or at a pixel without a range
   agrees,        ///< on the surface
-  sees_through,  ///< in front of the surface
+  sees_through,  ///< in front of what is seen at the pixel and around it
 };
 
 /// A cloud whose pose is known, prepared for testing many points against free space. Must outlive
 /// neither the cloud nor the camera.
 class KeyframeView {
  public:
-  /// `margin_m` is added to three standard deviations of a surface, along its normal.
+  /// `margin_m` is added to three standard deviations of a surface, along its normal, and to those
+  /// of a point without a normal, along its ray.
   KeyframeView(const RegistrationTarget& seen, const CameraModel& camera, double margin_m);
 
   Observation judge(const Eigen::Vector3d& world_m) const;
 
  private:
   std::optional<float> share_before(int row, int col, const Eigen::Vector3f& point_m) const;
+  bool is_free_around(int row, int col, const Eigen::Vector3f& point_m) const;
 
   Pose camera_from_world_;
   const SurfaceCloud& cloud_;

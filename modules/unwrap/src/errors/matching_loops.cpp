@@ -119,8 +119,11 @@ TOFMAP_VECTOR_CLONES void find_places(int count, const float* col_px, const floa
     const float inside = row_px[i] < last_row ? not_above : 0.0F;
     const float col = inside > 0 ? col_px[i] : 0.0F;
     const float row = inside > 0 ? row_px[i] : 0.0F;
-    const auto u = static_cast<std::int32_t>(col + 0.5F);
-    const auto v = static_cast<std::int32_t>(row + 0.5F);
+    // To the nearest pixel: neither is negative, and std::lround is not vectorised.
+    const float col_up = col + 0.5F;
+    const float row_up = row + 0.5F;
+    const auto u = static_cast<std::int32_t>(col_up);
+    const auto v = static_cast<std::int32_t>(row_up);
     places.index[i] = v * width + u;
     places.off_across_px[i] = col - static_cast<float>(u);
     places.off_along_px[i] = row - static_cast<float>(v);

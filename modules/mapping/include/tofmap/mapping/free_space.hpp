@@ -15,9 +15,10 @@ namespace tofmap {
 ///
 /// A keyframe sees through a point if the point lies in front of the keyframe's surfaces at the
 /// pixel that it projects into and at the eight pixels around, each time by more than `margin_m`
-/// plus three standard deviations of the surface along its normal. The keyframe agrees with the
-/// point if the point lies within that distance of the surface at its pixel. A keyframe that has no
-/// surface at one of the nine pixels does not see through the point. A point is removed if more
+/// plus three standard deviations of the surface along its normal. A keyframe's point without a
+/// normal, as on something that moves, counts by its range alone. Up to three of the nine pixels
+/// may have no range, but not the one in the middle. The keyframe agrees with the point if the
+/// point lies within that distance of the surface at its pixel. A point is removed if more
 /// keyframes see through it than agree with it, or if at least three see through it after the last
 /// one that agrees: it is gone. `keyframes` are in the order of time. The result is the same for
 /// any number of threads.
