@@ -63,10 +63,11 @@ TEST(FrameSample, DropsTheRangesOfWhatMovesInAFrame) {
   }
   SurfacePoint there{};
   there.getVector3fMap().setConstant(1);
-  SurfacePoint gone = there;
-  gone.getVector3fMap().setConstant(std::numeric_limits<float>::quiet_NaN());
+  there.confidence = 1;
+  SurfacePoint moving = there;
+  moving.confidence = 0;
   SurfaceCloud still(4, 4, there);
-  still.at(3, 1) = gone;
+  still.at(3, 1) = moving;
   sample.drop_moving(1, still);
   sample.drop_moving(7, still);
   const auto valid = [&](int frame) {

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <tofmap/mapping/moving_regions.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
 #include <tofmap/simulation/simulator.hpp>
 
@@ -56,7 +57,8 @@ TEST(MovingPeople, AreErasedAndTheRoomIsNot) {
         Counts& counts = truth.moving(row, col) != 0 ? person : room;
         if (std::isnan(truth.range_truth_m(row, col))) continue;
         ++counts.seen;
-        counts.erased += cloud->at(col, row).has_position() ? 0 : 1;
+        const SurfacePoint& point = cloud->at(col, row);
+        counts.erased += point.has_position() && !moves(point) ? 0 : 1;
       }
     }
   }

@@ -54,10 +54,11 @@ bool hides_what_is_above(const CellGrid& grid, const std::vector<std::size_t>& c
          !goes_on_from_above(grid, column, i);
 }
 
-void remove_normal(SurfacePoint& point) {
+void mark_as_moving(SurfacePoint& point) {
   constexpr float none = std::numeric_limits<float>::quiet_NaN();
   point.getNormalVector3fMap().setConstant(none);
   point.normal_sigma_rad = none;
+  point.confidence = 0;
 }
 
 bool is_in_region_beside(const SurfacePoint& point, int row, int col, const CellGrid& grid,
@@ -175,8 +176,8 @@ std::shared_ptr<const SurfaceCloud> without_regions(const SurfaceCloud& cloud, c
   for (int row = 0; row < static_cast<int>(cloud.height); ++row) {
     for (int col = 0; col < width; ++col) {
       SurfacePoint& point = out->at(col, row);
-      if (point.has_normal() && is_in_region_beside(point, row, col, grid, regions)) {
-        remove_normal(point);
+      if (point.has_position() && is_in_region_beside(point, row, col, grid, regions)) {
+        mark_as_moving(point);
       }
     }
   }

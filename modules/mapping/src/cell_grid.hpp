@@ -74,8 +74,8 @@ Cells<int> grow_regions(const CellGrid& grid, const Cells<int>& seeds, const Cel
 Cells<int> front_regions(const CellGrid& grid);
 
 /// A cloud without the surface of regions: points whose cell, or a cell beside it, is in a region
-/// and has nearly the same range, lose their normals. So they take no part in registration and map;
-/// their positions still tell that the space before them is free.
+/// and has nearly the same range, become points that moves() tells. They take no part in
+/// registration and map, but still tell that the space before them is free.
 std::shared_ptr<const SurfaceCloud> without_regions(const SurfaceCloud& cloud, const CellGrid& grid,
                                                     const Cells<int>& regions);
 

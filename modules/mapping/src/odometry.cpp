@@ -4,6 +4,7 @@
 #include "tofmap/mapping/odometry.hpp"
 
 #include "registration_choice.hpp"
+#include "target_choice.hpp"
 #include "tofmap/mapping/free_space.hpp"
 #include "tofmap/mapping/rotation_search.hpp"
 
@@ -70,7 +71,9 @@ std::vector<OptionField<OdometryOptions>> OdometryOptions::fields() {
       {"keyframes_around", &O::keyframes_around, 1, 1000, "",
        "number of keyframes around the camera that a frame may be registered with"},
       {"targets", &O::targets, 1, 16, "",
-       "largest number of keyframes that a frame is registered with: those that overlap it most"},
+       "largest number of keyframes that a frame is registered with: those that overlap it most, "
+       "and "
+       "one that constrains a direction which these do not"},
       {"min_target_overlap", &O::min_target_overlap, 0, 1, "",
        "smallest share of a frame's points that a keyframe must see to be registered with"},
       {"prior_rotation_sigma_rad", &O::prior_rotation_sigma_rad, 1e-4, 3.2, "rad",
@@ -159,7 +162,7 @@ Odometry::Attempt Odometry::register_from(const MotionPrior& prior, const Surfac
                                           std::span<const Keyframe* const> around) const {
   Attempt attempt;
   attempt.prior = prior;
-  attempt.targets = choose_targets(cloud, prior.world_from_camera, around);
+  attempt.targets = choose_targets(cloud, prior, around, camera_, options_, registration_);
   RegistrationOptions registration = registration_;
   // A distant initial pose takes more iterations.
   constexpr int times = 3;
@@ -197,7 +200,8 @@ std::optional<Odometry::Attempt> Odometry::register_turned(
        search_rotations(cloud, around, last_->world_from_camera, reach_rad, most_rotations)) {
     Attempt attempt;
     attempt.prior = {pose, turned_sigma_rad, periods * turned_sigma_m};
-    attempt.targets = choose_targets(cloud, pose, around);
+    attempt.targets =
+        choose_targets(cloud, attempt.prior, around, camera_, options_, registration_);
     attempt.registration = register_from_afar(cloud, targets_of(attempt.targets), camera_,
                                               attempt.prior, registration_);
     if (is_verified(attempt.registration, recognition_) && !contradicts_targets(attempt, cloud)) {
@@ -311,36 +315,6 @@ MotionPrior Odometry::predict(double timestamp_s) const {
                               interpolate(Pose::Identity(), step, std::min(share, most_periods));
   }
   return prior;
-}
-
-/// The keyframes that overlap the frame most at an expected pose.
-std::vector<const Keyframe*> Odometry::choose_targets(
-    const SurfaceCloud& cloud, const Pose& expected,
-    std::span<const Keyframe* const> around) const {
-  struct Candidate {
-    double overlap;
-    const Keyframe* keyframe;
-  };
-  std::vector<Candidate> candidates(around.size());
-  const int count = static_cast<int>(around.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int i = 0; i < count; ++i) {
-    candidates[i] = {overlap_share(cloud, expected, target_of(*around[i]), camera_, registration_),
-                     around[i]};
-  }
-  // The last keyframe always remains a candidate: the frame may overlap no other.
-  std::erase_if(candidates, [&](const Candidate& candidate) {
-    return candidate.overlap < options_.min_target_overlap && candidate.keyframe != around.back();
-  });
-  // Reversed before a stable sort, so that of equal overlaps the most recent keyframe comes first.
-  std::ranges::reverse(candidates);
-  std::ranges::stable_sort(candidates, std::ranges::greater(), &Candidate::overlap);
-  std::vector<const Keyframe*> targets;
-  for (const Candidate& candidate : candidates) {
-    if (static_cast<int>(targets.size()) == options_.targets) break;
-    targets.push_back(candidate.keyframe);
-  }
-  return targets;
 }
 
 /// Learns by how much the pose of a frame differs from the predicted one.

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <limits>
 
+#include <tofmap/mapping/moving_regions.hpp>
+
 namespace tofmap {
 namespace {
 
@@ -76,9 +78,7 @@ void FrameSample::drop_moving(int index, const SurfaceCloud& still) {
   RangeImage& image = sampled->filtered;
   for (Eigen::Index row = 0; row < image.range_m.rows(); ++row) {
     for (Eigen::Index col = 0; col < image.range_m.cols(); ++col) {
-      if (std::isnan(image.range_m(row, col))) continue;
-      const SurfacePoint& point = still.at(static_cast<int>(col), static_cast<int>(row));
-      if (!point.has_position()) {
+      if (moves(still.at(static_cast<int>(col), static_cast<int>(row)))) {
         image.invalidate(row, col, InvalidReason::free_space_violation);
       }
     }

@@ -27,6 +27,9 @@ constexpr double translation_tolerance_m = 5e-5;
 constexpr double coarse_tolerance = 20;
 constexpr int coarse_stride = 2;
 
+/// Overlaps are measured at every n-th pixel in both axes.
+constexpr int sparse_stride_px = 8;
+
 bool is_below_tolerance(const Vector6d& twist, double tolerances) {
   return twist.head<3>().norm() < tolerances * rotation_tolerance_rad &&
          twist.tail<3>().norm() < tolerances * translation_tolerance_m;
@@ -301,10 +304,26 @@ RegistrationResult register_to_targets(const SurfaceCloud& source,
 double overlap_share(const SurfaceCloud& source, const Pose& world_from_source,
                      const RegistrationTarget& target, const CameraModel& camera,
                      const RegistrationOptions& options) {
-  constexpr int sparse_stride_px = 8;
   const auto points = select_points(source, sparse_stride_px);
   if (points.empty()) return 0;
   return find_correspondences(points, world_from_source, {&target, 1}, camera, options).overlap;
+}
+
+TargetPreview preview_target(const SurfaceCloud& source, const Pose& world_from_source,
+                             const RegistrationTarget& target, const CameraModel& camera,
+                             const RegistrationOptions& options) {
+  TargetPreview preview;
+  const auto points = select_points(source, sparse_stride_px);
+  if (points.empty()) return preview;
+  const Correspondences found =
+      find_correspondences(points, world_from_source, {&target, 1}, camera, options);
+  preview.overlap = found.overlap;
+  NormalEquations equations = build_equations(found.pairs, options.kernel_width);
+  const double points_each = std::pow(sparse_stride_px / double(options.source_stride_px), 2);
+  count_independent(equations, points_each / options.correlated_observations);
+  preview.information =
+      surface_information(observability(equations, median_range_m(points)), equations);
+  return preview;
 }
 
 }  // namespace tofmap

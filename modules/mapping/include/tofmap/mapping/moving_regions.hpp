@@ -27,9 +27,16 @@ struct MovingPoint {
   int age = 0;  ///< number of frames since the last evidence that it moves
 };
 
+/// Whether a point was found to be on something that moves. It keeps its position, up to which
+/// space is free, but has no normal, and its confidence is 0.
+inline bool moves(const SurfacePoint& point) {
+  return point.has_position() && point.confidence == 0;
+}
+
 /// What moves in a frame, as regions of its image and of those of keyframes.
 struct Motion {
-  /// The frame's cloud without the points of what moves. The same object if nothing does.
+  /// The frame's cloud without the surface of what moves (moves()). The same object if nothing
+  /// does.
   std::shared_ptr<const SurfaceCloud> still;
   std::vector<CleanedKeyframe> keyframes;  ///< those in which something moved since
   std::vector<MovingPoint> points;         ///< one for each cell of the grid that moves

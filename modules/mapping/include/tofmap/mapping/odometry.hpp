@@ -36,7 +36,7 @@ struct OdometryOptions {
   /// Number of keyframes around the camera that are considered as targets, 1 … 1000.
   int keyframes_around = 15;
   /// Largest number of keyframes that a frame is registered with, 1 … 16: those that overlap it
-  /// most.
+  /// most, and one that constrains a direction which these do not.
   int targets = 3;
   /// Smallest share of a frame's points that a target must see, 0 … 1. The keyframe that the
   /// previous frame belongs to may see less.
@@ -96,8 +96,9 @@ struct TrackingResult {
 };
 
 /// Tracks the camera: registers each frame with those keyframes around it that overlap it most,
-/// from the pose that constant velocity predicts. After a gap in time, the last known pose is tried
-/// as well, and registration may take three times as many iterations. The first frame with a
+/// from the pose that constant velocity predicts. The last of them gives way to a keyframe that
+/// constrains a direction which the others leave open. After a gap in time, the last known pose is
+/// tried as well, and registration may take three times as many iterations. The first frame with a
 /// surface gets the identity as its pose. A frame that cannot be registered only increases the time
 /// since the last registered frame.
 ///
@@ -169,8 +170,6 @@ class Odometry {
   bool contradicts_targets(const Attempt& attempt, const SurfaceCloud& cloud) const;
   TrackingStatus judge(const Attempt& attempt, double timestamp_s) const;
   MotionPrior predict(double timestamp_s) const;
-  std::vector<const Keyframe*> choose_targets(const SurfaceCloud& cloud, const Pose& expected,
-                                              std::span<const Keyframe* const> around) const;
   void note_change(double timestamp_s, const Pose& found);
   void learn_covariances(double periods, const Attempt& attempt, TrackingResult& result);
   void accept(const StampedPose& pose);

@@ -53,7 +53,8 @@ struct LateFrame {
 struct AddedFrame {
   TrackingResult tracking;
   std::vector<LateFrame> late;  ///< frames before it whose result has changed
-  /// The cloud without the points of what moves; NewFrame::cloud itself if nothing does.
+  /// The cloud without the surface of what moves (Motion::still); NewFrame::cloud itself if
+  /// nothing does.
   std::shared_ptr<const SurfaceCloud> still;
   double register_ms = 0;   ///< tracking or relocalisation
   double integrate_ms = 0;  ///< adding the surface to the map

@@ -41,8 +41,8 @@ class FrameSample {
   void add(const DualFrequencyFrame& recorded, const PreparedFrame& prepared);
 
   /// Invalidates the filtered ranges of what moves in a frame that was added (reason
-  /// `free_space_violation`). `still` is its cloud without the points of what moves. Ignored if the
-  /// frame is not kept.
+  /// `free_space_violation`). `still` is its cloud without the surface of what moves
+  /// (Motion::still). Ignored if the frame is not kept.
   void drop_moving(int index, const SurfaceCloud& still);
 
   /// Indices below `end` that belong to the sample, but whose frames were not added. Empty if the

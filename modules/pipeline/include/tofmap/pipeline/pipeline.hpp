@@ -156,7 +156,7 @@ struct MapHooks {
   /// Called with every frame that was unwrapped, in order, before it is registered.
   std::function<void(const DualFrequencyFrame& recorded, const PreparedFrame&)> on_frame;
   /// Called after a frame in which something moves was registered, with the index of the frame and
-  /// its cloud without the points of what moves.
+  /// its cloud without the surface of what moves (Motion::still).
   std::function<void(int index, const SurfaceCloud& still)> on_motion;
 };
 

@@ -147,4 +147,17 @@ double overlap_share(const SurfaceCloud& source, const Pose& world_from_source,
                      const RegistrationTarget& target, const CameraModel& camera,
                      const RegistrationOptions& options);
 
+/// What a target would tell of the pose of a source.
+struct TargetPreview {
+  double overlap = 0;  ///< as overlap_share()
+  /// As RegistrationResult::target_information, for residuals as large as predicted.
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+};
+
+/// Estimates what a registration with a target would tell, from every eighth pixel in both axes at
+/// a pose that is nearly right. Nothing if the source has no points.
+TargetPreview preview_target(const SurfaceCloud& source, const Pose& world_from_source,
+                             const RegistrationTarget& target, const CameraModel& camera,
+                             const RegistrationOptions& options);
+
 }  // namespace tofmap
