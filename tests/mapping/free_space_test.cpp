@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <tofmap/mapping/free_space.hpp>
+#include <tofmap/mapping/moving_regions.hpp>
 
 namespace tofmap {
 namespace {
@@ -153,6 +154,30 @@ TEST_F(SeenThrough, NeedsSixOfNinePixelsWithRanges) {
     if (c == col - 1 && r == row) remove(point);
   });
   EXPECT_TRUE(keeps(point_m)) << "five";
+}
+
+TEST_F(SeenThrough, KeepsWhatOnePixelSeesAtItsRangeWithoutANormal) {
+  // A thin post before a wall: its pixels have ranges, but no planes.
+  keyframes_.resize(1);
+  const Vector3d point_m(0.1, 0.1, 2);
+  const std::optional<Eigen::Vector2d> pixel = project(small_camera(), point_m);
+  const int col = static_cast<int>(std::round(pixel->x()));
+  change_points([&](int c, int, SurfacePoint& point) {
+    if (c != col + 1) return;
+    point.getVector3fMap() *= 2 / point.z;
+    point.normal_z = NAN;
+  });
+  EXPECT_TRUE(keeps(point_m));
+}
+
+TEST_F(SeenThrough, DistrustsRangesWithoutNormalsWhoseWrapCountsAreUncertain) {
+  change_points([](int, int, SurfacePoint& point) {
+    point.normal_z = NAN;
+    point.confidence = 0.8F;
+  });
+  EXPECT_TRUE(keeps({0.1, 0.1, 2}));
+  change_points([](int, int, SurfacePoint& point) { point.confidence = moving_confidence; });
+  EXPECT_FALSE(keeps({0.1, 0.1, 2})) << "something that moves";
 }
 
 TEST_F(SeenThrough, IsNoneBetweenKeyframesOfOneRoomAndMuchWhereOneIsMisplaced) {

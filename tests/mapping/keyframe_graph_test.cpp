@@ -59,7 +59,7 @@ KeyframeGraph past_a_bare_wall() {
   return graph;
 }
 
-TEST(KeyframeGraph, DoesNotTieKeyframesWhoseRelativePoseIsUncertain) {
+TEST(KeyframeGraph, DoesNotConnectWellKeyframesWhoseRelativePoseIsUncertain) {
   KeyframeGraph graph = past_a_bare_wall();
   EXPECT_TRUE(graph.well_connected_to(1).empty());
   EXPECT_EQ(ids(graph.around(1, at(0), 5, {1, 1})), (std::vector<int>{1}));
@@ -88,7 +88,7 @@ TEST(KeyframeGraph, KnowsThePathThatIsMostCertain) {
   EXPECT_FALSE(graph.spreads_from(0)[3]);
 }
 
-TEST(KeyframeGraph, TiesKeyframesAnewThatALoopHasTied) {
+TEST(KeyframeGraph, ReconnectsKeyframesThatALoopHasConnected) {
   // A ring of eight keyframes with one loose registration, which a loop closes.
   KeyframeGraph graph;
   for (int id = 0; id < 8; ++id) {
@@ -107,7 +107,7 @@ TEST(KeyframeGraph, TiesKeyframesAnewThatALoopHasTied) {
   EXPECT_TRUE(is_well_connected());
 }
 
-TEST(KeyframeGraph, MeasuresTurnsAsWell) {
+TEST(KeyframeGraph, MeasuresRotationsAsWell) {
   KeyframeGraph graph;
   graph.add({0, 0, 0, at(0), nullptr});
   graph.add({1, 1, 0.1, test::moved_by({0, 1.5, 0}, {0, 0, 0}), nullptr});

@@ -106,6 +106,21 @@ TEST(MovingRegions, AreWhereSomebodyHasEnteredAnEmptyRoom) {
   EXPECT_GT(left.of_room, 0.97);
 }
 
+TEST(MovingRegions, KeepThePositionsOfWhatMoves) {
+  const Pose moved = test::moved_by({0, -0.04, 0}, {0.1, 0, 0.08});
+  const View now = view_of(person_at(0.3, 2), moved);
+  const Motion motion = motion_between(view_of({}, Pose::Identity()), now, moved);
+  int moving = 0;
+  for (std::size_t i = 0; i < now.cloud->size(); ++i) {
+    const SurfacePoint& point = motion.still->points[i];
+    if (!moves(point)) continue;
+    ++moving;
+    ASSERT_FALSE(point.has_normal());
+    ASSERT_EQ(point.getVector3fMap(), now.cloud->points[i].getVector3fMap());
+  }
+  EXPECT_GT(moving, std::ranges::count(now.sees_person, 1) / 2);
+}
+
 TEST(MovingRegions, AreWhereSomebodyWasBefore) {
   const View before = view_of(person_at(0.3, 2), Pose::Identity());
   const View now = view_of({}, Pose::Identity());

@@ -5,6 +5,7 @@
 
 #include "support/box_room.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -78,6 +79,17 @@ TEST_F(TargetChoice, KeepsTheLargerOverlapWhereAllConstrainTheSame) {
   for (Keyframe& keyframe : keyframes_) {
     if (keyframe.id > 0) keyframe.cloud = view(is_anything);
   }
+  EXPECT_EQ(chosen(is_anything), (std::vector{3, 2, 1}));
+}
+
+TEST_F(TargetChoice, TakesTheLargestOverlapForASingleTarget) {
+  options_.targets = 1;
+  EXPECT_EQ(chosen(is_anything), (std::vector{3}));
+}
+
+TEST_F(TargetChoice, GivesNoPlaceToOneThatOverlapsTooLittle) {
+  options_.min_target_overlap = 0.4;
+  std::ranges::rotate(keyframes_, keyframes_.begin() + 1);  // the newest needs no overlap
   EXPECT_EQ(chosen(is_anything), (std::vector{3, 2, 1}));
 }
 

@@ -65,7 +65,7 @@ TEST(FrameSample, DropsTheRangesOfWhatMovesInAFrame) {
   there.getVector3fMap().setConstant(1);
   there.confidence = 1;
   SurfacePoint moving = there;
-  moving.confidence = 0;
+  moving.confidence = moving_confidence;
   SurfaceCloud still(4, 4, there);
   still.at(3, 1) = moving;
   sample.drop_moving(1, still);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "cell_grid.hpp"
+#include "keyframe_view.hpp"
+#include "tofmap/mapping/moving_regions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +11,6 @@
 
 namespace tofmap {
 namespace {
-
-/// A wrong wrap count looks like a thing that has moved by a wavelength.
-constexpr float least_confidence = 0.9F;
 
 int side_of_cell_px(const CameraModel& camera) {
   constexpr double cells_per_rad = 32;
@@ -58,7 +57,7 @@ void mark_as_moving(SurfacePoint& point) {
   constexpr float none = std::numeric_limits<float>::quiet_NaN();
   point.getNormalVector3fMap().setConstant(none);
   point.normal_sigma_rad = none;
-  point.confidence = 0;
+  point.confidence = moving_confidence;
 }
 
 bool is_in_region_beside(const SurfacePoint& point, int row, int col, const CellGrid& grid,
@@ -91,7 +90,7 @@ CellGrid::CellGrid(const SurfaceCloud& cloud, const CameraModel& camera)
       const SurfacePoint& point =
           cloud.at(col * side_px_ + side_px_ / 2, row * side_px_ + side_px_ / 2);
       points_m_.emplace_back(point.getVector3fMap());
-      is_sure_.push_back(point.has_normal() && point.confidence >= least_confidence ? 1 : 0);
+      is_sure_.push_back(point.has_normal() && point.confidence >= sure_confidence ? 1 : 0);
       ranges_m_.push_back(point.has_normal() ? points_m_.back().norm() : 0);
     }
   }

@@ -3,6 +3,8 @@
 
 #include "keyframe_view.hpp"
 
+#include "tofmap/mapping/moving_regions.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -34,8 +36,11 @@ Observation KeyframeView::judge(const Eigen::Vector3d& world_m) const {
   const Eigen::Vector3f at_m = point_m.cast<float>();
   const std::optional<float> before = share_before(row, col, at_m);
   if (!before) return Observation::nothing;
-  if (std::abs(*before) <= 1) return Observation::agrees;
-  if (*before < 0) return Observation::nothing;  // the point is occluded
+  if (*before <=
+      1) {  // on the surface or occluded; a surface of unknown direction agrees with none
+    const bool agrees = *before >= -1 && cloud_.at(col, row).has_normal();
+    return agrees ? Observation::agrees : Observation::nothing;
+  }
   return is_free_around(row, col, at_m) ? Observation::sees_through : Observation::nothing;
 }
 
@@ -57,17 +62,19 @@ bool KeyframeView::is_free_around(int row, int col, const Eigen::Vector3f& point
 }
 
 /// Distance of a point in front of the surface at a pixel, divided by the tolerance; negative if
-/// the point is behind the surface. Empty if the pixel has no range, and if it has no normal and
-/// does not see through the point: a surface of unknown direction agrees with no point.
+/// the point is behind the surface. Along the ray if the pixel has no normal. Empty if the pixel
+/// has no range, or one whose wrap count is too uncertain to say that the space before it is free.
 std::optional<float> KeyframeView::share_before(int row, int col,
                                                 const Eigen::Vector3f& point_m) const {
   constexpr float sigmas = 3;
   const SurfacePoint& surface = cloud_.at(col, row);
+  if (!surface.has_position()) return std::nullopt;
   const Eigen::Vector3f at_m = surface.getVector3fMap();
   if (!surface.has_normal()) {
     const float tolerated_m = static_cast<float>(margin_m_) + sigmas * surface.sigma_m;
     const float share = (at_m.norm() - point_m.norm()) / tolerated_m;
-    return share > 1 ? std::optional(share) : std::nullopt;  // NaN without a range
+    const bool is_free = moves(surface) || surface.confidence >= sure_confidence;
+    return share <= 1 || is_free ? std::optional(share) : std::nullopt;
   }
   const Eigen::Vector3f normal = surface.getNormalVector3fMap();
   const float sigma_m = surface.sigma_m * std::abs(normal.dot(at_m.normalized()));

@@ -9,6 +9,10 @@
 
 namespace tofmap {
 
+/// Smallest confidence of a range that tells of free space by itself: with a wrong wrap count it
+/// looks like a thing that has moved by a wavelength.
+constexpr float sure_confidence = 0.9F;
+
 /// What a point in the world is to a keyframe.
 enum class Observation {
   nothing,       ///< out of view, occluded, or at a pixel without a range
@@ -16,8 +20,8 @@ enum class Observation {
   sees_through,  ///< in front of what is seen at the pixel and around it
 };
 
-/// A cloud whose pose is known, prepared for testing many points against free space. Must outlive
-/// neither the cloud nor the camera.
+/// A cloud whose pose is known, prepared for testing many points against free space. The cloud
+/// and the camera must outlive it.
 class KeyframeView {
  public:
   /// `margin_m` is added to three standard deviations of a surface, along its normal, and to those

@@ -101,12 +101,10 @@ std::vector<const Keyframe*> best_overlaps(const Keyframe& keyframe,
     double share;
   };
   constexpr std::size_t most = 3;
-  RegistrationOptions coarse = registration;
-  coarse.source_stride_px = 4 * registration.source_stride_px;  // a few hundred points are enough
   std::vector<Overlap> overlaps;
   for (const Keyframe* other : earlier) {
     const double share = overlap_share(*keyframe.cloud, keyframe.world_from_camera,
-                                       target_of(*other), camera, coarse);
+                                       target_of(*other), camera, registration);
     if (share >= options.min_overlap) overlaps.push_back({other, share});
   }
   std::ranges::stable_sort(overlaps, std::ranges::greater(), &Overlap::share);

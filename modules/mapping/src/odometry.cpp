@@ -72,8 +72,7 @@ std::vector<OptionField<OdometryOptions>> OdometryOptions::fields() {
        "number of keyframes around the camera that a frame may be registered with"},
       {"targets", &O::targets, 1, 16, "",
        "largest number of keyframes that a frame is registered with: those that overlap it most, "
-       "and "
-       "one that constrains a direction which these do not"},
+       "and one that constrains a direction which these do not"},
       {"min_target_overlap", &O::min_target_overlap, 0, 1, "",
        "smallest share of a frame's points that a keyframe must see to be registered with"},
       {"prior_rotation_sigma_rad", &O::prior_rotation_sigma_rad, 1e-4, 3.2, "rad",

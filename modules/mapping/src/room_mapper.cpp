@@ -85,6 +85,7 @@ AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
     if (held_.size() < frames_until_lost) return added;
     added.late = timed(added.register_ms, [&] { return start_map(); });
     added.tracking = added.late.back().tracking;  // this frame was held last
+    added.still = added.late.back().still;
     added.late.pop_back();
     if (!added.tracking.registered()) return added;
   } else {
@@ -92,10 +93,8 @@ AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
   }
   const int map_before = map_;
   timed(added.loop_ms, [&] { close_loops(); });
-  if (map_ != map_before && is_joined()) {
-    added.tracking.status = TrackingStatus::relocalised;
-    added.tracking.world_from_camera = pose_of(frames_.back());
-  }
+  added.tracking.world_from_camera = pose_of(frames_.back());
+  if (map_ != map_before && is_joined()) added.tracking.status = TrackingStatus::relocalised;
   return added;
 }
 

@@ -26,6 +26,22 @@ constexpr double steps_of_same_view = 3;
 /// it has gone three metres, hardly into another room.
 constexpr double longest_blink_s = 2;
 
+/// Moves what a frame was registered with to another place of the world, and the frame with it.
+void move(TrackingResult& result, const Pose& new_from_old_world) {
+  Eigen::Matrix<double, 6, 6> rotation = Eigen::Matrix<double, 6, 6>::Zero();
+  rotation.topLeftCorner<3, 3>() = new_from_old_world.linear();
+  rotation.bottomRightCorner<3, 3>() = new_from_old_world.linear();
+  const auto rotate = [&](Eigen::Matrix<double, 6, 6>& along_the_axes_of_the_world) {
+    along_the_axes_of_the_world = rotation * along_the_axes_of_the_world * rotation.transpose();
+  };
+  result.world_from_camera = new_from_old_world * result.world_from_camera;
+  result.registration.world_from_camera =
+      new_from_old_world * result.registration.world_from_camera;
+  rotate(result.registration.covariance);
+  for (auto& covariance : result.target_covariances) rotate(covariance);
+  for (auto& information : result.registration.target_information) rotate(information);
+}
+
 }  // namespace
 
 /// Whether the camera can have been carried elsewhere since the last registered frame.
@@ -44,8 +60,9 @@ std::vector<LateFrame> RoomMapper::start_map() {
   lost_frames_ = 0;
   frames_since_front_moved_ = 0;
   for (NewFrame& frame : std::exchange(held_, {})) {
-    LateFrame& result = late.emplace_back(LateFrame{frame.index, track(frame)});
-    if (result.tracking.registered()) integrate(*frame.cloud);
+    TrackingResult tracking = track(frame);
+    if (tracking.registered()) integrate(*frame.cloud);
+    late.push_back({frame.index, std::move(tracking), frame.cloud});
   }
   return late;
 }
@@ -60,15 +77,17 @@ std::vector<LateFrame> RoomMapper::drop_fragment() {
   if (map_ + 1 != begun_maps_ || frames_.end() - first >= least_frames_of_map) return {};
   std::vector<LateFrame> dropped;
   for (auto frame = first; frame != frames_.end(); ++frame) {
-    dropped.push_back({frame->index, TrackingResult{}});
+    dropped.push_back({frame->index, TrackingResult{}, nullptr});
   }
   frames_.erase(first, frames_.end());
   const auto is_kept = [&](const Keyframe& keyframe) { return keyframe.map != map_; };
   const auto kept = static_cast<int>(std::ranges::count_if(keyframes_.all(), is_kept));
   const auto refers_to_dropped = [&](const PoseEdge& edge) { return edge.to >= kept; };
   std::erase_if(edges_, refers_to_dropped);
-  loops_.resize(static_cast<std::size_t>(std::ranges::count_if(edges_, &PoseEdge::may_be_wrong)));
-  unfitted_loops_ = std::min(unfitted_loops_, static_cast<int>(loops_.size()));
+  const auto kept_loops = std::ranges::count_if(edges_, &PoseEdge::may_be_wrong);
+  const auto dropped_loops = static_cast<int>(std::ssize(loops_) - kept_loops);
+  unfitted_loops_ = std::max(0, unfitted_loops_ - dropped_loops);  // the newest ones
+  loops_.resize(static_cast<std::size_t>(kept_loops));
   std::erase_if(recognitions_, refers_to_dropped);
   std::erase_if(submaps_, [&](const Submap& submap) { return submap.anchor >= kept; });
   submap_of_.resize(static_cast<std::size_t>(kept));
@@ -153,7 +172,7 @@ void RoomMapper::join_maps(std::span<const Stretch> travelled) {
   fit();
 }
 
-/// Number of keyframes of the newest map that differ from another map if both are joined: places of
+/// Number of keyframes of a map that differ from another map if both are joined: places of
 /// one plan differ in what was put there. Counts no further than the join needs.
 int RoomMapper::differing_keyframes(const MapJoin& join) const {
   int count = 0;
@@ -188,8 +207,7 @@ TrackingResult RoomMapper::track_apart(NewFrame& frame, std::span<const Keyframe
                                                  target_of(*other), camera_)) {
     const Pose before = keyframes_[current_].world_from_camera;
     take_join_back();
-    result.world_from_camera =
-        keyframes_[current_].world_from_camera * before.inverse() * result.world_from_camera;
+    move(result, keyframes_[current_].world_from_camera * before.inverse());
   }
   return result;
 }

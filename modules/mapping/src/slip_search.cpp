@@ -49,6 +49,7 @@ Others SlipSearch::registered_with(int id) const {
 bool SlipSearch::are_later_ones_held(int id) const {
   std::vector<char> is_held(keyframes.size(), 0);
   for (const PoseEdge& edge : edges) {
+    if (edge.may_be_wrong) continue;
     if (edge.from >= id && edge.to > edge.from) is_held[static_cast<std::size_t>(edge.to)] = 1;
   }
   return std::ranges::all_of(
@@ -100,8 +101,9 @@ std::optional<Slip> find_slip(const PoseEdge& loop, std::span<const Keyframe> ke
   const Pose found = first.world_from_camera * loop.from_from_to;
   const Pose correction = found * last.world_from_camera.inverse();
   const double moved_m = (found.translation() - last.world_from_camera.translation()).norm();
-  if (first.taken_in != last.taken_in || moved_m < KeyframeGraph::well_connected_sigma_m)
+  if (first.taken_in != last.taken_in || moved_m < KeyframeGraph::well_connected_sigma_m) {
     return std::nullopt;
+  }
   std::optional<Slip> best;
   double best_support = 0;
   for (int id = loop.from + 1; id <= loop.to; ++id) {

@@ -49,8 +49,10 @@ Matrix6d information_of(const MotionPrior& prior) {
 }
 
 /// Puts the candidate that constrains translation best, together with the first `most` − 1 and the
-/// prior, in the place after these, if that halves the standard deviation.
-void give_last_place(std::vector<Candidate>& candidates, std::size_t most, const Matrix6d& prior) {
+/// prior, in the place after these, if it overlaps the frame enough and halves the standard
+/// deviation.
+void give_last_place(std::vector<Candidate>& candidates, std::size_t most, double min_overlap,
+                     const Matrix6d& prior) {
   Matrix6d others = prior;
   for (std::size_t i = 0; i + 1 < most; ++i) others += candidates[i].preview.information;
   const auto variance_with = [&](const Candidate& last) {
@@ -60,7 +62,10 @@ void give_last_place(std::vector<Candidate>& candidates, std::size_t most, const
   Candidate& last = candidates[most - 1];
   const auto rest = std::span(candidates).subspan(most);
   const auto best = std::ranges::min_element(rest, {}, variance_with);
-  if (variance_with(*best) <= quarter * variance_with(last)) std::swap(last, *best);
+  if (best->preview.overlap >= min_overlap &&
+      variance_with(*best) <= quarter * variance_with(last)) {
+    std::swap(last, *best);
+  }
 }
 
 }  // namespace
@@ -74,7 +79,10 @@ std::vector<const Keyframe*> choose_targets(const SurfaceCloud& cloud, const Mot
       candidates_of(cloud, prior, around, camera, options.min_target_overlap, registration);
   const auto most = static_cast<std::size_t>(options.targets);
   if (candidates.size() > most) {
-    give_last_place(candidates, most, information_of(prior));
+    // A single target must be the one that overlaps most.
+    if (most > 1) {
+      give_last_place(candidates, most, options.min_target_overlap, information_of(prior));
+    }
     candidates.resize(most);
   }
   std::vector<const Keyframe*> targets;

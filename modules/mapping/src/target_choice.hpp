@@ -13,7 +13,7 @@ namespace tofmap {
 
 /// Chooses the keyframes that a frame is registered with, at most `odometry.targets`: those that
 /// overlap it most at the pose of the prior, by at least `odometry.min_target_overlap`. The last of
-/// `around` is chosen whatever its overlap if no other overlaps enough.
+/// `around` needs no overlap to fill a place that is left.
 ///
 /// Keyframes that overlap a frame most need not constrain all directions: they may see its large
 /// wall, but not the bit of ceiling beside it. So the last place goes to another keyframe if that

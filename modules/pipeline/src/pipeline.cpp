@@ -258,7 +258,13 @@ void MapRun::advance(FrameSource& source, const MapHooks& hooks) {
 void MapRun::add(const PreparedFrame& frame, const MapHooks& hooks) {
   AddedFrame added = mapper_.add_frame(
       {.index = frame.index, .timestamp_s = frame.timestamp_s, .cloud = frame.cloud});
+  const auto tell_motion = [&](int index, const std::shared_ptr<const SurfaceCloud>& still) {
+    if (hooks.on_motion && still && std::ranges::any_of(still->points, moves)) {
+      hooks.on_motion(index, *still);
+    }
+  };
   for (LateFrame& late : added.late) {
+    tell_motion(late.index, late.still);
     const auto record =
         std::ranges::find(frames_.rbegin(), frames_.rend(), late.index, &FrameRecord::index);
     record->tracking = std::move(late.tracking);
@@ -268,7 +274,7 @@ void MapRun::add(const PreparedFrame& frame, const MapHooks& hooks) {
   record.times.register_ms = added.register_ms;
   record.times.map_ms = added.integrate_ms;
   record.times.loop_ms = added.loop_ms;
-  if (hooks.on_motion && added.still != frame.cloud) hooks.on_motion(frame.index, *added.still);
+  tell_motion(frame.index, added.still);
 }
 
 /// For each of the frames, whether it has the same phases as the frame before it.

@@ -27,16 +27,17 @@ struct MovingPoint {
   int age = 0;  ///< number of frames since the last evidence that it moves
 };
 
+/// What a point of something that moves has for its confidence, as a mark.
+constexpr float moving_confidence = -1;
+
 /// Whether a point was found to be on something that moves. It keeps its position, up to which
-/// space is free, but has no normal, and its confidence is 0.
-inline bool moves(const SurfacePoint& point) {
-  return point.has_position() && point.confidence == 0;
-}
+/// space is free, but has no normal.
+inline bool moves(const SurfacePoint& point) { return point.confidence == moving_confidence; }
 
 /// What moves in a frame, as regions of its image and of those of keyframes.
 struct Motion {
-  /// The frame's cloud without the surface of what moves (moves()). The same object if nothing
-  /// does.
+  /// The frame's cloud without the surface of what moves (moves()), nor of what stands in front of
+  /// the background if that decided about the pose. The same object if nothing does.
   std::shared_ptr<const SurfaceCloud> still;
   std::vector<CleanedKeyframe> keyframes;  ///< those in which something moved since
   std::vector<MovingPoint> points;         ///< one for each cell of the grid that moves
@@ -56,8 +57,8 @@ struct Motion {
 /// to move still, for 15 frames after the last evidence: somebody who walks ahead of the camera, at
 /// its pace, covers what keyframes could see through.
 ///
-/// Regions are found on a coarse grid of about 1/32 rad; those of fewer than six of its cells are
-/// not believed. If more than half of what can be compared contradicts the keyframes,
+/// Regions are found on a coarse grid of about 1/32 rad; those with fewer than six cells of
+/// evidence are not believed. If more than half of what can be compared contradicts the keyframes,
 /// the pose is wrong rather than the room, and nothing is said to move.
 class MovingRegions {
  public:

@@ -47,6 +47,7 @@ struct NewFrame {
 struct LateFrame {
   int index = 0;  ///< NewFrame::index
   TrackingResult tracking;
+  std::shared_ptr<const SurfaceCloud> still;  ///< as AddedFrame::still; null if not registered
 };
 
 /// What became of a frame, and the wall-clock times of the steps.

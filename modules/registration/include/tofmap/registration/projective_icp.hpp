@@ -150,7 +150,8 @@ double overlap_share(const SurfaceCloud& source, const Pose& world_from_source,
 /// What a target would tell of the pose of a source.
 struct TargetPreview {
   double overlap = 0;  ///< as overlap_share()
-  /// As RegistrationResult::target_information, for residuals as large as predicted.
+  /// As RegistrationResult::target_information, for residuals as large as predicted, but not zero
+  /// along degenerate directions.
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
