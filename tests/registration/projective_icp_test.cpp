@@ -134,6 +134,29 @@ TEST(Registration, TellsWhichTargetConstrainsTheCamera) {
   EXPECT_GT(of_wall(5, 5), 0.1 * of_corner(5, 5)) << "towards the wall";
 }
 
+TEST(Registration, IsPreviewedForATarget) {
+  const CameraModel camera = test::small_camera();
+  const SurfaceCloud corner = test::box_cloud(camera, box_min, box_max, Pose::Identity());
+  const std::array<RegistrationTarget, 1> targets{{{&corner, Pose::Identity()}}};
+  const Pose truth = test::moved_by({0, 0, 0}, {0.05, -0.03, 0.02});
+  const SurfaceCloud source = test::box_cloud(camera, box_min, box_max, truth);
+  MotionPrior prior = loose_prior();
+  prior.world_from_camera = truth;
+  const RegistrationResult result = register_to_targets(source, targets, camera, prior, {});
+  const TargetPreview preview = preview_target(source, truth, targets[0], camera, {});
+  EXPECT_EQ(preview.overlap, overlap_share(source, truth, targets[0], camera, {}));
+  // A hundred points stand for some thousand. One in five lies at the border of the image, beyond
+  // which the target saw nothing.
+  EXPECT_NEAR(preview.overlap, result.overlap, 0.2);
+  for (int i = 0; i < 6; ++i) {
+    const double all = result.target_information[0](i, i);
+    EXPECT_GT(preview.information(i, i), 0.6 * all) << i;
+    EXPECT_LT(preview.information(i, i), 1.6 * all) << i;
+  }
+  const SurfaceCloud nothing;
+  EXPECT_EQ(preview_target(nothing, truth, targets[0], camera, {}).overlap, 0);
+}
+
 TEST(Registration, FailsWithoutOverlap) {
   const CameraModel camera = test::small_camera();
   const SurfaceCloud source = test::box_cloud(camera, box_min, box_max, Pose::Identity());

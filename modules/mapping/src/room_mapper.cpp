@@ -4,22 +4,15 @@
 #include "tofmap/mapping/room_mapper.hpp"
 
 #include "tofmap/mapping/free_space.hpp"
-#include "tofmap/mapping/loop_fit.hpp"
-#include "tofmap/mapping/slip_search.hpp"
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 #include <utility>
 
 #include <tofmap/core/timed.hpp>
 
 namespace tofmap {
 namespace {
-
-/// Smallest number of keyframes between two fits, unless a recent loop still awaits others that
-/// agree with it. Loops mostly come one after the other, and are fitted together.
-constexpr int keyframes_between_fits = 10;
 
 /// Number of failed frames with a surface after which a new map begins. A single one may be a bad
 /// frame.
@@ -48,9 +41,9 @@ bool contradicts(const RegistrationResult& one, const RegistrationResult& other)
   constexpr double least_sigmas = 6;
   const Pose& a = one.world_from_camera;
   const Pose& b = other.world_from_camera;
-  const Eigen::AngleAxisd turn(a.linear() * b.linear().transpose());
+  const Eigen::AngleAxisd rotation(a.linear() * b.linear().transpose());
   Eigen::Matrix<double, 6, 1> twist;
-  twist << turn.angle() * turn.axis(), a.translation() - b.translation();
+  twist << rotation.angle() * rotation.axis(), a.translation() - b.translation();
   double squared_sigmas = 0;
   for (const auto& information : one.target_information) {
     squared_sigmas += twist.dot(information * twist);
@@ -233,44 +226,6 @@ void RoomMapper::integrate(const SurfaceCloud& cloud) {
   submap.surface.integrate(cloud, anchor_from_keyframe * frames_.back().keyframe_from_camera);
 }
 
-/// Searches for a loop of the newest keyframe and recognises its place in other maps, once per
-/// keyframe. Fits the pose graph if there are new loops and the last fit was long enough ago.
-void RoomMapper::close_loops() {
-  if (searched_ == keyframes_.size()) return;
-  searched_ = keyframes_.size();
-  if (is_joined() && differs_from_others(keyframes_[keyframes_.size() - 1]) &&
-      ++differing_keyframes_ >= least_differing_keyframes) {
-    take_join_back();
-  }
-  recognise_place();
-  if (!loop_options_.close) return;
-  const Keyframe& keyframe = keyframes_[keyframes_.size() - 1];
-  const LoopCandidate candidate =
-      find_loop(keyframe, keyframes_.all(), keyframes_.spreads_from(keyframe.id), camera_,
-                loop_options_, registration_);
-  if (candidate.edge) {
-    const Pose& found = candidate.registration.world_from_camera;
-    add_loop(*candidate.edge,
-             (found.translation() - keyframe.world_from_camera.translation()).norm());
-  }
-  if (unfitted_loops_ > 0 &&
-      (loop_awaits_others_ || keyframe.id - last_fit_ >= keyframes_between_fits)) {
-    fit();
-  }
-}
-
-void RoomMapper::add_loop(const PoseEdge& edge, double error_m) {
-  edges_.push_back(edge);
-  loops_.push_back({.from_frame = keyframes_[edge.from].frame_index,
-                    .to_frame = keyframes_[edge.to].frame_index,
-                    .error_m = error_m});
-  ++unfitted_loops_;
-}
-
-void RoomMapper::finish() {
-  if (unfitted_loops_ > 0) fit();
-}
-
 Trajectory RoomMapper::trajectory(int map) const {
   Trajectory trajectory;
   for (const RegisteredFrame& frame : frames_) {
@@ -379,80 +334,6 @@ int RoomMapper::submap_for(int id, const Pose& pose, std::span<const Keyframe* c
   if (nearest >= 0) return nearest;
   submaps_.push_back({id, SurfaceMap(surface_options_)});
   return static_cast<int>(submaps_.size()) - 1;
-}
-
-/// Moves all keyframes, and what is known of the last frame with them.
-void RoomMapper::set_poses(std::span<const Pose> poses) {
-  const Pose current_before = keyframes_[current_].world_from_camera;
-  for (int id = 0; id < keyframes_.size(); ++id) {
-    keyframes_.set_pose(id, poses[static_cast<std::size_t>(id)]);
-  }
-  const Pose new_from_old_world = keyframes_[current_].world_from_camera * current_before.inverse();
-  odometry_.move(new_from_old_world);
-  moving_.move(new_from_old_world);
-}
-
-/// Searches for slips that explain the loops since the last fit, and mends them.
-void RoomMapper::mend_slips() {
-  std::vector<PoseEdge> loops;
-  std::ranges::copy_if(edges_, std::back_inserter(loops), &PoseEdge::may_be_wrong);
-  for (auto loop = loops.end() - unfitted_loops_; loop != loops.end(); ++loop) {
-    const auto slip =
-        find_slip(*loop, keyframes_.all(), edges_, camera_, loop_options_, registration_);
-    if (!slip) continue;
-    edges_ = without_slip(edges_, *slip);
-    set_poses(fit_loops(keyframes_.all(), edges_, loop_options_).poses);
-    rebuild_submaps(slip->at);
-  }
-}
-
-/// Separates the submaps that have keyframes on both sides of a slip, which have moved relative to
-/// each other. Their surface is rebuilt from the keyframes: that of other frames cannot be told
-/// apart any more.
-void RoomMapper::rebuild_submaps(int at) {
-  std::map<int, int> later_half;  // by the index of the submap
-  for (int id = at; id < keyframes_.size(); ++id) {
-    int& submap = submap_of_[static_cast<std::size_t>(id)];
-    if (submaps_[static_cast<std::size_t>(submap)].anchor >= at) continue;
-    const auto [half, is_new] = later_half.try_emplace(submap, static_cast<int>(submaps_.size()));
-    if (is_new) submaps_.push_back({id, SurfaceMap(surface_options_)});
-    submap = half->second;
-  }
-  for (const auto& [earlier, later] : later_half) {
-    submaps_[static_cast<std::size_t>(earlier)].surface = SurfaceMap(surface_options_);
-    for (const Keyframe& keyframe : keyframes_.all()) {
-      const int submap = submap_of_[static_cast<std::size_t>(keyframe.id)];
-      if (submap != earlier && submap != later) continue;
-      const Pose anchor_from_world =
-          keyframes_[submaps_[static_cast<std::size_t>(submap)].anchor].world_from_camera.inverse();
-      submaps_[static_cast<std::size_t>(submap)].surface.integrate(
-          *keyframe.cloud, anchor_from_world * keyframe.world_from_camera);
-    }
-  }
-}
-
-void RoomMapper::fit() {
-  mend_slips();
-  const LoopFit fitted = fit_loops(keyframes_.all(), edges_, loop_options_);
-  set_poses(fitted.poses);
-  loop_awaits_others_ = false;
-  auto loop = loops_.begin();
-  for (std::size_t i = 0; i < edges_.size(); ++i) {
-    if (!edges_[i].may_be_wrong) continue;
-    loop->mahalanobis_distance = fitted.edge_mahalanobis[i];
-    loop->is_used = fitted.is_used[i];
-    if (!loop->is_used && edges_[i].to + keyframes_between_fits >= keyframes_.size()) {
-      loop_awaits_others_ = true;
-    }
-    // The relative pose of both ends is now correct, so frames may be registered with either.
-    if (loop->is_used) {
-      keyframes_.connect(edges_[i].from, edges_[i].to, spread_of(edges_[i].covariance));
-    }
-    ++loop;
-  }
-  keyframes_.reconnect();
-  unfitted_loops_ = 0;
-  last_fit_ = keyframes_.size() - 1;
 }
 
 }  // namespace tofmap
