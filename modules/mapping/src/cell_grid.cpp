@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "cell_grid.hpp"
+
 #include "keyframe_view.hpp"
 #include "tofmap/mapping/moving_regions.hpp"
 
