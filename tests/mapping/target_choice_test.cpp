@@ -89,7 +89,8 @@ TEST_F(TargetChoice, TakesTheLargestOverlapForASingleTarget) {
 
 TEST_F(TargetChoice, GivesNoPlaceToOneThatOverlapsTooLittle) {
   options_.min_target_overlap = 0.4;
-  std::rotate(keyframes_.begin(), keyframes_.begin() + 1, keyframes_.end());  // the newest needs no overlap
+  std::rotate(keyframes_.begin(), keyframes_.begin() + 1,
+              keyframes_.end());  // the newest needs no overlap
   EXPECT_EQ(chosen(is_anything), (std::vector{3, 2, 1}));
 }
 

@@ -17,12 +17,11 @@ namespace tofmap {
 /// pixel that it projects into and at the eight pixels around, each time by more than `margin_m`
 /// plus three standard deviations of the surface along its normal. A keyframe's point without a
 /// normal counts by its range alone, and only if its wrap count is nearly certain or if it is on
-/// something that moves (moves()). Up to three of the nine pixels
-/// may have no range, but not the one in the middle. The keyframe agrees with the point if the
-/// point lies within that distance of the surface at its pixel. A point is removed if more
-/// keyframes see through it than agree with it, or if at least three see through it after the last
-/// one that agrees: it is gone. `keyframes` are in the order of time. The result is the same for
-/// any number of threads.
+/// something that moves (moves()). Up to three of the nine pixels may have no range, but not the
+/// one in the middle. The keyframe agrees with the point if the point lies within that distance of
+/// the surface at its pixel. A point is removed if more keyframes see through it than agree with
+/// it, or if at least three see through it after the last one that agrees: it is gone. `keyframes`
+/// are in the order of time. The result is the same for any number of threads.
 MapCloud without_free_space_violations(const MapCloud& map, std::span<const Keyframe> keyframes,
                                        const CameraModel& camera, double margin_m);
 
