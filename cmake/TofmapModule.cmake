@@ -1,9 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Headers to precompile, which nearly all files include directly or indirectly.
-set(tofmap_common_headers <algorithm> <filesystem> <functional> <string> <vector> <Eigen/Geometry>)
-
 # Sets the compiler flags of a target of the project. They are private, except those that a
 # sanitizer or coverage needs in all targets.
 function(tofmap_private_flags target)
@@ -46,10 +43,28 @@ function(tofmap_private_flags target)
     target_compile_options(${target} PRIVATE --coverage -fprofile-update=atomic)
     target_link_options(${target} PUBLIC --coverage)
   endif()
-  if(TOFMAP_PRECOMPILE_HEADERS)
-    target_precompile_headers(${target} PRIVATE ${tofmap_common_headers})
+endfunction()
+
+# tofmap_precompile(TARGET HEADERS <header> …): precompiles these headers for a target, and those
+# that nearly all files include directly or indirectly.
+# tofmap_precompile(TARGET LIKE OTHER): uses what was precompiled for another target, which takes no
+# time. Both must have the same flags for position-independent code, optimisation and OpenMP.
+# Does nothing unless TOFMAP_PRECOMPILE_HEADERS is set.
+function(tofmap_precompile target)
+  cmake_parse_arguments(PRECOMPILE "" "LIKE" "HEADERS" ${ARGN})
+  if(NOT TOFMAP_PRECOMPILE_HEADERS)
+    return()
+  endif()
+  if(PRECOMPILE_LIKE)
+    target_precompile_headers(${target} REUSE_FROM ${PRECOMPILE_LIKE})
+  else()
+    target_precompile_headers(${target} PRIVATE <algorithm> <filesystem> <functional> <string>
+      <vector> <Eigen/Geometry> ${PRECOMPILE_HEADERS})
   endif()
 endfunction()
+
+# Those of PCL take a second or two in each file.
+set(tofmap_pcl_headers <pcl/point_cloud.h> <pcl/point_types.h>)
 
 # tofmap_add_module(NAME SOURCES a.cpp … [PUBLIC lib …] [PRIVATE lib …])
 #

@@ -114,7 +114,7 @@ Judgement judgement_of(const EvaluationPageSubject& subject) {
   }
   const Verdict of_ranges = verdict_on_wraps(mean_score(scores_of(with)).wrong_wrap_percent);
   return {
-      .verdict = std::max(of_ranges, subject.warnings.empty() ? Verdict::good : Verdict::doubtful),
+      .verdict = std::max(of_ranges, subject.warnings.empty() ? Verdict::good : Verdict::warning),
       .reasons = {},
       .remarks = {}};
 }

@@ -3,6 +3,7 @@
 
 #include "support/sample_frames.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>

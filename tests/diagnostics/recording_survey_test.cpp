@@ -70,7 +70,7 @@ TEST_F(Survey, FindsNothingWrongWithAGoodRecording) {
   EXPECT_THAT(warnings_, IsEmpty());
 }
 
-TEST_F(Survey, DoubtsFrequenciesThatAreSwapped) {
+TEST_F(Survey, WarnsOfFrequenciesThatAreSwapped) {
   record({}, [](SensorModel& sensor) {
     std::swap(sensor.modulation.frequency_a_hz, sensor.modulation.frequency_b_hz);
   });
@@ -78,7 +78,7 @@ TEST_F(Survey, DoubtsFrequenciesThatAreSwapped) {
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("mixed up")));
 }
 
-TEST_F(Survey, DoubtsImagesThatDoNotBelongTogether) {
+TEST_F(Survey, WarnsOfImagesThatDoNotBelongTogether) {
   // As with a device that takes A and B in turn, and is said to deliver both in one image.
   record([](DualFrequencyFrame& frame) {
     const Eigen::Index half = frame.phase_a.rows() / 2;
@@ -89,7 +89,7 @@ TEST_F(Survey, DoubtsImagesThatDoNotBelongTogether) {
   EXPECT_THAT(warnings_, Contains(HasSubstr("different places")));
 }
 
-TEST_F(Survey, DoubtsDepthAlongTheAxis) {
+TEST_F(Survey, WarnsOfDepthAlongTheAxis) {
   const ImageF cosine = pixel_rays(Simulator(make_scene("room"), options()).sensor().camera).z;
   record([&](DualFrequencyFrame& frame) {
     frame.phase_a *= cosine;
@@ -99,7 +99,7 @@ TEST_F(Survey, DoubtsDepthAlongTheAxis) {
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("optical axis")));
 }
 
-TEST_F(Survey, DoubtsNoWallForItsNoise) {
+TEST_F(Survey, WarnsOfNoWallForItsNoise) {
   SimulatorOptions noisy = options();
   noisy.range_noise_m = 0.02;  // 5 cm at 8 m
   const Simulator simulator(test::facing_wall_scene(8, 0.5), noisy);
@@ -182,7 +182,7 @@ TEST(ErrorWarnings, BeginAtACentimetreOfPeriodicError) {
   EXPECT_THAT(warnings_about(survey), IsEmpty()) << "nothing is known";
 }
 
-TEST_F(Survey, DoubtsImagesOfOneFrequencyThatRepeat) {
+TEST_F(Survey, WarnsOfImagesOfOneFrequencyThatRepeat) {
   ImageF first;
   record([&](DualFrequencyFrame& frame) {
     if (first.size() == 0) first = frame.phase_b;
@@ -229,7 +229,7 @@ TEST_F(Survey, TellsHowMuchIsSaturated) {
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("25 % of the pixels are saturated")));
 }
 
-TEST_F(Survey, DoubtsTimesInMilliseconds) {
+TEST_F(Survey, WarnsOfTimesInMilliseconds) {
   record([](DualFrequencyFrame& frame) { frame.timestamp_s *= 1000; });
   survey();
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("seconds?")));

@@ -3,6 +3,7 @@
 
 #include "range_images.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -121,9 +121,9 @@ TEST(SmoothFilter, HearsLittleOfPixelsThatAreNotSure) {
   image.range_m.col(9) += 0.1F;  // within what noise explains
   const float believed = smoothed(image).range_m(8, 10);
   image.confidence.col(9).setConstant(0.05F);
-  const float doubted = smoothed(image).range_m(8, 10);
+  const float down_weighted = smoothed(image).range_m(8, 10);
   const float truth = plane(3).range_m(8, 10);
-  EXPECT_LT(std::abs(doubted - truth), 0.3F * std::abs(believed - truth));
+  EXPECT_LT(std::abs(down_weighted - truth), 0.3F * std::abs(believed - truth));
 }
 
 TEST(SmoothFilter, LeavesPixelsThatAreMeansAlready) {

@@ -162,7 +162,7 @@ TEST_F(BadRecording, OfIdenticalFramesCountsAsOneFrame) {
   EXPECT_EQ(read_trajectory(out_ / "trajectory.txt").size(), 1U);
 }
 
-TEST_F(BadRecording, ThatStandsStillForAWhileIsDoubted) {
+TEST_F(BadRecording, ThatStandsStillForAWhileGetsAWarning) {
   for (const std::string kind : {"phase_a", "phase_b"}) {
     fs::copy_file(sequence_ / kind / "000002.png", sequence_ / kind / "000003.png",
                   fs::copy_options::overwrite_existing);
@@ -177,7 +177,7 @@ TEST_F(BadRecording, ThatStandsStillForAWhileIsDoubted) {
   EXPECT_EQ(report["frames"][3]["repeats"], true);
 }
 
-TEST_F(BadRecording, WhoseFrequenciesCannotTellTheSceneApartIsDoubted) {
+TEST_F(BadRecording, WhoseFrequenciesCannotTellTheSceneApartGetsAWarning) {
   edit("sequence.yaml", "version: 1", "version: 1\nmax_range_m: 15.5");
   edit("sequence.yaml", "frequency_a_hz: 2.9e+07", "frequency_a_hz: 3.1e+08");
   EXPECT_THAT(run("info").out, HasSubstr("warning: the scene reaches farther"));

@@ -149,7 +149,7 @@ TEST_F(Calibrate, AsksForTheUnitOfDistancesThatNoRangeReaches) {
   EXPECT_THAT(finished.err, testing::HasSubstr("metres?"));
 }
 
-TEST_F(Calibrate, DoubtsImagesThatAreMixedUp) {
+TEST_F(Calibrate, WarnsOfImagesThatAreMixedUp) {
   fs::rename(sequence_ / "phase_a", sequence_ / "phase");
   fs::rename(sequence_ / "phase_b", sequence_ / "phase_a");
   fs::rename(sequence_ / "phase", sequence_ / "phase_b");

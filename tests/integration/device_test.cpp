@@ -3,6 +3,7 @@
 
 #include "program.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -138,7 +139,7 @@ TEST_F(Device, IsNotRecordedToAnOniFileWhereItsRecordingGoes) {
   EXPECT_FALSE(fs::exists(out_));
 }
 
-TEST_F(Device, ThatDoesNotFitItsConfigurationIsDoubted) {
+TEST_F(Device, ThatDoesNotFitItsConfigurationGetsAWarning) {
   // 30 and 90 MHz: most ranges are longer than the wavelength that is claimed.
   const Finished finished = record(uri("layout=alternating"),
                                    {"--set", "device.layout=alternating",
@@ -262,7 +263,7 @@ TEST_F(Device, WhoseLossesAreCounted) {
   EXPECT_EQ(images()["lost"], 2) << "the last one is followed by none that tells";
 }
 
-TEST_F(Device, WhoseImagesDoNotBelongTogetherIsDoubted) {
+TEST_F(Device, WhoseImagesDoNotBelongTogetherGetsAWarning) {
   // Each image is of one frequency: its upper half is no A to the B of its lower half.
   const Finished finished = record(uri("layout=alternating"), {"--set", "device.layout=stacked"});
   EXPECT_EQ(finished.status, 0) << finished.err;
@@ -271,7 +272,7 @@ TEST_F(Device, WhoseImagesDoNotBelongTogetherIsDoubted) {
   EXPECT_THAT(read_text(out_ / "report.json"), HasSubstr("device.layout"));
 }
 
-TEST_F(Device, WhoseDepthIsNoRangeIsDoubted) {
+TEST_F(Device, WhoseDepthIsNoRangeGetsAWarning) {
   const Finished finished = record(uri("layout=alternating&depth=z"),
                                    {"--set", "device.layout=alternating", "device.depth=radial"});
   EXPECT_EQ(finished.status, 0) << finished.err;

@@ -53,7 +53,7 @@ TEST_F(ReportPage, OfWrappedRangesIsNotToBeTrusted) {
   EXPECT_THAT(report["warnings"].dump(), HasSubstr("better with another wrap count"));
 }
 
-TEST_F(ReportPage, OfARightMapDoubtsNothing) {
+TEST_F(ReportPage, OfARightMapHasNoWarning) {
   const Finished finished = run("map");
   ASSERT_EQ(finished.status, 0);
   EXPECT_THAT(finished.out, Not(HasSubstr("warning")));

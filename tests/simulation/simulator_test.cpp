@@ -4,6 +4,7 @@
 #include "sample_scenes.hpp"
 #include "support/sample_frames.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <fstream>

@@ -3,6 +3,7 @@
 
 // The claims of Droeschel, Holz and Behnke (IROS 2010), section III, on simulated scenes.
 
+#include <cmath>
 #include <string>
 
 #include <gtest/gtest.h>

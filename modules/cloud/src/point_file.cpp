@@ -5,6 +5,8 @@
 
 #include "any_cloud_file.hpp"
 
+#include <cstdint>
+
 #include <pcl/conversions.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>

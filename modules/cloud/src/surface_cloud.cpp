@@ -5,6 +5,7 @@
 
 #include "plane_windows.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include <tofmap/core/error.hpp>

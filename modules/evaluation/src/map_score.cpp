@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include <Eigen/Eigenvalues>
 #include <pcl/kdtree/impl/kdtree_flann.hpp>

@@ -5,6 +5,7 @@
 
 #include "size_check.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>

@@ -5,6 +5,7 @@
 #include "tofmap/registration/global_alignment.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <pcl/features/fpfh_omp.h>
 #include <pcl/kdtree/kdtree_flann.h>

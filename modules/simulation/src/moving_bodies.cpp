@@ -6,6 +6,8 @@
 #include "door_sites.hpp"
 #include "people.hpp"
 
+#include <algorithm>
+
 #include <tofmap/simulation/simulator.hpp>
 
 namespace tofmap {

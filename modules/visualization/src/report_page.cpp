@@ -77,8 +77,8 @@ VerdictWords words_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::good:
       return {"good", "Looks right."};
-    case Verdict::doubtful:
-      return {"doubtful", "Check this result."};
+    case Verdict::warning:
+      return {"warning", "Check this result."};
     case Verdict::bad:
       break;
   }
