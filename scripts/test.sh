@@ -11,7 +11,7 @@ build=${BUILD_DIR:-build}
 export CCACHE_SLOPPINESS=pch_defines,time_macros  # without which it keeps nothing that is precompiled
 
 cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-  -DTOFMAP_BUILD_TESTS=ON -DTOFMAP_WARNINGS_AS_ERRORS=ON -DTOFMAP_PRECOMPILE_HEADERS=ON \
+  -DTOFMAP_BUILD_TESTS=ON -DTOFMAP_WARNINGS_AS_ERRORS=ON -DTOFMAP_PRECOMPILE_HEADERS=ON -DCMAKE_UNITY_BUILD=ON \
   -DTOFMAP_DEBIAN_PACKAGES=ON -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
 cmake --build "$build"
 ctest --test-dir "$build" --output-on-failure -j "$(nproc)"

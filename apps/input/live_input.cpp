@@ -17,8 +17,8 @@
 namespace tofmap::app {
 namespace {
 
-OpenNi2Source::Settings settings_of(const ProgramOptions& options,
-                                    const LiveInput::Wanted& wanted) {
+OpenNi2Source::Settings camera_settings(const ProgramOptions& options,
+                                        const LiveInput::Wanted& wanted) {
   return {.options = options.device,
           .calibration = calibration_of(options.camera),
           .oni_file = wanted.oni_file,
@@ -72,7 +72,7 @@ std::vector<OptionField<LiveOptions>> LiveOptions::fields() {
 LiveInput::LiveInput(const std::string& uri, const ProgramOptions& options, const Wanted& wanted)
     : uri_(uri),
       timeout_s_(options.device.timeout_s),
-      source_(uri, settings_of(options, wanted)),
+      source_(uri, camera_settings(options, wanted)),
       queue_(source_, options.live.queue, policy(options.live, source_)),
       watched_(queue_) {}
 

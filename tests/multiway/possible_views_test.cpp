@@ -12,7 +12,7 @@ namespace tofmap {
 namespace {
 
 /// What a camera sees of a room that turns on the spot, in the frame of its first pose.
-PointSet room_scan() {
+PointSet scan_all_round() {
   const Scene scene = make_scene("room");
   const RayScene rays(scene.surface);
   PointSet all;
@@ -37,7 +37,7 @@ Views views_of(const PointSet& cloud) {
 }
 
 TEST(PossibleViews, IncludeOneFromNearTheSensor) {
-  const auto [views, sensor_m] = views_of(room_scan());
+  const auto [views, sensor_m] = views_of(scan_all_round());
   ASSERT_FALSE(views.empty());
   double nearest_m = 100;
   for (const SphericalView& view : views) {
@@ -48,7 +48,7 @@ TEST(PossibleViews, IncludeOneFromNearTheSensor) {
 
 TEST(PossibleViews, AreTheOneOfTheSensorIfThatIsKnown) {
   const auto levels =
-      make_levels(room_scan(), {SensorSource::given, Eigen::Vector3d(1, 0, 0)}, 1, 0.1);
+      make_levels(scan_all_round(), {SensorSource::given, Eigen::Vector3d(1, 0, 0)}, 1, 0.1);
   ASSERT_EQ(levels->views.size(), 1U);
   EXPECT_LT((levels->views.front().from_m() + levels->centre_m - Eigen::Vector3d(1, 0, 0)).norm(),
             1e-9);

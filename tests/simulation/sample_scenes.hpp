@@ -29,6 +29,16 @@ inline Scene facing_wall_scene(double range_m, double reflectance, double walk_m
   return scene;
 }
 
+/// A wall at 4 m behind one at 2 m, whose edge runs down the middle of the image. The camera is
+/// turned by the angle of which `slope` is the tangent, so that the edge passes through pixels.
+inline Scene edge_scene(double slope) {
+  Scene scene = facing_wall_scene(4, 0.8);
+  add_facing_wall(scene.surface, 2, 0.2, 0.0);
+  const Eigen::Vector3d ahead(1, slope, 0);
+  scene.path = CameraPath({{{0, 0.0, 0}, ahead}, {{0, 0.0, 0}, ahead}}, false);
+  return scene;
+}
+
 /// A small camera without noise, mixed pixels, or motion between A and B.
 inline SimulatorOptions ideal_camera() {
   SimulatorOptions options;

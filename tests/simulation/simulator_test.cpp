@@ -188,16 +188,6 @@ TEST(Simulator, NoiseIsComplexGaussianAndIndependentBetweenImages) {
   EXPECT_NEAR((radial_a.leftCols(cols - 1) * radial_a.rightCols(cols - 1)).mean(), 0, 0.03);
 }
 
-/// A wall at 4 m behind one at 2 m, whose edge runs down the middle of the image.
-Scene edge_scene() {
-  Scene scene = test::facing_wall_scene(4, 0.8);
-  test::add_facing_wall(scene.surface, 2, 0.2, 0.0);
-  // Turned a little, so that the edge passes through pixels at every offset.
-  const Eigen::Vector3d ahead(1, 0.003, 0);
-  scene.path = CameraPath({{{0, 0.0, 0}, ahead}, {{0, 0.0, 0}, ahead}}, false);
-  return scene;
-}
-
 int count_between(const ImageF& phase, double low, double high) {
   return static_cast<int>(
       (phase > static_cast<float>(low) && phase < static_cast<float>(high)).count());
@@ -209,9 +199,9 @@ TEST(Simulator, PixelsOnAnEdgeFlyBetweenBothSurfaces) {
   // From 2.7 m (the image's corner on the near wall) to the far one, in cycles of A.
   const double low = 2.75 / 5.1688;
   const double high = 3.95 / 5.1688;
-  const Simulator averaging(edge_scene(), options);
+  const Simulator averaging(test::edge_scene(0.003), options);
   EXPECT_GT(count_between(averaging.simulate(0).frame.phase_a, low, high), 100);
-  const Simulator pinpoint(edge_scene(), plain_options());
+  const Simulator pinpoint(test::edge_scene(0.003), plain_options());
   EXPECT_EQ(count_between(pinpoint.simulate(0).frame.phase_a, low, high), 0);
 }
 

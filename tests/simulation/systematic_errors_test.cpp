@@ -247,26 +247,17 @@ TEST(PhaseBits, RoundPhasesToSoManyLevelsACycle) {
   }
 }
 
-/// A wall at 4 m behind one at 2 m, whose edge runs through pixels of the image's middle.
-Scene edge_scene() {
-  Scene scene = test::facing_wall_scene(4, 0.8);
-  test::add_facing_wall(scene.surface, 2, 0.2, 0.0);
-  const Eigen::Vector3d ahead(1, 0.015, 0);
-  scene.path = CameraPath({{{0, 0.0, 0}, ahead}, {{0, 0.0, 0}, ahead}}, false);
-  return scene;
-}
-
 TEST(Labels, AreThoseOfThePixelWithoutItsSystematicErrors) {
   SimulatorOptions options = test::ideal_camera();
   options.subpixels = 4;
-  const ImageU8 plain = Simulator(edge_scene(), options).simulate(0).label;
+  const ImageU8 plain = Simulator(test::edge_scene(0.015), options).simulate(0).label;
   ASSERT_GT((plain == static_cast<std::uint8_t>(PixelLabel::flying)).count(), 5);
   options.offset_a_m = 0.2;
   options.periodic_a_m = 0.1;
   options.amplitude_error_a_m = 0.05;
   options.fixed_pattern_m = 0.02;
   options.phase_bits = 4;
-  EXPECT_TRUE((Simulator(edge_scene(), options).simulate(0).label == plain).all());
+  EXPECT_TRUE((Simulator(test::edge_scene(0.015), options).simulate(0).label == plain).all());
 }
 
 TEST(SystematicErrors, RefuseWhatHasNoEffect) {

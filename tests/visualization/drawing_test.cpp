@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include "pixel_count.hpp"
+
 #include <algorithm>
 #include <cstdlib>
 
@@ -12,11 +14,8 @@
 namespace tofmap {
 namespace {
 
-constexpr Rgb red{255, 0, 0};
-
-int count(const Picture& picture, Rgb color) {
-  return static_cast<int>(std::ranges::count(picture.pixels, color));
-}
+using test::count;
+using test::red;
 
 int count_not_white(const Picture& picture) {
   return static_cast<int>(picture.pixels.size()) - count(picture, colors::white);

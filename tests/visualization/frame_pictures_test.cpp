@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include "pixel_count.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,9 +14,7 @@
 namespace tofmap {
 namespace {
 
-int count(const Picture& picture, Rgb color) {
-  return static_cast<int>(std::ranges::count(picture.pixels, color));
-}
+using test::count;
 
 TEST(RangePicture, ShowsBothImagesOnOneScale) {
   ImageF wrapped = ImageF::Constant(10, 20, 2);

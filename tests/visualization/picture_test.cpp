@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include "pixel_count.hpp"
+
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -15,12 +17,10 @@
 namespace tofmap {
 namespace {
 
-constexpr Rgb red{255, 0, 0};
 constexpr Rgb blue{0, 0, 255};
 
-int count(const Picture& picture, Rgb color) {
-  return static_cast<int>(std::ranges::count(picture.pixels, color));
-}
+using test::count;
+using test::red;
 
 TEST(Picture, ThatIsPastedOverTheBorderIsCutOff) {
   Picture picture(4, 3);

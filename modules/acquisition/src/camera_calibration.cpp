@@ -19,8 +19,8 @@
 namespace tofmap {
 namespace {
 
-constexpr const char* format_name = "tofmap-camera";
-constexpr int format_version = 1;
+constexpr const char* calibration_format = "tofmap-camera";
+constexpr int calibration_version = 1;
 
 double wrapped(double cycles) { return cycles - std::floor(cycles); }
 
@@ -212,7 +212,7 @@ double PhaseError::at_m(double phase_cycles) const {
 
 CameraCalibration read_calibration(const std::filesystem::path& file) {
   const YamlSection root = load_yaml(file, "'tofmap calibrate' writes such a file");
-  check_format(root, format_name, format_version);
+  check_format(root, calibration_format, calibration_version);
   root.allow_only({"format", "version", "calibrated_with", "camera", "error_a", "error_b",
                    "saturation_amplitude"});
   CameraCalibration calibration;
@@ -241,7 +241,7 @@ CameraCalibration read_calibration(const std::filesystem::path& file) {
 
 bool is_calibration(const std::filesystem::path& file) {
   try {
-    check_format(load_yaml(file, ""), format_name, format_version);
+    check_format(load_yaml(file, ""), calibration_format, calibration_version);
     return true;
   } catch (const InputError&) {
     return false;
@@ -252,7 +252,7 @@ void write_calibration(const std::filesystem::path& file, const CameraCalibratio
                        const std::string& comment) {
   std::ofstream out(file);
   if (!comment.empty()) out << "# " << one_line(comment) << '\n';
-  out << "format: " << format_name << "\nversion: " << format_version << '\n';
+  out << "format: " << calibration_format << "\nversion: " << calibration_version << '\n';
   if (calibration.with) {
     const CalibratedWith& with = *calibration.with;
     out << "calibrated_with: {width: " << with.width_px << ", height: " << with.height_px

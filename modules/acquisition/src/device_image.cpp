@@ -7,7 +7,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -185,7 +184,6 @@ ImageF DeviceImageCodec::decode_range(const Eigen::Ref<const ImageU16>& range,
   if (!same_size(range, steps_per_m_)) throw UsageError("an image does not have the camera's size");
   return range.cast<float>().binaryExpr(
       steps_per_m_, [wavelength_m](float steps, float steps_per_m) {
-        constexpr float nan = std::numeric_limits<float>::quiet_NaN();
         if (steps == 0) return nan;
         const double wavelength_steps = wavelength_m * double{steps_per_m};
         if (double{steps} > std::round(wavelength_steps)) return nan;

@@ -26,8 +26,6 @@ namespace {
 // Each function below that calls setjmp therefore holds plain pointers only; files, rows and
 // messages live in its caller.
 
-constexpr png_uint_32 max_side_px = 16384;  // a damaged header must not ask for terabytes
-
 struct Closer {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
@@ -77,7 +75,7 @@ struct Writer {
 bool read_header(Reader& reader, std::FILE* file) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
   png_init_io(reader.png, file);
-  png_set_user_limits(reader.png, max_side_px, max_side_px);
+  png_set_user_limits(reader.png, max_image_side_px, max_image_side_px);
   png_read_info(reader.png, reader.info);
   return true;
 }
@@ -153,10 +151,10 @@ Image<Pixel> read_png(const std::filesystem::path& path) {
 
 template <class Pixel>
 void write_png_image(const std::filesystem::path& path, const Image<Pixel>& image) {
-  if (image.size() == 0 || image.rows() > max_side_px || image.cols() > max_side_px) {
+  if (image.size() == 0 || image.rows() > max_image_side_px || image.cols() > max_image_side_px) {
     throw UsageError(path.string() + ": an image of " + std::to_string(image.cols()) + " x " +
                      std::to_string(image.rows()) + " pixels cannot be written as PNG; allowed: " +
-                     "1 to " + std::to_string(max_side_px) + " pixels per side");
+                     "1 to " + std::to_string(max_image_side_px) + " pixels per side");
   }
   const auto fail = [&](const std::string& why) -> void {
     throw InputError(path.string() + ": cannot be written: " + why);

@@ -10,8 +10,8 @@
 namespace tofmap {
 namespace {
 
-constexpr const char* format_name = "tofmap-sequence";
-constexpr int format_version = 1;
+constexpr const char* sequence_format = "tofmap-sequence";
+constexpr int sequence_version = 1;
 
 Modulation read_modulation(const YamlSection& section) {
   section.allow_only({"frequency_a_hz", "frequency_b_hz"});
@@ -20,7 +20,7 @@ Modulation read_modulation(const YamlSection& section) {
 }
 
 SensorModel read_sensor(const YamlSection& root) {
-  check_format(root, format_name, format_version);
+  check_format(root, sequence_format, sequence_version);
   root.allow_only({"format", "version", "camera", "modulation", "max_range_m"});
   SensorModel sensor;
   sensor.camera = read_camera(root.section("camera"));
@@ -48,7 +48,7 @@ SensorModel read_sequence_header(const std::filesystem::path& file) {
 
 std::string sequence_header_text(const SensorModel& sensor) {
   std::string text =
-      std::string("format: ") + format_name + "\nversion: " + std::to_string(format_version) +
+      std::string("format: ") + sequence_format + "\nversion: " + std::to_string(sequence_version) +
       "\ncamera:\n" + camera_text(sensor.camera) +
       "modulation:\n  frequency_a_hz: " + shortest(sensor.modulation.frequency_a_hz) +
       "\n  frequency_b_hz: " + shortest(sensor.modulation.frequency_b_hz) + '\n';

@@ -19,7 +19,6 @@
 namespace tofmap {
 namespace {
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint16_t no_return = 65535;
 
 /// A path of frames.txt. Throws InputError if it leads out of the folder of the sequence.

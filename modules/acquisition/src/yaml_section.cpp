@@ -3,6 +3,8 @@
 
 #include "yaml_section.hpp"
 
+#include "tofmap/acquisition/png_image.hpp"
+
 #include <charconv>
 #include <sstream>
 
@@ -13,7 +15,6 @@ namespace tofmap {
 namespace {
 
 /// Largest width and height of a camera.
-constexpr int max_side_px = 16384;
 
 }  // namespace
 
@@ -46,9 +47,9 @@ CameraModel read_camera(const YamlSection& section) {
   CameraModel camera;
   camera.width_px = section.value<int>("width", "a whole number of pixels");
   camera.height_px = section.value<int>("height", "a whole number of pixels");
-  if (camera.width_px > max_side_px || camera.height_px > max_side_px) {
+  if (camera.width_px > max_image_side_px || camera.height_px > max_image_side_px) {
     section.fail(section.key("width and height"),
-                 "must be at most " + std::to_string(max_side_px) + " pixels");
+                 "must be at most " + std::to_string(max_image_side_px) + " pixels");
   }
   camera.fx_px = section.value<double>("fx", pixels);
   camera.fy_px = section.value<double>("fy", pixels);

@@ -6,14 +6,11 @@
 #include "any_cloud_file.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <pcl/conversions.h>
 
 namespace tofmap {
 namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 MapCloud map_without_normals(const std::vector<Eigen::Vector3d>& positions) {
   MapCloud map;

@@ -13,8 +13,6 @@
 namespace tofmap {
 namespace {
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
 /// Pixels of a row, starting at some column.
 struct Pixels {
   const float* q;

@@ -6,14 +6,11 @@
 #include "plane_windows.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include <tofmap/core/error.hpp>
 
 namespace tofmap {
 namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 SurfacePoint point_on_ray(const PixelRays& rays, int row, int col, float range_m) {
   SurfacePoint point;

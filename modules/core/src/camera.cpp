@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include <Eigen/LU>
@@ -14,8 +13,6 @@
 
 namespace tofmap {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Limits of plausible cameras. Largest focal length, in units of the longer side of the image.
 constexpr double most_sides_of_focal_length = 120;
@@ -66,12 +63,12 @@ Eigen::Vector2d undistort(const std::array<double, 5>& k, const Eigen::Vector2d&
   for (int i = 0; i < max_iterations; ++i) {
     const Distorted d = distort(k, p);
     // Beyond the fold of the radial polynomial, the iteration would find another branch.
-    if (d.jacobian.determinant() <= 0) return {nan, nan};
+    if (d.jacobian.determinant() <= 0) return Eigen::Vector2d::Constant(nan);
     const Eigen::Vector2d error = d.point - distorted;
     if (error.squaredNorm() < tolerance * tolerance) return p;
     p -= d.jacobian.inverse() * error;
   }
-  return {nan, nan};
+  return Eigen::Vector2d::Constant(nan);
 }
 
 }  // namespace

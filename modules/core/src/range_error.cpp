@@ -4,14 +4,11 @@
 #include "tofmap/core/range_error.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
 namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// Fills `sigma` for `count` pixels. `scale` is c of PhaseNoise, `ambient` is m, and
 /// `rounding_variance` is q² / 12.

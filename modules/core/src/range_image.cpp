@@ -3,14 +3,8 @@
 
 #include "tofmap/core/range_image.hpp"
 
-#include <limits>
-
 namespace tofmap {
-namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
-}  // namespace
+namespace {}  // namespace
 
 const char* reason_name(InvalidReason reason) {
   switch (reason) {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
@@ -20,8 +19,6 @@
 
 namespace tofmap {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : nan; }
 

@@ -4,14 +4,11 @@
 #include "tofmap/evaluation/range_score.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <tofmap/core/error.hpp>
 
 namespace tofmap {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double share_percent(std::int64_t part, std::int64_t whole) {
   return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : nan;

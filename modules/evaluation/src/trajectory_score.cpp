@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
 
 #include <Eigen/Geometry>
+
+#include <tofmap/core/image.hpp>
 
 namespace tofmap {
 namespace {
@@ -85,7 +86,6 @@ void score_relative(const Matched& matched, const std::vector<double>& lengths,
     degrees2 += degrees * degrees;
     ++count;
   }
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   score.rpe_rmse_m_per_m = count > 0 ? std::sqrt(metres2 / count) : nan;
   score.rpe_rmse_deg_per_m = count > 0 ? std::sqrt(degrees2 / count) : nan;
 }

@@ -8,14 +8,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
 namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// Lower limit of the standard deviation of a range, relative to the range: 0.1 mm per metre.
 constexpr float least_relative_sigma = 1e-4F;

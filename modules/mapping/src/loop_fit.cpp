@@ -16,7 +16,7 @@ namespace tofmap {
 namespace {
 
 /// Smallest number of loops that must agree to move the path.
-constexpr std::ptrdiff_t least_agreeing = 3;
+constexpr std::ptrdiff_t least_agreeing_loops = 3;
 
 /// Two loops agree within this many standard deviations.
 constexpr double most_sigmas = 2;
@@ -60,7 +60,7 @@ bool is_supported(const PoseEdge& loop, const Loops& loops, std::span<const Keyf
   if (moved_m <= KeyframeGraph::well_connected_sigma_m) return true;
   return std::ranges::count_if(loops, [&](const PoseEdge* other) {
            return agree(loop, *other, keyframes, options);
-         }) >= least_agreeing;
+         }) >= least_agreeing_loops;
 }
 
 /// Edges for the second fit: `loops`, and the edges of odometry with covariances increased so that

@@ -12,7 +12,7 @@ namespace tofmap {
 namespace {
 
 /// Number of keyframes that must recognise the same place.
-constexpr std::size_t least_agreeing = 3;
+constexpr std::size_t least_agreeing_keyframes = 3;
 
 std::size_t recognised_keyframes(const std::vector<const PoseEdge*>& edges) {
   std::set<int> keyframes;
@@ -34,8 +34,8 @@ std::optional<MapJoin> find_join(std::span<const PoseEdge> recognitions, int map
   std::optional<MapJoin> best;
   for (const auto& [into, edges] : by_map) {
     const auto agreeing = most_that_agree(edges, keyframes, options);
-    const bool is_sure =
-        recognised_keyframes(agreeing) >= least_agreeing && 2 * agreeing.size() > edges.size();
+    const bool is_sure = recognised_keyframes(agreeing) >= least_agreeing_keyframes &&
+                         2 * agreeing.size() > edges.size();
     if (!is_sure || (best && agreeing.size() <= best->edges.size())) continue;
     const PoseEdge& first = *agreeing.front();
     best = MapJoin{.into = into,

@@ -12,7 +12,7 @@
 namespace tofmap {
 namespace {
 
-constexpr int reach = 2;
+constexpr int reach_voxels = 2;
 
 using Cell = std::array<int, 3>;
 
@@ -32,10 +32,10 @@ VoxelNeighbours::VoxelNeighbours(std::span<const Eigen::Vector3f> points_m, doub
   starts_.push_back(0);
   for (int i = 0; i < static_cast<int>(points_m.size()); ++i) {
     const auto [x, y, z] = cell_of(points_m[static_cast<std::size_t>(i)], voxel_m);
-    for (int dx = -reach; dx <= reach; ++dx) {
-      for (int dy = -reach; dy <= reach; ++dy) {
-        const Cell last{x + dx, y + dy, z + reach};
-        auto at = std::ranges::lower_bound(cells, Cell{x + dx, y + dy, z - reach},
+    for (int dx = -reach_voxels; dx <= reach_voxels; ++dx) {
+      for (int dy = -reach_voxels; dy <= reach_voxels; ++dy) {
+        const Cell last{x + dx, y + dy, z + reach_voxels};
+        auto at = std::ranges::lower_bound(cells, Cell{x + dx, y + dy, z - reach_voxels},
                                            std::ranges::less(), &std::pair<Cell, int>::first);
         for (; at != cells.end() && at->first <= last; ++at) {
           if (at->second != i) indices_.push_back(at->second);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include <tofmap/mapping/moving_regions.hpp>
 
@@ -25,7 +24,6 @@ std::size_t fitting_frames(const CameraModel& camera, std::size_t wanted) {
 /// Mean number of curl violations over the frames that were unwrapped. NaN if there are none, or if
 /// the method estimates no phase jumps.
 double curl_violations_per_frame(const RoomMap& map, UnwrapMethod method) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   if (!finds_jumps(method)) return nan;
   double sum = 0;
   int frames = 0;

@@ -7,7 +7,6 @@
 #include "sensor_effects.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <string>
 
@@ -17,8 +16,6 @@
 
 namespace tofmap {
 namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 void read_image(const ImageC& ideal, const SensorReadout& readout, ImageF& phase,
                 ImageF& amplitude) {

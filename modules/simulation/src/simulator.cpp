@@ -25,8 +25,6 @@
 namespace tofmap {
 namespace {
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
 SensorModel sensor_model(const SimulatorOptions& options) {
   SensorModel sensor;
   CameraModel& camera = sensor.camera;

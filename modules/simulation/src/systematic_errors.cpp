@@ -15,7 +15,7 @@
 namespace tofmap {
 namespace {
 
-constexpr double two_pi = 2 * std::numbers::pi;
+constexpr double rad_per_cycle = 2 * std::numbers::pi;
 
 /// The error that depends on amplitude is zero at this amplitude (a white wall at 0.3 m), and
 /// reaches its full size this many decades below it.
@@ -34,8 +34,8 @@ struct ErrorSizes {
 std::vector<WiggleHarmonic> drawn_harmonics(double peak_m, std::uint64_t key) {
   if (peak_m == 0) return {};
   const double share = 0.2 + 0.6 * share_of(key);
-  const double second = two_pi * share_of(key + 1);
-  const double fourth = two_pi * share_of(key + 2);
+  const double second = rad_per_cycle * share_of(key + 1);
+  const double fourth = rad_per_cycle * share_of(key + 2);
   PhaseError shape{
       .harmonics = {{2, share * std::sin(second), share * std::cos(second)},
                     {4, (1 - share) * std::sin(fourth), (1 - share) * std::cos(fourth)}}};
@@ -74,7 +74,7 @@ bool RangeErrors::are_none() const {
 }
 
 double RangeErrors::at_m(const std::complex<double>& signal, std::size_t pixel) const {
-  double error_m = of_phase.at_m(std::arg(signal) / two_pi);
+  double error_m = of_phase.at_m(std::arg(signal) / rad_per_cycle);
   if (dark_end_m != 0) {
     const double darker = std::log10(bright_end / std::max(std::abs(signal), 1.0)) / decades;
     error_m += dark_end_m * std::clamp(darker, 0.0, 1.0);
@@ -86,7 +86,7 @@ double RangeErrors::at_m(const std::complex<double>& signal, std::size_t pixel) 
 std::complex<double> RangeErrors::rotation(const std::complex<double>& signal,
                                            std::size_t pixel) const {
   if (are_none()) return 1;
-  return std::polar(1.0, two_pi * at_m(signal, pixel) / wavelength_m);
+  return std::polar(1.0, rad_per_cycle * at_m(signal, pixel) / wavelength_m);
 }
 
 RangeErrors range_errors_a(const SimulatorOptions& options, const Modulation& modulation) {

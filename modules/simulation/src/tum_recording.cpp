@@ -22,8 +22,6 @@
 namespace tofmap {
 namespace {
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
 /// Truth images hold millimetres in 16 bits.
 constexpr float longest_range_m = 65.5F;
 

@@ -14,7 +14,6 @@ namespace {
 
 constexpr int panel_width_px = 640;
 constexpr int panel_height_px = 480;
-constexpr int gap_px = 16;
 constexpr Rgb untouched{60, 90, 130};
 
 /// The field of view of the camera as a pyramid of depth `depth_m` with its tip at the camera.
@@ -89,14 +88,14 @@ Picture cloud_picture(const RangeImage& unwrapped, const ImageF& wrapped_m, cons
     };
     return beside({panel(frame_viewpoint_left(unwrapped.range_m, rays), ", from the left"),
                    panel(frame_viewpoint_above(unwrapped.range_m, rays), ", from above")},
-                  gap_px);
+                  picture_gap_px);
   };
   const Picture key =
       color_key({{untouched, "within one wavelength"}, {colors::corrected, "moved by unwrapping"}});
   return with_margin(stacked({row(wrapped_m, "without unwrapping"),
                               row(unwrapped.range_m, "with unwrapping"), key},
-                             gap_px),
-                     gap_px);
+                             picture_gap_px),
+                     picture_gap_px);
 }
 
 }  // namespace tofmap

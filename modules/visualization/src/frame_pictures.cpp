@@ -12,8 +12,6 @@
 namespace tofmap {
 namespace {
 
-constexpr int gap_px = 16;
-
 /// A picture whose pixels have the colours `color(row, column)`, magnified by a whole number to
 /// about `wanted_width_px`, or not at all if the image is larger.
 template <class Color>
@@ -41,10 +39,10 @@ Picture range_picture(const ImageF& wrapped_m, const ImageF& unwrapped_m) {
   };
   const Picture wrapped = titled(panel(wrapped_m), "wrapped");
   const Picture unwrapped = titled(panel(unwrapped_m), "unwrapped");
-  const Picture legend = stacked({color_bar(scale, wrapped.height_px - 3 * gap_px),
+  const Picture legend = stacked({color_bar(scale, wrapped.height_px - 3 * picture_gap_px),
                                   color_key({{colors::invalid, "no range"}})},
-                                 gap_px);
-  return with_margin(beside({wrapped, unwrapped, legend}, gap_px), gap_px);
+                                 picture_gap_px);
+  return with_margin(beside({wrapped, unwrapped, legend}, picture_gap_px), picture_gap_px);
 }
 
 Picture wrap_count_picture(const ImageU8& wrap_count) {
@@ -60,7 +58,8 @@ Picture wrap_count_picture(const ImageU8& wrap_count) {
     entries.push_back({wrap_count_color(count), std::to_string(count)});
   }
   entries.push_back({colors::invalid, "no range"});
-  return with_margin(beside({titled(panel, "wrap count"), color_key(entries)}, gap_px), gap_px);
+  return with_margin(beside({titled(panel, "wrap count"), color_key(entries)}, picture_gap_px),
+                     picture_gap_px);
 }
 
 Picture confidence_picture(const RangeImage& unwrapped) {
@@ -72,10 +71,10 @@ Picture confidence_picture(const RangeImage& unwrapped) {
                                                           : colors::invalid;
                                              }),
                                "confidence of the wrap count");
-  const Picture legend = stacked(
-      {color_bar(scale, panel.height_px - 3 * gap_px), color_key({{colors::invalid, "no range"}})},
-      gap_px);
-  return with_margin(beside({panel, legend}, gap_px), gap_px);
+  const Picture legend = stacked({color_bar(scale, panel.height_px - 3 * picture_gap_px),
+                                  color_key({{colors::invalid, "no range"}})},
+                                 picture_gap_px);
+  return with_margin(beside({panel, legend}, picture_gap_px), picture_gap_px);
 }
 
 Picture method_picture(const std::vector<MethodRanges>& methods, const ImageF& truth_m,
@@ -106,15 +105,15 @@ Picture method_picture(const std::vector<MethodRanges>& methods, const ImageF& t
                                    {wrap_errors::too_near, "too near, by one wrap or more"},
                                    {wrap_errors::too_far, "too far"},
                                    {colors::invalid, "above: no range"}});
-    columns.push_back(stacked({titled(range_panel(truth_m), "truth"), key}, gap_px));
+    columns.push_back(stacked({titled(range_panel(truth_m), "truth"), key}, picture_gap_px));
   }
   for (const MethodRanges& method : methods) {
     std::vector<Picture> panels{titled(range_panel(method.range_m), method.title)};
     if (has_truth) panels.push_back(error_panel(method.range_m));
-    columns.push_back(stacked(panels, gap_px));
+    columns.push_back(stacked(panels, picture_gap_px));
   }
   columns.push_back(color_bar(scale, columns.back().height_px / 2));
-  return with_margin(beside(columns, gap_px), gap_px);
+  return with_margin(beside(columns, picture_gap_px), picture_gap_px);
 }
 
 Picture filter_picture(const std::vector<FilteredRanges>& images) {
@@ -141,9 +140,9 @@ Picture filter_picture(const std::vector<FilteredRanges>& images) {
     entries.push_back({reason_color(reason), reason_name(reason)});
   }
   entries.push_back({colors::invalid, "no range"});
-  columns.push_back(
-      stacked({color_bar(scale, columns.front().height_px / 2), color_key(entries)}, gap_px));
-  return with_margin(beside(columns, gap_px), gap_px);
+  columns.push_back(stacked({color_bar(scale, columns.front().height_px / 2), color_key(entries)},
+                            picture_gap_px));
+  return with_margin(beside(columns, picture_gap_px), picture_gap_px);
 }
 
 Picture jump_picture(const std::vector<JumpStage>& stages) {
@@ -151,13 +150,13 @@ Picture jump_picture(const std::vector<JumpStage>& stages) {
   for (const JumpStage& stage : stages) {
     rows.push_back(beside({titled(jump_panel(*stage.x), stage.title + ", in x"),
                            titled(jump_panel(*stage.y), stage.title + ", in y")},
-                          gap_px));
+                          picture_gap_px));
   }
   const Picture key = color_key({{jump_color(1, 0, 0), "-1: one wrap more"},
                                  {jump_color(0, 1, 0), "0: no jump"},
                                  {jump_color(0, 0, 1), "+1: one wrap less"},
                                  {colors::invalid, "no node"}});
-  return with_margin(beside({stacked(rows, gap_px), key}, gap_px), gap_px);
+  return with_margin(beside({stacked(rows, picture_gap_px), key}, picture_gap_px), picture_gap_px);
 }
 
 }  // namespace tofmap

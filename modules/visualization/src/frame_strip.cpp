@@ -19,7 +19,6 @@ namespace tofmap {
 namespace {
 
 constexpr int legend_height_px = 220;
-constexpr int gap_px = 16;
 
 /// The colour scales of all frames, and the wrap counts and reasons that occur in any of them.
 struct Scales {
@@ -128,7 +127,7 @@ std::vector<PageFigure> legends_of(const Scales& scales) {
   std::vector<PageFigure> legends;
   legends.push_back({beside({color_bar(scales.range, legend_height_px),
                              color_key({{colors::invalid, "no range"}})},
-                            gap_px),
+                            picture_gap_px),
                      "ranges"});
   if (scales.has_amplitude) {
     legends.push_back({color_bar(scales.amplitude, legend_height_px), "amplitude"});

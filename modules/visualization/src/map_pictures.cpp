@@ -15,8 +15,6 @@
 namespace tofmap {
 namespace {
 
-constexpr int gap_px = 16;
-
 ColorScale height_scale(const GravityAlignedFrame& frame) {
   const double height_m = frame.box_m.isEmpty() ? 0 : frame.box_m.sizes().z();
   return {0, std::max(0.1, height_m), "height, m"};
@@ -47,7 +45,7 @@ Picture with_scale_bar(const Picture& picture, double metres_per_px) {
   fill(bar, 0, text_size_px / 2 - 2, length_px, 4, colors::black);
   fill(bar, 0, 2, 2, text_size_px - 4, colors::black);
   fill(bar, length_px - 2, 2, 2, text_size_px - 4, colors::black);
-  return stacked({picture, beside({bar, label}, gap_px / 2)}, gap_px / 2);
+  return stacked({picture, beside({bar, label}, picture_gap_px / 2)}, picture_gap_px / 2);
 }
 
 LineLayer path_line(const Trajectory& trajectory, const GravityAlignedFrame& frame, Rgb color,
@@ -188,8 +186,8 @@ Picture map_from_above(const MapCloud& map, const Trajectory& trajectory,
       drawn_from_above(map_drawing(map, trajectory, frame, coloring), frame.box_m, size_px);
   const Picture legend = stacked({color_bar(coloring.scale, std::min(picture.height_px, 400)),
                                   color_key({{colors::path, "camera"}})},
-                                 gap_px);
-  return with_margin(beside({picture, legend}, gap_px), gap_px);
+                                 picture_gap_px);
+  return with_margin(beside({picture, legend}, picture_gap_px), picture_gap_px);
 }
 
 Picture map_from_above(const MapCloud& map, const Trajectory& trajectory,
@@ -216,7 +214,8 @@ Picture paths_from_above(const MapCloud& map, const std::vector<NamedPath>& path
   }
   if (box_m.isEmpty()) return titled(Picture(size_px, size_px / 2), "there is no path");
   return with_margin(
-      beside({drawn_from_above(drawing, box_m, size_px), color_key(entries)}, gap_px), gap_px);
+      beside({drawn_from_above(drawing, box_m, size_px), color_key(entries)}, picture_gap_px),
+      picture_gap_px);
 }
 
 Viewpoint viewpoint_inside(const Drawing& drawing, const Trajectory& trajectory,
@@ -248,7 +247,8 @@ Picture map_from_inside(const MapCloud& map, const Trajectory& trajectory,
   drawing.lines.clear();
   const Viewpoint viewpoint = viewpoint_inside(drawing, trajectory, frame, aspect);
   const Picture picture = draw(drawing, viewpoint, width_px, height_px);
-  return with_margin(beside({picture, color_bar(height_scale(frame), 400)}, gap_px), gap_px);
+  return with_margin(beside({picture, color_bar(height_scale(frame), 400)}, picture_gap_px),
+                     picture_gap_px);
 }
 
 }  // namespace tofmap

@@ -3,8 +3,6 @@
 
 #include "common/counted_ranges.hpp"
 
-#include <limits>
-
 #include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
@@ -23,7 +21,6 @@ struct Planes {
 TOFMAP_VECTOR_CLONES void fill_counted(int pixels, const float* range, const float* sigma,
                                        const std::uint8_t* counts, const float* confidence,
                                        float per_count, float scale, const Planes& out_) {
-  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   const Planes out = out_;
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {

@@ -6,15 +6,12 @@
 #include "common/fast_math.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <tofmap/core/range_image.hpp>
 #include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
 namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// The measurements of successive pixels and their wrap counts.
 struct Pixels {

@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <string>
 
 #include <tofmap/core/error.hpp>
@@ -20,7 +19,6 @@
 namespace tofmap {
 namespace {
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr double noise_tolerance_cycles = 0.05;
 
 /// How a wrap count changes the residual, and where it is within the limits.

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace tofmap {
@@ -16,8 +15,6 @@ namespace {
 
 using matching::BPixels;
 using matching::MutableBPixels;
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// One number for each pixel of a row.
 using Row = std::vector<float>;

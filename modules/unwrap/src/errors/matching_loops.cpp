@@ -8,18 +8,13 @@
 #include "errors/surface_slopes.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include <tofmap/core/vector_clones.hpp>
 #include <tofmap/unwrap/errors/error_tracker.hpp>
 
 namespace tofmap::matching {
-namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
-}  // namespace
+namespace {}  // namespace
 
 TOFMAP_VECTOR_CLONES void compare_light(int count, const Light& light_, const float* nearness,
                                         float gain, float* same) {

@@ -38,7 +38,6 @@ void check(const DualFrequencyFrame& frame) {
 TOFMAP_VECTOR_CLONES void keep_lit(int pixels, const float* amplitude_a, const float* amplitude_b,
                                    float saturation, float* phase_a, float* phase_b,
                                    std::uint8_t* valid, std::uint8_t* saturated) {
-  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
     const float a = amplitude_a[i];

@@ -8,15 +8,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include <Eigen/Geometry>
 
 namespace tofmap {
 namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// Distance of the neighbours that show whether a surface bends. Slopes are fitted to at least this
 /// neighbourhood.

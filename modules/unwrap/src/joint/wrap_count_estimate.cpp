@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -14,8 +13,6 @@
 
 namespace tofmap {
 namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// Phase noise above which neighbouring pixels alone do not tell in which direction a phase wraps.
 constexpr float loud_cycles = 0.08F;

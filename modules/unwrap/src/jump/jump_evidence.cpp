@@ -16,8 +16,6 @@
 namespace tofmap {
 namespace {
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
 /// The inputs of the jump nodes of one row: phases of their pixels p and q, the noise of these
 /// phases, and the medians of equation 3.
 struct NodeRow {

@@ -12,8 +12,6 @@
 namespace tofmap {
 namespace {
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
 /// Evidence and messages are limited to odds from 1 / greatest_odds to greatest_odds, so that sums
 /// of their products stay within the range of a float. Without a limit, loops would make beliefs
 /// grow with every iteration.

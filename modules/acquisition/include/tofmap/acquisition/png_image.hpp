@@ -8,6 +8,9 @@
 
 namespace tofmap {
 
+/// Longest side of an image: a damaged header must not ask for terabytes.
+inline constexpr int max_image_side_px = 16384;
+
 /// Reads a gray PNG of 16 bits. Throws InputError, which names the file, if the file is missing,
 /// truncated, not a PNG, or of another bit depth or colour type.
 ImageU16 read_png_16(const std::filesystem::path& file);
@@ -16,7 +19,7 @@ ImageU16 read_png_16(const std::filesystem::path& file);
 ImageU8 read_png_8(const std::filesystem::path& file);
 
 /// Writes a gray PNG of 16 bits. Throws InputError, which names the file, if it cannot be written
-/// completely, and UsageError if the image is empty or a side exceeds 16384 pixels.
+/// completely, and UsageError if the image is empty or a side exceeds max_image_side_px.
 void write_png(const std::filesystem::path& file, const ImageU16& image);
 
 /// Writes a gray PNG of 8 bits. Throws as for 16 bits.

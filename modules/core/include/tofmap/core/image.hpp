@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include <Eigen/Core>
 
@@ -16,6 +17,9 @@ using Image = Eigen::Array<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMaj
 using ImageF = Image<float>;
 using ImageU8 = Image<std::uint8_t>;
 using ImageU16 = Image<std::uint16_t>;
+
+/// The value of pixels that have none.
+inline constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// True if both images have the same width and height.
 template <class A, class B>
