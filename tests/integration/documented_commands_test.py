@@ -3,8 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs every tofmap command that the documentation shows in a block, on something small.
 
-Usage: documented_commands_test.py SOURCE_DIR TOFMAP. Ends with 77 where python3-pil is missing. The commands of one document run in one folder,
-in their order, with words like SEQ and DIR replaced by what is there.
+Usage: documented_commands_test.py SOURCE_DIR TOFMAP. Ends with 77 where python3-pil is missing. The
+commands of one document run in one folder, in their order, with words like SEQ and DIR replaced by
+what is there.
 """
 import itertools
 import pathlib
