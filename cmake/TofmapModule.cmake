@@ -20,9 +20,13 @@ function(tofmap_private_flags target)
     target_compile_options(${target} PRIVATE -Wno-unknown-pragmas)
   endif()
   # Files that are compiled together (unity builds) see the names of each other's anonymous
-  # namespaces.
+  # namespaces. GCC takes such files for headers, and warns of members whose types are in an
+  # anonymous namespace.
   if(CMAKE_UNITY_BUILD)
-    target_compile_options(${target} PRIVATE -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+    target_compile_options(${target} PRIVATE -Wno-shadow)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+      target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+    endif()
   endif()
   if(TOFMAP_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)
@@ -50,7 +54,7 @@ function(tofmap_private_flags target)
   endif()
 endfunction()
 
-# tofmap_precompile(TARGET HEADERS <header> …): precompiles these headers for a target, and those
+# tofmap_precompile(TARGET [HEADERS <header> …]): precompiles these headers for a target, and those
 # that nearly all files include directly or indirectly.
 # tofmap_precompile(TARGET LIKE OTHER): uses what was precompiled for another target, which takes no
 # time. Both must have the same flags for position-independent code, optimisation and OpenMP.
@@ -63,12 +67,17 @@ function(tofmap_precompile target)
   if(PRECOMPILE_LIKE)
     target_precompile_headers(${target} REUSE_FROM ${PRECOMPILE_LIKE})
   else()
+    # With a time in them, Clang's would never be found in a compiler cache.
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+      target_compile_options(${target} PRIVATE "SHELL:-Xclang -fno-pch-timestamp")
+    endif()
     target_precompile_headers(${target} PRIVATE <algorithm> <filesystem> <functional> <string>
       <vector> <Eigen/Geometry> ${PRECOMPILE_HEADERS})
   endif()
 endfunction()
 
-# Those of PCL take a second or two in each file.
+# Headers of PCL that take a second or two to compile in each file. None may depend on
+# PCL_NO_PRECOMPILE, which sources define after them.
 set(tofmap_pcl_headers <pcl/point_cloud.h> <pcl/point_types.h>)
 
 # tofmap_add_module(NAME SOURCES a.cpp … [PUBLIC lib …] [PRIVATE lib …])

@@ -8,11 +8,12 @@
 #                                      any, another choice for each commit,
 #   scripts/lint.sh --all              all sources, more than an hour of processor time,
 #   scripts/lint.sh --format           none: the format alone (CI does this).
-# BUILD_DIR is a configured build folder, whose compile_commands.json is used (default: build).
-# Headers are checked with the sources of their module.
+# BUILD_DIR is a folder of its own (default: build-lint): elsewhere, files may be compiled together
+# or with precompiled headers, which clang-tidy does not know. Headers are checked with the sources
+# of their module.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-build=${BUILD_DIR:-build}
+build=${BUILD_DIR:-build-lint}
 
 since=HEAD~1
 most=0
@@ -72,11 +73,8 @@ if ((${#sources[@]} == 0)); then
   echo "clang-tidy: no source has changed since $since"
   exit
 fi
-# Precompiled headers are GCC's.
-database=$(mktemp -d)
-trap 'rm -rf "$database"' EXIT
-sed -E 's/-Winvalid-pch -include [^ ]+cmake_pch.hxx//' "$build/compile_commands.json" \
-  >"$database/compile_commands.json"
+cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DTOFMAP_BUILD_TESTS=OFF \
+  -DTOFMAP_BUILD_BENCHMARKS=ON -DTOFMAP_PRECOMPILE_HEADERS=OFF -DCMAKE_UNITY_BUILD=OFF >/dev/null
 printf '%s\n' "${sources[@]}" |
-  xargs -P "$(nproc)" -n 1 clang-tidy-14 -p "$database" --quiet
+  xargs -P "$(nproc)" -n 1 clang-tidy-14 -p "$build" --quiet
 echo "clang-tidy: ${#sources[@]} files have no findings"

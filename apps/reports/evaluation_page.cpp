@@ -113,10 +113,9 @@ Judgement judgement_of(const EvaluationPageSubject& subject) {
     return judge(evidence);
   }
   const Verdict of_ranges = verdict_on_wraps(mean_score(scores_of(with)).wrong_wrap_percent);
-  return {
-      .verdict = std::max(of_ranges, subject.warnings.empty() ? Verdict::good : Verdict::warning),
-      .reasons = {},
-      .remarks = {}};
+  return {.verdict = std::max(of_ranges, subject.warnings.empty() ? Verdict::good : Verdict::check),
+          .reasons = {},
+          .remarks = {}};
 }
 
 std::vector<ShownMap> shown_maps(const EvaluationPageSubject& subject) {

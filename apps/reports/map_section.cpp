@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
+#include <tofmap/core/image.hpp>
 #include <tofmap/visualization/drawing.hpp>
 #include <tofmap/visualization/map_pictures.hpp>
 
@@ -26,7 +26,6 @@ bool has_errors(const ShownMap& map) { return map.errors_m && !map.errors_m->emp
 
 /// Colours a map by its errors. If they are unknown, all points get the colour of missing values.
 MapColoring color_by_error(const ShownMap& map) {
-  const float nan = std::numeric_limits<float>::quiet_NaN();
   return {map.errors_m ? *map.errors_m : std::vector<float>(map.surface->size(), nan),
           ColorScale(0, far_error_m, "error, m", ColorRamp::error)};
 }

@@ -59,7 +59,7 @@ constexpr Recording of_paper[] = {
     {"atrium", "atrium"},       {"beyond", "beyond"},
     {"random rooms", "random"}, {"flat, 80/100 MHz", "flat", 0.02, 80e6, 100e6},
 };
-constexpr int first_development_seed = 101;
+constexpr int first_case_seed = 101;
 
 void add_runs(const Simulator& simulator, const RunPlan& plan, Case& data) {
   data.sensor = simulator.sensor();
@@ -97,8 +97,8 @@ std::vector<Case> simulated_cases(std::span<const Recording> recordings, int div
     options.range_noise_m = recording.range_noise_m;
     options.frequency_a_hz = recording.frequency_a_hz;
     options.frequency_b_hz = recording.frequency_b_hz;
-    cases.push_back(simulated_case(recording.name, recording.scene, options, first_development_seed,
-                                   rooms, divisor));
+    cases.push_back(
+        simulated_case(recording.name, recording.scene, options, first_case_seed, rooms, divisor));
   }
   return cases;
 }

@@ -156,7 +156,7 @@ std::vector<GridRow> measure_place(const GridPlace& place,
 
 /// Each seed is a different camera.
 constexpr int seeds_per_scene = 3;
-constexpr int first_development_seed = 11;
+constexpr int first_grid_seed = 11;
 
 std::vector<GridPlace> places_of(const frozen::Place& place, const SimulatorOptions& base,
                                  int first_seed, int seeds) {
@@ -190,7 +190,7 @@ std::vector<GridPlace> grid_places(const GridSettings& settings) {
   }
   std::vector<GridPlace> places;
   for (const frozen::Place& scene : scenes) {
-    const int first = settings.frozen ? frozen::first_seed + 50 : first_development_seed;
+    const int first = settings.frozen ? frozen::first_seed + 50 : first_grid_seed;
     const auto added = places_of(scene, base, first, settings.quick ? 1 : seeds_per_scene);
     places.insert(places.end(), added.begin(), added.end());
   }

@@ -219,7 +219,7 @@ struct Tally {
   double near_percent() const { return 100 * near / valid; }
   double wrong_percent() const { return 100 * wrong_wraps / valid; }
   double coverage_percent() const { return 100 * valid / pixels; }
-  double doubt_percent() const { return 100 * (1 - confidence / valid); }
+  double unsure_percent() const { return 100 * (1 - confidence / valid); }
 
   /// The median error in units of sigma_m, scaled so that it is 1 for a correct sigma_m and normal
   /// noise, whose median absolute error is 0.6745 σ.
@@ -327,7 +327,7 @@ void print(const std::string& noise, const std::string& frames, const Tallies& t
       "|\n",
       noise.c_str(), t.frames, frames.c_str(), t.pixel.wrong_percent(), t.joint.wrong_percent(),
       t.joint.near_percent(), t.without.near_percent(), t.blurred.near_percent(),
-      t.chain.near_percent(), t.chain.wrong_percent(), t.chain.doubt_percent(),
+      t.chain.near_percent(), t.chain.wrong_percent(), t.chain.unsure_percent(),
       t.chain.coverage_percent(), t.chain.median_deviation());
   std::fflush(stdout);
 }

@@ -28,7 +28,7 @@ Verdict verdict_on(const MapEvidence& evidence) { return judge(evidence).verdict
 /// The only reason to check a map.
 std::string reason_to_check(const MapEvidence& evidence) {
   const Judgement judgement = judge(evidence);
-  EXPECT_EQ(judgement.verdict, Verdict::warning);
+  EXPECT_EQ(judgement.verdict, Verdict::check);
   EXPECT_EQ(judgement.reasons.size(), 1U);
   return judgement.reasons.empty() ? "" : judgement.reasons.front();
 }
@@ -40,8 +40,8 @@ Verdict verdict_with_error(MapEvidence evidence, double accuracy_m) {
 
 TEST(Verdict, GoesByTheMapErrorInVoxels) {
   EXPECT_EQ(verdict_on_accuracy(0.04, voxel_m), Verdict::good);
-  EXPECT_EQ(verdict_on_accuracy(0.041, voxel_m), Verdict::warning);
-  EXPECT_EQ(verdict_on_accuracy(0.2, voxel_m), Verdict::warning);
+  EXPECT_EQ(verdict_on_accuracy(0.041, voxel_m), Verdict::check);
+  EXPECT_EQ(verdict_on_accuracy(0.2, voxel_m), Verdict::check);
   EXPECT_EQ(verdict_on_accuracy(0.201, voxel_m), Verdict::bad);
   EXPECT_EQ(verdict_on_accuracy(NAN, voxel_m), Verdict::bad) << "an empty map";
 }
@@ -52,7 +52,7 @@ TEST(Verdict, GoesByTheFramesThatWereRegistered) {
   evidence.registered = 95;
   EXPECT_EQ(verdict_on(evidence), Verdict::good);
   evidence.registered = 94;
-  EXPECT_EQ(verdict_on(evidence), Verdict::warning);
+  EXPECT_EQ(verdict_on(evidence), Verdict::check);
   evidence.registered = 49;
   EXPECT_EQ(verdict_on(evidence), Verdict::bad);
   EXPECT_EQ(verdict_on({}), Verdict::bad) << "no frame at all";
@@ -81,7 +81,7 @@ TEST(Verdict, GoesByDirectionsThatNoSurfaceConstrained) {
 TEST(Verdict, SaysToCheckAMapThatRecognisedPlacesContradict) {
   MapEvidence evidence = good_evidence();
   evidence.unused_loops = 1;
-  EXPECT_EQ(verdict_on(evidence), Verdict::warning);
+  EXPECT_EQ(verdict_on(evidence), Verdict::check);
   EXPECT_EQ(told_reasons(judge(evidence)), " Reasons: the map contradicts 1 recognised place.");
 }
 
@@ -121,7 +121,7 @@ TEST(Verdict, IsTheWorstOfAllThatIsKnown) {
   empty.is_empty = true;
   EXPECT_EQ(verdict_on(empty), Verdict::bad);
   evidence.is_interrupted = true;
-  EXPECT_EQ(verdict_with_error(evidence, 0.01), Verdict::warning);
+  EXPECT_EQ(verdict_with_error(evidence, 0.01), Verdict::check);
   evidence.registered = 0;
   EXPECT_EQ(verdict_with_error(evidence, 0.05), Verdict::bad);
 }
@@ -129,10 +129,10 @@ TEST(Verdict, IsTheWorstOfAllThatIsKnown) {
 TEST(Verdict, IsNoBetterThanWhatCouldBeChecked) {
   MapEvidence evidence = good_evidence();
   evidence.is_seen_twice = false;
-  EXPECT_EQ(verdict_on(evidence), Verdict::warning);
+  EXPECT_EQ(verdict_on(evidence), Verdict::check);
   evidence.is_seen_twice = true;
   evidence.is_warned = true;
-  EXPECT_EQ(verdict_on(evidence), Verdict::warning);
+  EXPECT_EQ(verdict_on(evidence), Verdict::check);
 }
 
 TEST(Verdict, TellsItsReasons) {
@@ -146,10 +146,10 @@ TEST(Verdict, TellsItsReasons) {
 
 TEST(Verdict, OnRangesGoesByWrongWraps) {
   EXPECT_EQ(verdict_on_wraps(2), Verdict::good);
-  EXPECT_EQ(verdict_on_wraps(2.1), Verdict::warning);
-  EXPECT_EQ(verdict_on_wraps(10), Verdict::warning);
+  EXPECT_EQ(verdict_on_wraps(2.1), Verdict::check);
+  EXPECT_EQ(verdict_on_wraps(10), Verdict::check);
   EXPECT_EQ(verdict_on_wraps(10.1), Verdict::bad);
-  EXPECT_EQ(verdict_on_wraps(NAN), Verdict::warning) << "not known";
+  EXPECT_EQ(verdict_on_wraps(NAN), Verdict::check) << "not known";
 }
 
 }  // namespace

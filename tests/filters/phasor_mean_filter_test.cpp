@@ -24,7 +24,7 @@ const CameraModel& wide_camera() {
 /// Their wraps repeat together after 19.9 m.
 Modulation far_apart() { return {.frequency_a_hz = 37.65e6, .frequency_b_hz = 45.18e6}; }
 
-float far_wavelength_m() { return static_cast<float>(far_apart().wavelength_a_m()); }
+float wavelength_a_m() { return static_cast<float>(far_apart().wavelength_a_m()); }
 
 /// A wall seen aslant, its ranges from 3.4 to 7.5 m.
 ImageF slanted_wall() {
@@ -62,15 +62,15 @@ Recorded recorded(const ImageF& truth_m, const ImageF& sigma_rad, unsigned seed)
   for (Eigen::Index i = 0; i < truth_m.size(); ++i) {
     const float sigma_cycles = sigma_rad.data()[i] / (2 * std::numbers::pi_v<float>);
     const float range_m = truth_m.data()[i];
-    const float a = wrapped(range_m / far_wavelength_m() + sigma_cycles * normal(random));
-    const float right_count = std::max(0.0F, std::round(range_m / far_wavelength_m() - a));
+    const float a = wrapped(range_m / wavelength_a_m() + sigma_cycles * normal(random));
+    const float right_count = std::max(0.0F, std::round(range_m / wavelength_a_m() - a));
     const int count =
         one_of_twenty(random) == 0 ? any_count(random) : static_cast<int>(right_count);
     out.frame.phase_a.data()[i] = a;
     out.frame.phase_b.data()[i] = wrapped(range_m / wavelength_b_m + sigma_cycles * normal(random));
     out.image.wrap_count.data()[i] = static_cast<std::uint8_t>(count);
-    out.image.range_m.data()[i] = (a + static_cast<float>(count)) * far_wavelength_m();
-    out.image.sigma_m.data()[i] = sigma_cycles * far_wavelength_m();
+    out.image.range_m.data()[i] = (a + static_cast<float>(count)) * wavelength_a_m();
+    out.image.sigma_m.data()[i] = sigma_cycles * wavelength_a_m();
   }
   return out;
 }
@@ -145,12 +145,11 @@ TEST(PhasorMean, MendsCountsThatTheSurfaceDoesNotShare) {
   const ImageF truth_m = slanted_wall();
   const Recorded noisy = recorded(truth_m, 1.35F, 900);
   const RangeImage out = averaged(noisy);
-  const double wrong_before =
-      1 - share_within(noisy.image.range_m, truth_m, far_wavelength_m() / 2);
-  const double wrong_after = 1 - share_within(out.range_m, truth_m, far_wavelength_m() / 2);
+  const double wrong_before = 1 - share_within(noisy.image.range_m, truth_m, wavelength_a_m() / 2);
+  const double wrong_after = 1 - share_within(out.range_m, truth_m, wavelength_a_m() / 2);
   EXPECT_GT(wrong_before, 0.03);
   EXPECT_LT(wrong_after, 0.005);
-  const ImageF whole = (out.range_m / far_wavelength_m()).floor();
+  const ImageF whole = (out.range_m / wavelength_a_m()).floor();
   EXPECT_TRUE((out.wrap_count.cast<float>() == whole).all());
 }
 

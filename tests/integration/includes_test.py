@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sources include what they use: precompiled headers and other headers would hide what is missing.
+"""Sources include the headers of the names listed here, which other headers would hide.
 
-A file that uses a name below must include the header of that name, itself or by headers of the
-project that it includes.
+A file that uses such a name must include its header itself or by headers of the project.
 """
 import collections
 import pathlib
@@ -17,33 +16,40 @@ FOLDERS = ("apps", "benchmarks", "examples", "modules", "tests")
 
 # Headers, as patterns, and the names that want them.
 NAMES = {
-    "algorithm": r"std::(min|max|minmax|clamp|sort|stable_sort|copy|copy_n|fill|fill_n|find|find_if|"
-                 r"transform|generate|any_of|all_of|none_of|count|count_if|nth_element|max_element|"
-                 r"min_element|minmax_element|lower_bound|upper_bound|reverse|unique|remove_if|"
-                 r"shuffle|equal|partition|for_each)\b(?=[(<])|"
+    "algorithm": r"std::(min|max|minmax|clamp|sort|stable_sort|copy|copy_n|fill|fill_n|find|"
+                 r"find_if|transform|generate|any_of|all_of|none_of|count|count_if|nth_element|"
+                 r"max_element|min_element|minmax_element|lower_bound|upper_bound|reverse|unique|"
+                 r"remove_if|shuffle|equal|partition|for_each)\b(?=[(<])|"
                  r"std::ranges::(?!greater|less|equal_to|begin|end|size|data|empty|range|view|"
                  r"subrange|distance|next)[a-z_]+",
     "array": r"std::(array|to_array)\b",
     "atomic": r"std::atomic\b",
     "bit": r"std::(bit_cast|popcount|countr_zero|countl_zero|bit_width)\b",
+    "charconv": r"std::(from_chars|to_chars)\b",
     "chrono": r"std::chrono::",
     "cmath": r"std::(sqrt|sin|cos|tan|atan2|atan|asin|acos|isnan|isfinite|hypot|floor|ceil|round|"
              r"lround|pow|exp|log|log2|log10|fmod|remainder|cbrt|copysign|expm1|log1p|erf|erfc|"
              r"trunc|rint|lrint)\b",
+    "complex": r"std::(complex|polar|arg)\b",
+    "condition_variable": r"std::condition_variable\b",
     "cstdint": r"std::u?int(8|16|32|64)_t\b",
+    "cstring": r"std::(memcpy|memcmp|memset|strlen|strerror)\b",
     "deque": r"std::deque\b",
     "filesystem": r"std::filesystem::",
     "fstream": r"std::[io]?fstream\b",
     "functional": r"std::(function|hash|less|greater|plus|invoke|ref|cref|bind_front|not_fn|"
                   r"identity|reference_wrapper)\b|std::ranges::(greater|less|equal_to)\b",
+    "iomanip": r"std::(setw|setprecision|setfill)\b",
     "iostream": r"std::(cout|cerr|cin)\b",
     "limits": r"std::numeric_limits\b",
     "map": r"std::map\b",
     "memory": r"std::(unique_ptr|shared_ptr|weak_ptr|make_unique|make_shared)\b",
     "mutex": r"std::(mutex|lock_guard|unique_lock|scoped_lock|once_flag)\b",
     "numbers": r"std::numbers::",
-    "numeric": r"std::(accumulate|iota|reduce|inner_product|partial_sum|transform_reduce|midpoint)\b",
+    "numeric": r"std::(accumulate|iota|reduce|inner_product|partial_sum|transform_reduce|"
+               r"midpoint)\b",
     "optional": r"std::(optional|nullopt)\b",
+    "queue": r"std::(queue|priority_queue)\b",
     "random": r"std::(mt19937(_64)?|normal_distribution|uniform_\w+_distribution)\b",
     "ranges": r"std::(views|ranges::views)::",
     "set": r"std::set\b",

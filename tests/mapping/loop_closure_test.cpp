@@ -21,8 +21,8 @@ using test::moved_by;
 using test::small_camera;
 
 // Not a cube: each wall is at another distance.
-const Vector3d closed_room_min(-1.5, -1.0, -2.5);
-const Vector3d closed_room_max(2.0, 1.2, 3.5);
+const Vector3d loop_room_min(-1.5, -1.0, -2.5);
+const Vector3d loop_room_max(2.0, 1.2, 3.5);
 
 Keyframe keyframe(int id, const Pose& truth, const Pose& believed) {
   return {.id = id,
@@ -30,7 +30,7 @@ Keyframe keyframe(int id, const Pose& truth, const Pose& believed) {
           .timestamp_s = 1.0 * id,
           .world_from_camera = believed,
           .cloud = std::make_shared<const SurfaceCloud>(
-              test::box_cloud(small_camera(), closed_room_min, closed_room_max, truth))};
+              test::box_cloud(small_camera(), loop_room_min, loop_room_max, truth))};
 }
 
 /// One keyframe long ago, and one that sees the same corner from near by, whose pose has drifted.

@@ -19,16 +19,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-const Vector3d open_room_min(-1.5, -1.0, -1);
-const Vector3d open_room_max(2.0, 1.2, 4);
+const Vector3d odometry_room_min(-1.5, -1.0, -1);
+const Vector3d odometry_room_max(2.0, 1.2, 4);
 
 Pose camera_at(int frame) {
   return test::moved_by({0, 0.01 * frame, 0.004 * frame}, {0.02 * frame, 0, 0.01 * frame});
 }
 
 std::shared_ptr<const SurfaceCloud> view(int frame) {
-  return std::make_shared<const SurfaceCloud>(
-      test::box_cloud(test::small_camera(), open_room_min, open_room_max, camera_at(frame)));
+  return std::make_shared<const SurfaceCloud>(test::box_cloud(
+      test::small_camera(), odometry_room_min, odometry_room_max, camera_at(frame)));
 }
 
 /// Odometry with the keyframes it asks for, all of them around the camera.
@@ -89,7 +89,7 @@ TEST(Odometry, KnowsWhichKeyframeHoldsTheCamera) {
   const CameraModel camera = test::small_camera();
   const auto corner = view(0);
   const auto wall = std::make_shared<const SurfaceCloud>(
-      test::box_cloud(camera, {-50, -50, -50}, {50, 50, open_room_max.z()}, Pose::Identity()));
+      test::box_cloud(camera, {-50, -50, -50}, {50, 50, odometry_room_max.z()}, Pose::Identity()));
   const Keyframe older{0, 0, 0, Pose::Identity(), corner};
   const Keyframe newer{1, 1, 1 / 15.0, Pose::Identity(), wall};
   const std::vector<const Keyframe*> around{&older, &newer};
@@ -164,7 +164,7 @@ void expect_followed(int still, const std::vector<Pose>& motions) {
   Pose pose = Pose::Identity();
   const auto seen = [&] {
     return std::make_shared<const SurfaceCloud>(
-        test::box_cloud(test::small_camera(), open_room_min, open_room_max, pose));
+        test::box_cloud(test::small_camera(), odometry_room_min, odometry_room_max, pose));
   };
   for (int frame = 0; frame < still; ++frame) camera.track(frame, seen());
   int frame = still;

@@ -24,8 +24,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-const Vector3d walls_min(-1.5, -1.0, -1);
-const Vector3d walls_max(2.0, 1.2, 4);
+const Vector3d covariance_box_min(-1.5, -1.0, -1);
+const Vector3d covariance_box_max(2.0, 1.2, 4);
 const Pose truth = test::moved_by({0.02, -0.04, 0.03}, {0.05, -0.03, 0.06});
 constexpr int draws = 500;
 
@@ -50,15 +50,17 @@ RegistrationResult register_clouds(const SurfaceCloud& source, const SurfaceClou
 /// `margin_m` of another have no normal: noise may take their points to the other wall.
 SurfaceCloud exact_walls(const Pose& world_from_camera, double margin_m) {
   const CameraModel camera = test::small_camera();
-  const RangeImage image = test::box_ranges(camera, walls_min, walls_max, world_from_camera);
-  SurfaceCloud cloud = test::box_cloud(camera, walls_min, walls_max, world_from_camera);
+  const RangeImage image =
+      test::box_ranges(camera, covariance_box_min, covariance_box_max, world_from_camera);
+  SurfaceCloud cloud =
+      test::box_cloud(camera, covariance_box_min, covariance_box_max, world_from_camera);
   for (int v = 0; v < camera.height_px; ++v) {
     for (int u = 0; u < camera.width_px; ++u) {
       SurfacePoint& point = cloud.at(u, v);
       const Vector3d in_camera = image.range_m(v, u) * pixel_ray(camera, u, v);
       const Vector3d in_box = world_from_camera * in_camera;
       Eigen::Matrix<double, 6, 1> to_walls;
-      to_walls << in_box - walls_min, walls_max - in_box;
+      to_walls << in_box - covariance_box_min, covariance_box_max - in_box;
       Eigen::Index wall = 0;
       to_walls.minCoeff(&wall);
       Vector3d normal = Vector3d::Zero();
@@ -144,7 +146,8 @@ test::Consistency consistency_of_plane_fits(const RegistrationOptions& options, 
   std::mt19937 random(3);
   std::normal_distribution<float> noise(0, sigma_m);
   const auto noisy_cloud = [&](const Pose& world_from_camera) {
-    RangeImage image = test::box_ranges(camera, walls_min, walls_max, world_from_camera, sigma_m);
+    RangeImage image = test::box_ranges(camera, covariance_box_min, covariance_box_max,
+                                        world_from_camera, sigma_m);
     for (float& range_m : image.range_m.reshaped()) range_m += noise(random);
     return surface_cloud(image, pixel_rays(camera), {});
   };

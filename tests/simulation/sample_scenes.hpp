@@ -30,11 +30,11 @@ inline Scene facing_wall_scene(double range_m, double reflectance, double walk_m
 }
 
 /// A wall at 4 m behind one at 2 m, whose edge runs down the middle of the image. The camera is
-/// turned by the angle of which `slope` is the tangent, so that the edge passes through pixels.
-inline Scene edge_scene(double slope) {
+/// turned by `turned_rad`, so that the edge passes through pixels.
+inline Scene edge_scene(double turned_rad) {
   Scene scene = facing_wall_scene(4, 0.8);
   add_facing_wall(scene.surface, 2, 0.2, 0.0);
-  const Eigen::Vector3d ahead(1, slope, 0);
+  const Eigen::Vector3d ahead(std::cos(turned_rad), std::sin(turned_rad), 0);
   scene.path = CameraPath({{{0, 0.0, 0}, ahead}, {{0, 0.0, 0}, ahead}}, false);
   return scene;
 }

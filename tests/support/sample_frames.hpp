@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <tofmap/core/frame.hpp>
+#include <tofmap/core/image.hpp>
 #include <tofmap/core/trajectory.hpp>
 
 namespace tofmap::test {
@@ -21,7 +22,6 @@ inline SensorModel sample_sensor() {
 /// Phases on the 16-bit grid, so that they are kept to the bit; a missing return at A in
 /// pixel (0, 0), at B in pixel (1, 1).
 inline DualFrequencyFrame sample_frame(int index) {
-  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   DualFrequencyFrame frame;
   frame.index = index;
   frame.timestamp_s = 1305031229.528784 + index / 15.0;

@@ -4,15 +4,14 @@
 #include "errors/robust_cost.hpp"
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include <tofmap/core/image.hpp>
+
 namespace tofmap {
 namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// Equation 20 of docs/unwrapping.md.
 double cost(double error_m, double variance_m2) {

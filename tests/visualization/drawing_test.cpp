@@ -3,7 +3,6 @@
 
 #include "pixel_count.hpp"
 
-#include <algorithm>
 #include <cstdlib>
 
 #include <gtest/gtest.h>

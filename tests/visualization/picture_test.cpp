@@ -3,8 +3,6 @@
 
 #include "pixel_count.hpp"
 
-#include <algorithm>
-
 #include <gtest/gtest.h>
 #include <support/temporary_folder.hpp>
 #include <vtkImageData.h>

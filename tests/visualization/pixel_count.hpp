@@ -8,7 +8,7 @@
 
 namespace tofmap::test {
 
-constexpr Rgb red{255, 0, 0};
+inline constexpr Rgb red{255, 0, 0};
 
 /// The number of pixels of a colour.
 inline int count(const Picture& picture, Rgb color) {

@@ -49,8 +49,8 @@ TEST(ReportPage, ShowsTextsAsTheyAre) {
 
 TEST(ReportPage, TellsVerdictsInWordsToo) {
   ReportPage page = empty_page();
-  page.add_verdict(Verdict::warning, "half of it");
-  EXPECT_THAT(page.html(), HasSubstr("class=\"verdict warning\""));
+  page.add_verdict(Verdict::check, "half of it");
+  EXPECT_THAT(page.html(), HasSubstr("class=\"verdict check\""));
   EXPECT_THAT(page.html(), HasSubstr("Check this result."));
 }
 

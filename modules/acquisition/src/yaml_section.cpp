@@ -12,12 +12,6 @@
 
 namespace tofmap {
 
-namespace {
-
-/// Largest width and height of a camera.
-
-}  // namespace
-
 YamlSection load_yaml(const std::filesystem::path& file, const std::string& hint) {
   refuse_no_file(file);
   try {

@@ -4,8 +4,6 @@
 #include "tofmap/core/range_image.hpp"
 
 namespace tofmap {
-namespace {}  // namespace
-
 const char* reason_name(InvalidReason reason) {
   switch (reason) {
     case InvalidReason::none:

@@ -26,11 +26,11 @@ Judgement judge(const MapEvidence& evidence) {
       percent_of_frames(evidence, evidence.registered + evidence.separate);
   if (registered_percent < nearly_all_percent) {
     hold_against(
-        registered_percent < half_percent ? Verdict::bad : Verdict::warning,
+        registered_percent < half_percent ? Verdict::bad : Verdict::check,
         fmt::format("{:.0f} % of the frames could not be registered", 100 - registered_percent));
   }
   if (evidence.separate_maps > 0) {
-    hold_against(Verdict::warning,
+    hold_against(Verdict::check,
                  fmt::format("tracking was lost, and {} could not be joined with it, of {}",
                              counted(static_cast<std::size_t>(evidence.separate_maps), "other map"),
                              counted(static_cast<std::size_t>(evidence.separate), "frame")));
@@ -42,7 +42,7 @@ Judgement judge(const MapEvidence& evidence) {
     hold_against(of_surface, "the error of its surface is larger than a voxel");
   }
   if (evidence.position_sigma_m > much_m) {
-    hold_against(Verdict::warning,
+    hold_against(Verdict::check,
                  fmt::format("the position at frame {} is uncertain by {:.2f} m (one standard "
                              "deviation), since surfaces seen on the way there did not constrain "
                              "all directions of motion",
@@ -50,13 +50,13 @@ Judgement judge(const MapEvidence& evidence) {
   }
   if (evidence.blind_joins > 0) {
     hold_against(
-        Verdict::warning,
+        Verdict::check,
         fmt::format("{}, the camera was not tracked for more than two seconds and found only "
                     "by the look of the place, which another place may have as well",
                     counted(static_cast<std::size_t>(evidence.blind_joins), "time")));
   }
   if (evidence.unused_loops > 0) {
-    hold_against(Verdict::warning,
+    hold_against(Verdict::check,
                  "the map contradicts " +
                      counted(static_cast<std::size_t>(evidence.unused_loops), "recognised place"));
   }
@@ -70,9 +70,9 @@ Judgement judge(const MapEvidence& evidence) {
         fmt::format("{}, a place looked like one seen before, and differed from it later",
                     counted(static_cast<std::size_t>(evidence.joins_taken_back), "time")));
   }
-  if (!evidence.is_seen_twice) hold_against(Verdict::warning, "no place was seen by two frames");
-  if (evidence.is_interrupted) hold_against(Verdict::warning, "the run was interrupted");
-  if (evidence.is_warned) hold_against(Verdict::warning, "there are warnings, see below");
+  if (!evidence.is_seen_twice) hold_against(Verdict::check, "no place was seen by two frames");
+  if (evidence.is_interrupted) hold_against(Verdict::check, "the run was interrupted");
+  if (evidence.is_warned) hold_against(Verdict::check, "there are warnings, see below");
   return judgement;
 }
 
@@ -86,7 +86,7 @@ std::string told_reasons(const Judgement& judgement) {
 Verdict verdict_on_accuracy(double accuracy_m, double voxel_m) {
   constexpr double much = 5;
   if (!(accuracy_m <= much * voxel_m)) return Verdict::bad;  // NaN as well
-  return accuracy_m <= voxel_m ? Verdict::good : Verdict::warning;
+  return accuracy_m <= voxel_m ? Verdict::good : Verdict::check;
 }
 
 Verdict verdict_on_wraps(double wrong_wrap_percent) {
@@ -94,7 +94,7 @@ Verdict verdict_on_wraps(double wrong_wrap_percent) {
   constexpr double few_percent = 2;
   constexpr double many_percent = 10;
   if (wrong_wrap_percent > many_percent) return Verdict::bad;
-  return wrong_wrap_percent <= few_percent ? Verdict::good : Verdict::warning;
+  return wrong_wrap_percent <= few_percent ? Verdict::good : Verdict::check;
 }
 
 double percent_of_frames(const MapEvidence& evidence, int part) {

@@ -13,7 +13,7 @@ namespace tofmap {
 namespace {
 
 /// A point this far in front of a surface is not on it.
-constexpr double distance_slack_voxels = 1;
+constexpr double in_front_voxels = 1;
 
 /// Of the up to 24 neighbours on a plane. At the edge of a region, half of them are in it; a line
 /// of points in free space, as along the edge of a table, has at most four.
@@ -97,7 +97,7 @@ FreeSpaceEvidence free_space_evidence(const SphericalView& view, const LevelledC
                                       const Pose& view_from_cloud) {
   const OrientedCloud& points = cloud.levels.front();
   const std::vector<Sight> found =
-      sights(view, points.points_m, view_from_cloud, distance_slack_voxels * points.voxel_m);
+      sights(view, points.points_m, view_from_cloud, in_front_voxels * points.voxel_m);
   const std::vector<bool> is_within = within_regions(cloud.neighbours, found);
   FreeSpaceEvidence evidence;
   evidence.on_surface = static_cast<int>(std::ranges::count(found, Sight::surface));

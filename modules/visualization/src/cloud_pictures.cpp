@@ -3,6 +3,7 @@
 
 #include "tofmap/visualization/cloud_pictures.hpp"
 
+#include "picture_gap.hpp"
 #include "quantile.hpp"
 #include "tofmap/visualization/drawing.hpp"
 

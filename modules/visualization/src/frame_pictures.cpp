@@ -4,6 +4,7 @@
 #include "tofmap/visualization/frame_pictures.hpp"
 
 #include "frame_colors.hpp"
+#include "picture_gap.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,6 +4,7 @@
 #include "tofmap/visualization/frame_strip.hpp"
 
 #include "frame_colors.hpp"
+#include "picture_gap.hpp"
 #include "quantile.hpp"
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 
 #include "tofmap/visualization/map_pictures.hpp"
 
+#include "picture_gap.hpp"
 #include "text.hpp"
 
 #include <algorithm>

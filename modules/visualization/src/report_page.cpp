@@ -77,8 +77,8 @@ VerdictWords words_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::good:
       return {"good", "Looks right."};
-    case Verdict::warning:
-      return {"warning", "Check this result."};
+    case Verdict::check:
+      return {"check", "Check this result."};
     case Verdict::bad:
       break;
   }

@@ -14,8 +14,6 @@
 #include <tofmap/unwrap/errors/error_tracker.hpp>
 
 namespace tofmap::matching {
-namespace {}  // namespace
-
 TOFMAP_VECTOR_CLONES void compare_light(int count, const Light& light_, const float* nearness,
                                         float gain, float* same) {
   // Noise of this many standard deviations is tolerated in addition to same_light_ratio.

@@ -8,7 +8,7 @@
 
 namespace tofmap {
 
-/// Longest side of an image: a damaged header must not ask for terabytes.
+/// Largest width or height of an image. Limits the memory that a damaged header can ask for.
 inline constexpr int max_image_side_px = 16384;
 
 /// Reads a gray PNG of 16 bits. Throws InputError, which names the file, if the file is missing,

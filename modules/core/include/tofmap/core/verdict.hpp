@@ -5,6 +5,6 @@
 namespace tofmap {
 
 /// How far a result can be trusted, from best to worst.
-enum class Verdict { good, warning, bad };
+enum class Verdict { good, check, bad };
 
 }  // namespace tofmap

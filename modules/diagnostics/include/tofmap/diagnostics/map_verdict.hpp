@@ -53,7 +53,7 @@ std::string told_reasons(const Judgement& judgement);
 Verdict verdict_on_accuracy(double accuracy_m, double voxel_m);
 
 /// The verdict on ranges without a map, by the percentage of wrong wrap counts: good up to 2 %, bad
-/// above 10 %. NaN (unknown) is a warning.
+/// above 10 %. NaN (unknown) is to be checked.
 Verdict verdict_on_wraps(double wrong_wrap_percent);
 
 /// `part` as a percentage of evidence.frames. 0 if there are no frames.

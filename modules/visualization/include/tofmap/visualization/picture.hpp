@@ -10,9 +10,6 @@
 
 namespace tofmap {
 
-/// Between the parts that a picture is composed of.
-inline constexpr int picture_gap_px = 16;
-
 /// An RGB image for display.
 struct Picture {
   int width_px = 0;
