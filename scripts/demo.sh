@@ -13,7 +13,7 @@ out=${OUT_DIR:-out/demo}
 
 cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DTOFMAP_BUILD_TESTS=OFF \
   -DTOFMAP_PRECOMPILE_HEADERS=ON -DCMAKE_UNITY_BUILD=ON \
-  -DCMAKE_CXX_COMPILER_LAUNCHER="env;CCACHE_SLOPPINESS=pch_defines,time_macros;ccache" >/dev/null
+  -DCMAKE_CXX_COMPILER_LAUNCHER=ccache >/dev/null
 cmake --build "$build" --target tofmap
 tofmap="$build/apps/tofmap"
 

@@ -169,8 +169,7 @@ def prepare(build, excluded):
                     "-DTOFMAP_BUILD_TESTS=ON", "-DTOFMAP_PRECOMPILE_HEADERS=ON",
                     # Shared libraries: only the changed one is linked again.
                     "-DBUILD_SHARED_LIBS=ON", "-DCMAKE_LINK_DEPENDS_NO_SHARED=ON",
-                    "-DCMAKE_CXX_COMPILER_LAUNCHER=env;CCACHE_SLOPPINESS=pch_defines,time_macros;"
-                    "ccache"], check=True, capture_output=True)
+                    "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"], check=True, capture_output=True)
     suite = Suite(tests, excluded)
     if not suite.compiles("all"):
         sys.exit("mutation.py: the committed state does not build")

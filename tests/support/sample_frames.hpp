@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <limits>
-
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/image.hpp>
 #include <tofmap/core/trajectory.hpp>
@@ -45,7 +43,7 @@ inline DualFrequencyFrame sample_frame(int index) {
 inline ImageF sample_range_truth() {
   ImageF range_m(5, 7);
   for (int i = 0; i < 35; ++i) range_m.data()[i] = static_cast<float>(1000 + 1800 * i) / 1000.0F;
-  range_m(2, 3) = std::numeric_limits<float>::quiet_NaN();
+  range_m(2, 3) = nan;
   return range_m;
 }
 

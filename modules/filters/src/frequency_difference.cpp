@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/frequency_residual.hpp>
@@ -66,8 +65,7 @@ FrequencyDifference::FrequencyDifference(const RangeImage& image, const DualFreq
     : rows_(static_cast<int>(image.rows())),
       cols_(static_cast<int>(image.cols())),
       stride_(cols_ + 2 * InverseDepth::margin),
-      values_(static_cast<std::size_t>((rows_ + 2 * InverseDepth::margin) * stride_),
-              std::numeric_limits<float>::quiet_NaN()),
+      values_(static_cast<std::size_t>((rows_ + 2 * InverseDepth::margin) * stride_), nan),
       variances_(values_) {
   check_size(image, rays, "filter");
   check_frame(image, frame);

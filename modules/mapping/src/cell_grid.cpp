@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tofmap {
 namespace {
@@ -55,7 +54,7 @@ bool hides_what_is_above(const CellGrid& grid, const std::vector<std::size_t>& c
 }
 
 void mark_as_moving(SurfacePoint& point) {
-  constexpr float none = std::numeric_limits<float>::quiet_NaN();
+  constexpr float none = nan;
   point.getNormalVector3fMap().setConstant(none);
   point.normal_sigma_rad = none;
   point.confidence = moving_confidence;

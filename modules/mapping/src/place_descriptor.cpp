@@ -11,7 +11,7 @@
 
 namespace tofmap {
 
-PlaceDescriptor::PlaceDescriptor() { log_range_.fill(std::numeric_limits<float>::quiet_NaN()); }
+PlaceDescriptor::PlaceDescriptor() { log_range_.fill(nan); }
 
 PlaceDescriptor::PlaceDescriptor(const SurfaceCloud& cloud) : PlaceDescriptor() {
   std::vector<float> ranges;

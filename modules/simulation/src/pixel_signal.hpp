@@ -12,6 +12,8 @@
 
 namespace tofmap {
 
+inline constexpr double rad_per_cycle = 2 * std::numbers::pi;
+
 /// The phase and amplitude that a pixel measures.
 struct PhaseAndAmplitude {
   float phase_cycles = 0;  ///< in [0, 1), even after rounding to float
@@ -24,7 +26,7 @@ inline std::optional<PhaseAndAmplitude> measure(const std::complex<double>& sign
   constexpr double max_amplitude = 65535;
   const double modulus = std::abs(signal);
   if (modulus < 0.5) return std::nullopt;
-  const double cycles = std::arg(signal) / (2 * std::numbers::pi);
+  const double cycles = std::arg(signal) / rad_per_cycle;
   const auto wrapped = static_cast<float>(cycles - std::floor(cycles));
   return PhaseAndAmplitude{wrapped < 1 ? wrapped : 0,
                            static_cast<float>(std::min(modulus, max_amplitude))};

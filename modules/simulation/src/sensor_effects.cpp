@@ -4,6 +4,7 @@
 #include "sensor_effects.hpp"
 
 #include "noise.hpp"
+#include "pixel_signal.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +16,6 @@
 
 namespace tofmap {
 namespace {
-
-constexpr double two_pi = 2 * std::numbers::pi;
 
 /// Distance from a surface at which rays start and end, so that they do not meet that surface.
 constexpr double off_surface_m = 1e-3;
@@ -33,7 +32,7 @@ Eigen::Vector2d spread_point(int i, int n, const Eigen::Vector2d& shift) {
 /// `normal`. Uniform points give a cosine-weighted distribution.
 Eigen::Vector3d around(const Eigen::Vector3d& normal, const Eigen::Vector2d& point) {
   const double sine = std::sqrt(point.x());
-  const double turn = two_pi * point.y();
+  const double turn = rad_per_cycle * point.y();
   const Eigen::Vector3d side = normal.unitOrthogonal();
   return sine * std::cos(turn) * side + sine * std::sin(turn) * normal.cross(side) +
          std::sqrt(1 - point.x()) * normal;
@@ -53,12 +52,12 @@ double charge(const PixelLight& light, int k, const SensorEffects& effects) {
 }  // namespace
 
 PixelLight light_from(double strength, double range_m, double wavelength_m) {
-  const std::complex<double> turn = std::polar(1.0, two_pi * range_m / wavelength_m);
+  const std::complex<double> turn = std::polar(1.0, rad_per_cycle * range_m / wavelength_m);
   return {strength * turn, strength * (turn * turn * turn), strength};
 }
 
 SensorEffects sensor_effects(const SimulatorOptions& options, const Modulation& modulation) {
-  return {.harmonic = two_pi * options.wiggle_m / modulation.wavelength_a_m(),
+  return {.harmonic = rad_per_cycle * options.wiggle_m / modulation.wavelength_a_m(),
           .dark_level = options.dark_level,
           .full_well = options.full_well};
 }

@@ -4,18 +4,16 @@
 #include "systematic_errors.hpp"
 
 #include "noise.hpp"
+#include "pixel_signal.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <tofmap/core/error.hpp>
 #include <tofmap/simulation/simulator.hpp>
 
 namespace tofmap {
 namespace {
-
-constexpr double rad_per_cycle = 2 * std::numbers::pi;
 
 /// The error that depends on amplitude is zero at this amplitude (a white wall at 0.3 m), and
 /// reaches its full size this many decades below it.

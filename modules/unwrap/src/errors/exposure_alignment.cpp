@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -36,7 +35,7 @@ struct Level {
     for (Eigen::Index r = 0; r < out.rows(); ++r) {
       for (Eigen::Index c = 0; c < out.cols(); ++c) {
         const float mean = amplitude.block(r * block_px, c * block_px, block_px, block_px).mean();
-        out(r, c) = mean > 0 ? std::log(mean) : std::numeric_limits<float>::quiet_NaN();
+        out(r, c) = mean > 0 ? std::log(mean) : nan;
       }
     }
     return out;
@@ -136,7 +135,7 @@ double median_gain(const Level& level) {
     const float gain = level.b.data()[i] - level.a.data()[i];
     if (!std::isnan(gain)) gains.push_back(gain);
   }
-  return gains.empty() ? std::numeric_limits<double>::quiet_NaN() : double{median(gains)};
+  return gains.empty() ? nan : double{median(gains)};
 }
 
 /// Tries rotations about the x and y axes that shift the image by up to two blocks, and keeps the

@@ -39,8 +39,7 @@ struct Decisions {
                                   ///< 9); NaN where there is no node
 
   explicit Decisions(Eigen::Index pixels)
-      : step(static_cast<std::size_t>(pixels)),
-        support(step.size(), std::numeric_limits<float>::quiet_NaN()) {}
+      : step(static_cast<std::size_t>(pixels)), support(step.size(), nan) {}
 };
 
 using ReadConfigurations = Configurations<const float>;
