@@ -111,6 +111,49 @@ TEST(ViewpointInside, HasTheRoomAllAround) {
   EXPECT_LT(white, 320 * 200 / 10) << "gaps between points alone";
 }
 
+/// A camera at the place that looks along x, with z up.
+StampedPose level_camera(const Eigen::Vector3d& place_m) {
+  StampedPose camera{0, Pose::Identity()};
+  camera.world_from_camera.linear().col(0) = -Eigen::Vector3d::UnitY();
+  camera.world_from_camera.linear().col(1) = -Eigen::Vector3d::UnitZ();
+  camera.world_from_camera.linear().col(2) = Eigen::Vector3d::UnitX();
+  camera.world_from_camera.translation() = place_m;
+  return camera;
+}
+
+/// Whether a camera at the origin, with three points at `point_m` of which each has this normal, is
+/// preferred to another, far away, with two points that it surely sees. The picture is 1.6 times as
+/// wide as it is high.
+bool sees(const Eigen::Vector3f& point_m, const Eigen::Vector3f& normal) {
+  const Eigen::Vector3d far(0, 0, -500);
+  PointLayer layer;
+  layer.points_m.assign(3, point_m);
+  layer.normals.assign(3, normal);
+  layer.points_m.insert(layer.points_m.end(), 2, far.cast<float>() + 2 * Eigen::Vector3f::UnitX());
+  layer.normals.insert(layer.normals.end(), 2, -Eigen::Vector3f::UnitX());
+  const Trajectory cameras{level_camera(far), level_camera(Eigen::Vector3d::Zero())};
+  const Drawing drawing{{layer}, {}, {}};
+  return viewpoint_inside(drawing, cameras, GravityAlignedFrame(), 1.6).eye_m.z() == 0;
+}
+
+TEST(ViewpointInside, CountsPointsThatAreInViewAndFaceTheCamera) {
+  // Half of the field of view is 31° upwards, whose tangent is 0.60; 0.96 sideways.
+  const Eigen::Vector3f backward = -Eigen::Vector3f::UnitX();
+  EXPECT_TRUE(sees({2, 0, 0}, backward));
+  EXPECT_FALSE(sees({2, 0, 0}, -backward)) << "the back of a surface";
+  EXPECT_FALSE(sees({-2, 0, 0}, -backward)) << "behind the camera";
+  EXPECT_TRUE(sees({0.32F, 0, 0}, backward));
+  EXPECT_FALSE(sees({0.28F, 0, 0}, backward)) << "too near";
+  EXPECT_TRUE(sees({2, 0, 1.18F}, backward));
+  EXPECT_TRUE(sees({2, 0, -1.18F}, backward));
+  EXPECT_FALSE(sees({2, 0, 1.22F}, backward));
+  EXPECT_FALSE(sees({2, 0, -1.22F}, backward));
+  EXPECT_TRUE(sees({2, 1.9F, 0}, backward));
+  EXPECT_TRUE(sees({2, -1.9F, 0}, backward));
+  EXPECT_FALSE(sees({2, 1.95F, 0}, backward));
+  EXPECT_FALSE(sees({2, -1.95F, 0}, backward));
+}
+
 TEST(ViewpointOutside, HoldsAllOfTheBox) {
   const Eigen::AlignedBox3d box(Eigen::Vector3d(1, 2, 0), Eigen::Vector3d(13, 11, 3));
   LineLayer diagonals;
