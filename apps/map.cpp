@@ -129,7 +129,7 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
   std::printf("%zu of %zu frames registered, %zu keyframes, %zu map points\n",
               map.trajectory.size(), map.frames.size(), map.keyframes.size(), map.surface.size());
   for (std::size_t i = 0; i < map.separate_maps.size(); ++i) {
-    std::printf("tracking was lost: %zu more frames are in a map of their own, %s\n",
+    std::printf("tracking was lost: %zu more frames are in a separate map, %s\n",
                 map.separate_maps[i].trajectory.size(), files_of_separate_map(i).map.c_str());
   }
   if (map.damaged() > 0) std::printf("%d frames were damaged; see report.json\n", map.damaged());

@@ -92,8 +92,8 @@ std::string sentence_of(const MapPageSubject& subject, const MapScores& scores,
   std::string text = std::to_string(map.trajectory.size()) + " of " +
                      counted(map.frames.size(), "frame") + " could be registered. ";
   if (!map.separate_maps.empty()) {
-    text += fmt::format("{} more are in {} of their own: tracking was lost. ", map.separate(),
-                        counted(map.separate_maps.size(), "map"));
+    text += fmt::format("{} more are in {}: tracking was lost. ", map.separate(),
+                        counted(map.separate_maps.size(), "separate map"));
   }
   if (map.interrupted) text += "Then the run was interrupted. ";
   if (subject.options.pipeline.unwrap.method == UnwrapMethod::none) {

@@ -79,7 +79,7 @@ class ViewedRecording final : public Viewed {
   }
 
   std::string help() const override {
-    return "left, right: one frame back or on (up, down: ten), u: as measured or unwrapped, x: "
+    return "left, right: previous or next frame (up, down: ten), u: as measured or unwrapped, x: "
            "with or without filters";
   }
 
@@ -154,8 +154,8 @@ class ViewedRecording final : public Viewed {
     std::ranges::sort(values);
     const double low = values.empty() ? 0 : values[values.size() / 100];
     const double high = values.empty() ? 1 : values[values.size() * 99 / 100];
-    if (color() == "height") return {low, std::max(low + 0.1, high), "height over the camera, m"};
-    if (color() == "amplitude") return {0, std::max(1.0, high), "root of amplitude"};
+    if (color() == "height") return {low, std::max(low + 0.1, high), "height above the camera, m"};
+    if (color() == "amplitude") return {0, std::max(1.0, high), "square root of amplitude"};
     return {0, std::max(1.0, std::ceil(high)), "range, m"};
   }
 

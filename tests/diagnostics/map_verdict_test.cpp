@@ -64,7 +64,7 @@ TEST(Verdict, SaysToCheckAMapThatIsNotTheOnlyOne) {
   evidence.separate = 38;
   evidence.separate_maps = 2;
   EXPECT_EQ(reason_to_check(evidence),
-            "tracking was lost, and 2 other maps could not be joined with it, of 38 frames");
+            "tracking was lost, and 2 other maps with 38 frames could not be joined with this one");
 }
 
 TEST(Verdict, GoesByDirectionsThatNoSurfaceConstrained) {
@@ -90,24 +90,26 @@ TEST(Verdict, SaysToCheckAMapThatWasFoundAgainByItsLookAlone) {
   evidence.joins = 1;
   evidence.blind_joins = 1;
   EXPECT_EQ(reason_to_check(evidence),
-            "1 time, the camera was not tracked for more than two seconds and found only by the "
-            "look of the place, which another place may have as well");
+            "1 time, the camera was not tracked for more than two seconds and was found again only "
+            "by the look of the place, and another place may look the same");
 }
 
 TEST(Verdict, MentionsJoinsThatDoNotMakeItWorse) {
   MapEvidence evidence = good_evidence();
   evidence.joins = 2;
   EXPECT_EQ(verdict_on(evidence), Verdict::good);
-  EXPECT_EQ(told_reasons(judge(evidence)),
-            " Also: tracking was lost and found again 2 times, by places that were recognised.");
+  EXPECT_EQ(
+      told_reasons(judge(evidence)),
+      " Also: tracking was lost 2 times, and the camera was found again at recognised places.");
 }
 
 TEST(Verdict, MentionsJoinsThatWereTakenBack) {
   MapEvidence evidence = good_evidence();
   evidence.joins_taken_back = 1;
   EXPECT_EQ(verdict_on(evidence), Verdict::good);
-  EXPECT_EQ(told_reasons(judge(evidence)),
-            " Also: 1 time, a place looked like one seen before, and differed from it later.");
+  EXPECT_EQ(
+      told_reasons(judge(evidence)),
+      " Also: 1 time, a place looked like one seen before, but turned out to be another one.");
 }
 
 TEST(Verdict, IsTheWorstOfAllThatIsKnown) {

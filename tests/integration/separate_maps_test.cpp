@@ -59,7 +59,7 @@ TEST_F(CarriedCamera, GetsAMapOfEachRoomAndIsToBeChecked) {
   // B of the last frame before was taken on the way to the other room.
   EXPECT_EQ(read_trajectory(out_ / "trajectory.txt").size(), frames_before - 1U);
   EXPECT_EQ(read_trajectory(out_ / "trajectory_2.txt").size(), std::size_t{frames_after});
-  EXPECT_THAT(run.out, HasSubstr("20 more frames are in a map of their own, map_2.ply"));
+  EXPECT_THAT(run.out, HasSubstr("20 more frames are in a separate map, map_2.ply"));
   const auto report = test::read_json(out_ / "report.json");
   const auto& separate = report["summary"]["separate_maps"];
   ASSERT_EQ(separate.size(), 1U);
@@ -69,7 +69,7 @@ TEST_F(CarriedCamera, GetsAMapOfEachRoomAndIsToBeChecked) {
   EXPECT_EQ(report["frames"][frames_before]["tracking"]["status"], "first");
   EXPECT_EQ(report["frames"][frames_before + 1]["tracking"]["status"], "tracked");
   const std::string page = test::read_text(out_ / "report.html");
-  EXPECT_THAT(page, HasSubstr("1 other map could not be joined with it, of 20 frames"));
+  EXPECT_THAT(page, HasSubstr("1 other map with 20 frames could not be joined with this one"));
   EXPECT_THAT(page, HasSubstr("map_2.ply"));
 }
 

@@ -31,7 +31,7 @@ Judgement judge(const MapEvidence& evidence) {
   }
   if (evidence.separate_maps > 0) {
     hold_against(Verdict::check,
-                 fmt::format("tracking was lost, and {} could not be joined with it, of {}",
+                 fmt::format("tracking was lost, and {} with {} could not be joined with this one",
                              counted(static_cast<std::size_t>(evidence.separate_maps), "other map"),
                              counted(static_cast<std::size_t>(evidence.separate), "frame")));
   }
@@ -51,8 +51,8 @@ Judgement judge(const MapEvidence& evidence) {
   if (evidence.blind_joins > 0) {
     hold_against(
         Verdict::check,
-        fmt::format("{}, the camera was not tracked for more than two seconds and found only "
-                    "by the look of the place, which another place may have as well",
+        fmt::format("{}, the camera was not tracked for more than two seconds and was found again "
+                    "only by the look of the place, and another place may look the same",
                     counted(static_cast<std::size_t>(evidence.blind_joins), "time")));
   }
   if (evidence.unused_loops > 0) {
@@ -62,12 +62,12 @@ Judgement judge(const MapEvidence& evidence) {
   }
   if (evidence.joins > 0) {
     judgement.remarks.push_back(
-        fmt::format("tracking was lost and found again {}, by places that were recognised",
+        fmt::format("tracking was lost {}, and the camera was found again at recognised places",
                     counted(static_cast<std::size_t>(evidence.joins), "time")));
   }
   if (evidence.joins_taken_back > 0) {
     judgement.remarks.push_back(
-        fmt::format("{}, a place looked like one seen before, and differed from it later",
+        fmt::format("{}, a place looked like one seen before, but turned out to be another one",
                     counted(static_cast<std::size_t>(evidence.joins_taken_back), "time")));
   }
   if (!evidence.is_seen_twice) hold_against(Verdict::check, "no place was seen by two frames");

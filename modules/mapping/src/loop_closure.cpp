@@ -157,7 +157,7 @@ std::optional<LoopCandidate> find_where_alike(const LoopSearch& search,
 std::vector<OptionField<LoopOptions>> LoopOptions::fields() {
   using O = LoopOptions;
   return {
-      {"close", &O::close, 0, 1, "", "searches for loops, and corrects the path by them"},
+      {"close", &O::close, 0, 1, "", "searches for loops and corrects the path with them"},
       {"radius_m", &O::radius_m, 0.1, 100, "m",
        "loops are searched for among keyframes at most this far away"},
       {"max_rotation_rad", &O::max_rotation_rad, 0.01, 3.2, "rad",

@@ -63,13 +63,13 @@ std::vector<OptionField<OdometryOptions>> OdometryOptions::fields() {
   using O = OdometryOptions;
   return {
       {"keyframe_translation_m", &O::keyframe_translation_m, 0.01, 10, "m",
-       "distance from all keyframes around at which a frame becomes a keyframe; twice the distance "
-       "from those of an earlier visit"},
+       "distance from all nearby keyframes at which a frame becomes a keyframe; twice this "
+       "distance from those of an earlier visit"},
       {"keyframe_rotation_rad", &O::keyframe_rotation_rad, 0.01, 3.2, "rad",
-       "rotation from all keyframes around at which a frame becomes a keyframe; twice the rotation "
-       "from those of an earlier visit"},
+       "rotation from all nearby keyframes at which a frame becomes a keyframe; twice this "
+       "rotation from those of an earlier visit"},
       {"keyframes_around", &O::keyframes_around, 1, 1000, "",
-       "number of keyframes around the camera that a frame may be registered with"},
+       "number of keyframes near the camera that a frame may be registered with"},
       {"targets", &O::targets, 1, 16, "",
        "largest number of keyframes that a frame is registered with: those that overlap it most, "
        "and one that constrains a direction which these do not"},

@@ -245,7 +245,7 @@ std::vector<OptionField<CloudRegistrationOptions>> CloudRegistrationOptions::fie
        "how poses are refined; the methods of PCL are for comparison"},
       {"sensor_at_origin", &O::sensor_at_origin, 0, 0, "",
        "whether the origin of each cloud is the position of its sensor, so that free space is "
-       "known; infer tells it by the pattern of the points"},
+       "known; infer decides by the pattern of the points"},
       {"min_overlap", &O::min_overlap, 0, 1, "",
        "smallest share of one of two clouds that must be near the other"},
       {"min_inlier_ratio", &O::min_inlier_ratio, 0, 1, "",

@@ -57,7 +57,7 @@ std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
       {"fixed_pattern_m", &S::fixed_pattern_m, 0, 0.2, "m",
        "standard deviation of the constant range errors of individual pixels, at A and at B"},
       {"errors_seed", &S::errors_seed, 0, 2147483647, "",
-       "seed of the periodic errors and of the fixed pattern: it stands for the camera"},
+       "seed of the periodic errors and of the fixed pattern: it identifies the camera"},
       {"ambient_noise", &S::ambient_noise, 1, 20, "",
        "factor by which ambient light increases the noise where it falls; 1: no ambient light"},
       {"ambient_left", &S::ambient_left, 0, 1, "",

@@ -18,7 +18,7 @@ using ImageF = Image<float>;
 using ImageU8 = Image<std::uint8_t>;
 using ImageU16 = Image<std::uint16_t>;
 
-/// Marks a pixel without a value. Scores without one have it as well.
+/// The value of a pixel, or of a score, that is unknown.
 inline constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// True if both images have the same width and height.

@@ -16,12 +16,12 @@ struct MapEvidence {
   int registered = 0;        ///< frames whose pose was found
   int separate = 0;          ///< frames that are registered in separate maps
   int separate_maps = 0;     ///< maps that could not be joined with this one
-  int joins = 0;             ///< how often tracking was lost, but the maps were joined
+  int joins = 0;             ///< how often maps were joined after tracking was lost
   int blind_joins = 0;       ///< joins after the camera was not tracked for two seconds
   int joins_taken_back = 0;  ///< joins that later frames contradicted
   int unused_loops = 0;      ///< recognised places that the map does not agree with
-  /// Standard deviation of the position that is least certain relative to the begin of the map, by
-  /// what surfaces constrain, and the frame that has it.
+  /// Standard deviation of the least certain position relative to the beginning of the map, by what
+  /// surfaces constrain, and the frame at that position.
   double position_sigma_m = 0;
   int least_certain_frame = 0;
   bool is_empty = false;             ///< the map has no points

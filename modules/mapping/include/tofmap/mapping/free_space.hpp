@@ -20,8 +20,8 @@ namespace tofmap {
 /// something that moves (moves()). Up to three of the nine pixels may have no range, but not the
 /// one in the middle. The keyframe agrees with the point if the point lies within that distance of
 /// the surface at its pixel. A point is removed if more keyframes see through it than agree with
-/// it, or if at least three see through it after the last one that agrees: it is gone. `keyframes`
-/// are in the order of time. The result is the same for any number of threads.
+/// it, or if at least three see through it after the last one that agrees: what it showed has gone.
+/// `keyframes` are in the order of time. The result is the same for any number of threads.
 MapCloud without_free_space_violations(const MapCloud& map, std::span<const Keyframe> keyframes,
                                        const CameraModel& camera, double margin_m);
 

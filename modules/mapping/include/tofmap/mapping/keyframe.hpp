@@ -24,7 +24,7 @@ struct Keyframe {
   double path_m = 0;           ///< length of the path through all keyframes up to this one
   PlaceDescriptor place = {};  ///< of the cloud
   int map = 0;                 ///< the map that the pose refers to; see RoomMapper
-  int taken_in = 0;            ///< the map it was taken in; `map` differs once that was joined
+  int taken_in = 0;            ///< the map it was taken in, before any join
 };
 
 /// A keyframe as a target of registration. The keyframe must outlive the target.

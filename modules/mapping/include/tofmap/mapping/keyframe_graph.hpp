@@ -72,13 +72,13 @@ class KeyframeGraph {
   std::vector<int> well_connected_to(int id) const;
 
   /// For each keyframe, the spread of its pose relative to keyframe `id`, along the connections
-  /// that give the smallest spread in translation. Empty for a keyframe that nothing connects with
+  /// that give the smallest spread in translation. Empty for a keyframe that has no connection with
   /// `id`.
   std::vector<std::optional<PoseSpread>> spreads_from(int id) const;
 
-  /// Connects keyframes whose registration with each other left a direction open again, if others
-  /// lead from one to the other by now with less spread than `well_connected_sigma_m`, as after a
-  /// loop.
+  /// Reduces the spread of keyframes whose registration with each other did not constrain all
+  /// directions, if a path over other keyframes now connects them with a spread of at most
+  /// `well_connected_sigma_m`, as after a loop.
   void reconnect();
 
   /// Standard deviation of a relative pose up to which a frame can be registered with both

@@ -20,7 +20,7 @@ struct LoopOptions {
   /// Whether loops are searched for, and the path corrected by them.
   bool close = true;
   /// Loops are searched for among keyframes that are at most this far away by their current poses,
-  /// and farther as far as these are uncertain; 0.1 … 100 m.
+  /// plus the uncertainty of these poses; 0.1 … 100 m.
   double radius_m = 3;
   /// Loops are searched for among keyframes that are rotated by at most this by their current
   /// poses, 0.01 … 3.2 rad.
@@ -58,20 +58,20 @@ struct LoopCandidate {
 
 /// Searches for an earlier keyframe that sees the same place as `keyframe`.
 ///
-/// `spreads` tell for each keyframe how uncertain its pose relative to `keyframe` is, as far as
-/// registrations can tell; the drift is that of the path in addition. Candidates are keyframes of
-/// the same map with an id that is smaller by at least `min_keyframes`, or with a spread that no
-/// frame can be registered across (KeyframeGraph::well_connected_sigma_m). Their cameras are within
-/// `radius_m` and `max_rotation_rad` of the camera of `keyframe`, plus three standard deviations of
-/// drift.
+/// `spreads` holds, for each keyframe, the uncertainty of its pose relative to `keyframe` that
+/// follows from registrations. The drift consists of this and of the drift along the path.
+/// Candidates are keyframes of the same map with an id that is smaller by at least `min_keyframes`,
+/// or with a spread that no frame can be registered across (KeyframeGraph::well_connected_sigma_m).
+/// Their cameras are within `radius_m` and `max_rotation_rad` of the camera of `keyframe`, plus
+/// three standard deviations of drift.
 ///
 /// First, `keyframe` is registered with the three candidates that overlap it most, together, from
 /// its current pose with a prior of drift. If that is wider than ICP reaches, or if the result is
 /// not verified, the place is recognised among the candidates (recognise()), and the result is
 /// accepted if it is within two standard deviations of drift. A loop is found if the candidate
-/// confirms the result (confirms_place()), and if its surfaces alone connect both well
-/// (KeyframeGraph::well_connected_sigma_m). `keyframes` are in the order of their ids, from 0, and
-/// hold all earlier keyframes; later ones are ignored.
+/// confirms the result (confirms_place()), and if the surfaces of the candidate alone determine the
+/// relative pose (to KeyframeGraph::well_connected_sigma_m). `keyframes` are in the order of their
+/// ids, from 0, and hold all earlier keyframes; later ones are ignored.
 LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyframes,
                         std::span<const std::optional<PoseSpread>> spreads,
                         const CameraModel& camera, const LoopOptions& options,
@@ -110,20 +110,21 @@ bool confirms_place(const Keyframe& keyframe, const SurfaceCloud& cloud,
                     const RegistrationResult& result, const CameraModel& camera,
                     const LoopOptions& options);
 
-/// The covariance of a pose relative to a keyframe of whose surfaces a registration has this
-/// information. Along directions without information, the standard deviations are 1 m and 0.5 rad,
-/// farther than a registration would have found the keyframe from.
+/// The covariance of a pose relative to a keyframe, given the information that a registration has
+/// from the surfaces of that keyframe. Along directions without information, the standard
+/// deviations are 1 m and 0.5 rad, since registration would not have found the keyframe from
+/// farther away.
 Eigen::Matrix<double, 6, 6> covariance_of(const Eigen::Matrix<double, 6, 6>& information);
 
 /// The edge of the pose graph from a registration of keyframe `to` with keyframe `from`.
-/// `covariance` is that of the pose error, along the world's axes. The edge has it along the axes
-/// of `from`, increased by the errors that neighbouring frames share, which registration cannot
-/// measure.
+/// `covariance` is that of the pose error, along the world's axes. That of the edge is along the
+/// axes of `from`, and increased by the errors that neighbouring frames share, which registration
+/// cannot measure.
 PoseEdge edge_of(const Keyframe& from, int to, const Pose& world_from_camera,
                  const Eigen::Matrix<double, 6, 6>& covariance);
 
 /// The loop constraint from a registration of keyframe `to` near keyframe `from`, which was the
-/// first target: it tells what the surfaces of `from` alone constrain.
+/// first target. Its covariance comes from what the surfaces of `from` alone constrain.
 PoseEdge loop_edge(const Keyframe& from, int to, const RegistrationResult& result);
 
 }  // namespace tofmap

@@ -12,21 +12,22 @@
 
 namespace tofmap {
 
-/// How two maps of one recording lie to each other.
+/// The relative pose of two maps of one recording.
 struct MapJoin {
-  int into = 0;  ///< the map whose world stays
+  int into = 0;  ///< the map whose world frame is kept
   int map = 0;   ///< the map that is joined to it
   Pose into_from_map = Pose::Identity();
-  std::vector<PoseEdge> edges;  ///< the recognitions that agree on it
+  std::vector<PoseEdge> edges;  ///< the recognitions that agree on this pose
 };
 
 /// Searches for a map that `map` can be joined with. `recognitions` are edges between keyframes of
 /// different maps, from the map that was there first.
 ///
-/// One recognition may be wrong: places look alike. So at least three of different keyframes of
-/// `map` must agree with each other, as loops agree (fit_loops()), and must be more than half of
-/// all recognitions between both maps. Of several maps, the one with the most recognitions that
-/// agree is chosen. Empty if there is none. `keyframes` are in the order of their ids, from 0.
+/// One recognition may be wrong: places look alike. So recognitions by at least three different
+/// keyframes of `map` must agree with each other, as loops agree (fit_loops()), and must be more
+/// than half of all recognitions between both maps. Of several maps, the one with the most
+/// recognitions that agree is chosen. Empty if there is none. `keyframes` are in the order of their
+/// ids, from 0.
 std::optional<MapJoin> find_join(std::span<const PoseEdge> recognitions, int map,
                                  std::span<const Keyframe> keyframes, const LoopOptions& options);
 

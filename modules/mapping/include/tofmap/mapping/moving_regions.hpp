@@ -27,7 +27,7 @@ struct MovingPoint {
   int age = 0;  ///< number of frames since the last evidence that it moves
 };
 
-/// What a point of something that moves has for its confidence, as a mark.
+/// The confidence that marks a point of something that moves.
 constexpr float moving_confidence = -1;
 
 /// Whether a point was found to be on something that moves. It keeps its position, up to which
@@ -36,10 +36,11 @@ inline bool moves(const SurfacePoint& point) { return point.confidence == moving
 
 /// What moves in a frame, as regions of its image and of those of keyframes.
 struct Motion {
-  /// The frame's cloud without the surface of what moves (moves()), nor of what stands in front of
-  /// the background if that decided about the pose. The same object if nothing does.
+  /// The frame's cloud without the surface of what moves (moves()), and without what stands in
+  /// front of the background if the background determined the pose. The same object as the input if
+  /// nothing is left out.
   std::shared_ptr<const SurfaceCloud> still;
-  std::vector<CleanedKeyframe> keyframes;  ///< those in which something moved since
+  std::vector<CleanedKeyframe> keyframes;  ///< those in which something has moved since
   std::vector<MovingPoint> points;         ///< one for each cell of the grid that moves
   /// Whether more contradicts the keyframes than agrees with them: the pose, or the place, is
   /// wrong. Nothing is said to move then.
@@ -48,18 +49,18 @@ struct Motion {
   bool is_empty() const { return points.empty() && keyframes.empty(); }
 };
 
-/// Tells people, doors and other things that move from the room, region by region.
+/// Distinguishes people, doors and other things that move from the room, region by region.
 ///
 /// Where a keyframe saw through to a surface behind, there is something now that was not there
 /// before; where the frame sees through a surface of a keyframe, that surface is gone. Such points
 /// are the evidence. From them, regions grow over the image, as far as the depth is continuous and
 /// no keyframe agrees that the surface was there before. What moved in the frame before is expected
-/// to move still, for 15 frames after the last evidence: somebody who walks ahead of the camera, at
-/// its pace, covers what keyframes could see through.
+/// to keep moving, for 15 frames after the last evidence: somebody who walks ahead of the camera,
+/// at its pace, covers what keyframes could see through.
 ///
 /// Regions are found on a coarse grid of about 1/32 rad; those with fewer than six cells of
-/// evidence are not believed. If more than half of what can be compared contradicts the keyframes,
-/// the pose is wrong rather than the room, and nothing is said to move.
+/// evidence are ignored. If more than half of what can be compared contradicts the keyframes, the
+/// pose is wrong rather than the room, and nothing is said to move.
 class MovingRegions {
  public:
   explicit MovingRegions(const CameraModel& camera) : camera_(camera) {}

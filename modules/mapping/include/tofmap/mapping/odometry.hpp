@@ -25,12 +25,12 @@ namespace tofmap {
 
 /// Options of Odometry, and of where RoomMapper takes keyframes.
 struct OdometryOptions {
-  /// A frame becomes a keyframe if it is at least this far, or `keyframe_rotation_rad` in rotation,
-  /// from each keyframe of its map around it, and twice as far from those of an earlier visit, or
-  /// if its pose relative to them is uncertain by half as much (one standard deviation); 0.01 … 10
-  /// m.
+  /// A frame becomes a keyframe if each nearby keyframe of its map is at least this far away, or
+  /// `keyframe_rotation_rad` in rotation. Keyframes of an earlier visit must be twice as far away.
+  /// A frame also becomes a keyframe if its position relative to them is uncertain by half of this
+  /// (one standard deviation). 0.01 … 10 m.
   double keyframe_translation_m = 0.25;
-  /// Rotation from each keyframe around it that makes a frame a keyframe, 0.01 … 3.2 rad. See
+  /// Rotation from each nearby keyframe that makes a frame a keyframe, 0.01 … 3.2 rad. See
   /// `keyframe_translation_m`.
   double keyframe_rotation_rad = 0.21;
   /// Number of keyframes around the camera that are considered as targets, 1 … 1000.
@@ -81,10 +81,10 @@ struct TrackingResult {
   RegistrationResult registration;  ///< all defaults if registration was not tried
   /// Covariance of the error of the pose relative to each target if the status is `tracked`, else
   /// empty: rotation vector in radians, then translation in metres, along the axes of the world.
-  /// It tells of the surfaces of that target, and for the latest keyframe, or the latest that was a
-  /// target all the time, of the motion since then. In directions that these do not constrain, it
-  /// is large, even if other targets constrain them. RoomMapper::add_frame() makes edges of them
-  /// and removes them.
+  /// Each comes from the surfaces of that target alone, so it is large in directions that these do
+  /// not constrain, even if other targets do. Only one of them also includes the motion since then:
+  /// that of the latest keyframe or, once that is no longer a target, of another target.
+  /// RoomMapper::add_frame() makes edges of the covariances and removes them.
   std::vector<Eigen::Matrix<double, 6, 6>> target_covariances;
   PoseSpread spread;  ///< of the pose relative to all targets together, if the status is `tracked`
 
@@ -96,8 +96,8 @@ struct TrackingResult {
 };
 
 /// Tracks the camera: registers each frame with those keyframes around it that overlap it most,
-/// from the pose that constant velocity predicts. The last of them gives way to a keyframe that
-/// constrains a direction which the others leave open. After a gap in time, the last known pose is
+/// from the pose that constant velocity predicts. The last of them is replaced by a keyframe that
+/// constrains a direction which the others do not. After a gap in time, the last known pose is
 /// tried as well, and registration may take three times as many iterations. The first frame with a
 /// surface gets the identity as its pose. A frame that cannot be registered only increases the time
 /// since the last registered frame.
@@ -106,12 +106,13 @@ struct TrackingResult {
 /// ends far from the predicted pose, or fits the surfaces clearly worse than the frames before, the
 /// frame is also registered from the rotations around the last pose that search_rotations() finds.
 /// The best of these results replaces the first one if it fits better, is verified as for a loop,
-/// and no other one fits as well. If none does, and the first one fits the surfaces far worse than
-/// is usual or contradicts the free space of the keyframes, the frame is lost.
+/// and no result at another place fits about as well. If none does, and the first one fits the
+/// surfaces far worse than is usual or contradicts the free space of the keyframes, the frame is
+/// lost.
 class Odometry {
  public:
-  /// `recognition` says when a registration is trusted that does not follow from the motion of the
-  /// camera.
+  /// `recognition` has the limits for trusting a registration that does not follow from the motion
+  /// of the camera.
   Odometry(const CameraModel& camera, const OdometryOptions& options,
            const RegistrationOptions& registration, const LoopOptions& recognition);
 
@@ -136,8 +137,8 @@ class Odometry {
   /// frames count as well. False if no frame was registered yet.
   bool is_after_gap(double timestamp_s) const;
 
-  /// The last registered frame has become a keyframe. The uncertainty of the motion is that since
-  /// this frame from now on.
+  /// Must be called when the last registered frame has become a keyframe. From then on, the
+  /// uncertainty of the motion is that since this frame.
   void note_keyframe(int id);
 
   /// Forgets where the camera was: the next frame with a surface is the first one again.

@@ -43,7 +43,8 @@ struct NewFrame {
   bool repeats = false;                       ///< whether it has the phases of the frame before it
 };
 
-/// A frame that could not be registered when it came, but was later.
+/// A frame whose result has changed after it was added: it was registered later, or its map was
+/// dropped.
 struct LateFrame {
   int index = 0;  ///< NewFrame::index
   TrackingResult tracking;
@@ -75,17 +76,17 @@ struct AddedFrame {
 /// When tracking is lost, or after more than two seconds without frames, a new map begins: once
 /// three frames with a surface could not be registered, the first of them is the origin of a map of
 /// its own, and the others are tracked in it. Every keyframe of the newest map is compared with
-/// those of the other maps that the camera can have come to in the time (can_travel()); when three
-/// keyframes recognise places of another map and agree, both maps are joined. Maps that never
-/// are stay maps of their own. The keyframes and submaps of a map stay apart from those of the
+/// those of the other maps that the camera can have reached in the time since then (can_travel());
+/// when three keyframes recognise places of another map and agree, both maps are joined. Maps that
+/// are never joined stay separate. The keyframes and submaps of a map stay apart from those of the
 /// maps that it was joined with, so that the join can be taken back: when two later keyframes
-/// differ from what the other map has there, or when a frame fits its own map alone. A map of
-/// fewer than three frames is dropped again when the next one begins.
+/// differ from what the other map has there, or when a frame fits only its own map and contradicts
+/// the other. A map of fewer than three frames is dropped again when the next one begins.
 ///
 /// People, doors and other things that move are found (MovingRegions); they have no part in
 /// registration, keyframes and surface. In the first 15 frames of a map, and whenever a frame fits
-/// worse than is usual, the background is also registered without the things in front of it,
-/// and decides.
+/// worse than is usual, the background is also registered without the things in front of it, and
+/// determines the pose if the two results differ.
 class RoomMapper {
  public:
   RoomMapper(const CameraModel& camera, const OdometryOptions& odometry,
@@ -103,7 +104,7 @@ class RoomMapper {
   /// the last frame.
   void finish();
 
-  /// The maps, by their numbers, the one with most registered frames first. Empty if no frame was
+  /// The numbers of the maps, that with the most registered frames first. Empty if no frame was
   /// registered.
   std::vector<int> maps() const;
   /// Poses of all registered frames of a map, from the current poses of their keyframes.
@@ -113,12 +114,12 @@ class RoomMapper {
   /// How often maps were joined although the camera could have been carried to another place: it
   /// had not been tracked for more than two seconds.
   int blind_joins() const;
-  /// Number of joins of maps that were not taken back, with blind_joins().
+  /// Number of joins of maps that were not taken back, including blind_joins().
   int joins() const { return static_cast<int>(joins_.size()); }
   /// Number of joins that were taken back.
   int joins_taken_back() const { return joins_taken_back_; }
-  /// The keyframe of a map whose position relative to the first one is least certain by what
-  /// registrations tell (KeyframeGraph::spreads_from()). The map must have a keyframe.
+  /// The keyframe of a map whose position relative to the first one is least certain, by the
+  /// spreads of registrations (KeyframeGraph::spreads_from()). The map must have a keyframe.
   PoseCertainty least_certain(int map) const;
   /// The surface of a map: all of its submaps in its world frame, without free-space violations if
   /// the options say so.
@@ -171,8 +172,8 @@ class RoomMapper {
     SurfaceMap surface;
   };
 
-  /// Number of keyframes that must differ from a map to tell that they show another place. A single
-  /// one may be deceived.
+  /// Number of keyframes that must differ from a map before they count as showing another place. A
+  /// single one may be wrong.
   static constexpr int least_differing_keyframes = 2;
 
   TrackingResult track(NewFrame& frame);
@@ -235,7 +236,7 @@ class RoomMapper {
   int searched_ = 0;            ///< number of keyframes for which loops were searched
   std::vector<NewFrame> held_;  ///< frames with a surface since the last registered one
   std::vector<JoinedMaps> joins_;     ///< those not taken back, in order
-  int frames_since_front_moved_ = 0;  ///< since the begin of the map, or since that was found
+  int frames_since_front_moved_ = 0;  ///< since the beginning of the map, or since that was found
   int differing_keyframes_ = 0;       ///< of the newest map, from the map that it was joined with
   int joins_taken_back_ = 0;
   std::vector<PoseEdge> recognitions_;  ///< from a keyframe of another map to one of `map_`

@@ -13,7 +13,7 @@
 namespace tofmap {
 
 /// Initial poses for the registration of a frame whose camera may have turned far since the frame
-/// before: rotations about the expected position at which the frame's ranges fit those that the
+/// before: rotations about the expected position for which the frame's ranges fit those that the
 /// keyframes saw, best first.
 ///
 /// All rotations of at most `reach_rad` from the expected one, about any axis, are tried in steps

@@ -14,7 +14,8 @@
 
 namespace tofmap {
 
-/// A slip of odometry: a keyframe was registered beside its place, and all later ones with it.
+/// A slip of odometry: a keyframe was registered beside its true place, and all later ones relative
+/// to it.
 struct Slip {
   int at = 0;                   ///< id of the first keyframe that is off
   std::vector<PoseEdge> edges;  ///< from keyframes before it, registered anew
@@ -25,12 +26,13 @@ struct Slip {
 /// After a slip, all keyframes are off by the same correction. Therefore each keyframe between both
 /// ends of the loop is registered at its corrected pose with those that odometry registered it with
 /// (`edges`). A slip is found if the result is at that pose, confirms the place as a loop does
-/// (confirms_place()), and fits clearly better (by 10 %) than at the believed pose, unless
-/// registration does not even stay there. Of several, the one that fits best is returned.
-/// Corrections of less than KeyframeGraph::well_connected_sigma_m, which are drift, and of more
-/// than half a metre at the keyframe, which odometry would not have accepted, are no slips. Neither
-/// is a keyframe across which a later one was registered with earlier ones alone. Empty as well if
-/// both ends were taken in different maps. `keyframes` are in the order of their ids, from 0.
+/// (confirms_place()), and either fits clearly better (by 10 %) than a registration at the believed
+/// pose, or that registration moves away from it. Of several slips, the one that fits best is
+/// returned. Corrections of less than KeyframeGraph::well_connected_sigma_m, which are drift, and
+/// of more than half a metre at the keyframe, which odometry would not have accepted, are no slips.
+/// A keyframe has not slipped either if a later one was registered only with keyframes before it.
+/// Empty as well if both ends of the loop were taken in different maps. `keyframes` are in the
+/// order of their ids, from 0.
 std::optional<Slip> find_slip(const PoseEdge& loop, std::span<const Keyframe> keyframes,
                               std::span<const PoseEdge> edges, const CameraModel& camera,
                               const LoopOptions& options, const RegistrationOptions& registration);

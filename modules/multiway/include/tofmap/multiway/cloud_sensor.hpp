@@ -12,7 +12,7 @@ namespace tofmap {
 
 /// Whether clouds are in the frames of their sensors, so that the origin is the sensor's position.
 enum class SensorAtOrigin {
-  infer,  ///< each cloud tells by the pattern of its points, see find_sensor()
+  infer,  ///< decided for each cloud by the pattern of its points, see find_sensor()
   yes,    ///< the origin of each cloud is the position of its sensor
   no,     ///< the origin of no cloud is the position of its sensor
 };
@@ -44,8 +44,8 @@ void leave_out_range_limit(PointSet& cloud, SensorAtOrigin at_origin);
 
 /// Finds the position of a cloud's sensor. With `yes`, it is the origin. Otherwise it is the centre
 /// of `cloud.limit`, or, without one, the viewpoint that the file states, unless the points show
-/// that they were not recorded from there (scan_pattern()). With `infer`, it is else the origin if
-/// the pattern of the points is evidence for that. Otherwise it is unknown.
+/// that they were not recorded from there (scan_pattern()). If there is neither, `infer` takes the
+/// origin if the pattern of the points is evidence for it. Otherwise the position is unknown.
 CloudSensor find_sensor(const PointSet& cloud, SensorAtOrigin at_origin);
 
 }  // namespace tofmap

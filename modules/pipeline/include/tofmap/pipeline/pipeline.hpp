@@ -106,8 +106,8 @@ struct FrameRecord {
   bool is_prepared() const { return damage.empty() && !repeats; }
 };
 
-/// A map that could not be joined with the others of its recording, because no place of them was
-/// recognised for sure. World coordinates are those of its first camera.
+/// A map that could not be joined with the others of its recording, because none of their places
+/// was recognised with certainty. World coordinates are those of its first camera.
 struct SeparateMap {
   Trajectory trajectory;  ///< world_from_camera of every frame registered in it
   Trajectory keyframes;   ///< world_from_camera of the keyframes
@@ -116,12 +116,12 @@ struct SeparateMap {
 
 /// A map of a room, with the records of all frames. World coordinates are those of its first
 /// camera. If tracking was lost and the maps before and after could not be joined, it is the map
-/// with most frames.
+/// with the most frames.
 struct RoomMap {
   Trajectory trajectory;                   ///< world_from_camera of every registered frame
   Trajectory keyframes;                    ///< world_from_camera of the keyframes
   MapCloud surface;                        ///< in world coordinates
-  std::vector<SeparateMap> separate_maps;  ///< the other maps, the one with most frames first
+  std::vector<SeparateMap> separate_maps;  ///< the other maps, that with the most frames first
   std::vector<Loop> loops;                 ///< all loops that were found, used or not
   int joins = 0;                           ///< RoomMapper::joins()
   int blind_joins = 0;                     ///< RoomMapper::blind_joins()
@@ -184,8 +184,8 @@ class MapRun {
   const RoomMapper& mapper() const { return mapper_; }
 
   /// Saves what is needed to resume the run. A run with the same sensor and options that loads it
-  /// continues to the same map, to the bit; errors() starts again from nothing. Only the build that
-  /// wrote the data can read them. load() throws std::exception if they are damaged.
+  /// continues to the same map, to the bit; errors() starts again without frames. Only the build
+  /// that wrote the data can read it. load() throws std::exception if the data is damaged.
   void save(std::ostream& out) const;
   void load(std::istream& in);
 

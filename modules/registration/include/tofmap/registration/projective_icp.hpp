@@ -100,8 +100,9 @@ struct RegistrationResult {
 
   /// Information (inverse covariance) about the same twist relative to each target, from its
   /// surfaces alone, without the prior, other targets, and the noise of normals. Zero along
-  /// degenerate directions. A target that does not see a direction of motion tells nothing of it,
-  /// however well another target does. Empty if too few correspondences were found.
+  /// degenerate directions. A target gives no information about a direction of motion that its
+  /// surfaces do not constrain, even if those of another target do. Empty if too few
+  /// correspondences were found.
   std::vector<Eigen::Matrix<double, 6, 6>> target_information;
 
   /// Number of degenerate directions of motion, of six: those in which the surfaces give less
@@ -147,7 +148,7 @@ double overlap_share(const SurfaceCloud& source, const Pose& world_from_source,
                      const RegistrationTarget& target, const CameraModel& camera,
                      const RegistrationOptions& options);
 
-/// What a target would tell of the pose of a source.
+/// What a registration with a target would tell about the pose of a source.
 struct TargetPreview {
   double overlap = 0;  ///< as overlap_share()
   /// As RegistrationResult::target_information, for residuals as large as predicted, but not zero
@@ -155,8 +156,8 @@ struct TargetPreview {
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-/// Estimates what a registration with a target would tell, from every eighth pixel in both axes at
-/// a pose that is nearly right. Nothing if the source has no points.
+/// Estimates what a registration with a target would tell about the pose, from every eighth pixel
+/// in both axes at a pose that is nearly right. All values are 0 if the source has no points.
 TargetPreview preview_target(const SurfaceCloud& source, const Pose& world_from_source,
                              const RegistrationTarget& target, const CameraModel& camera,
                              const RegistrationOptions& options);

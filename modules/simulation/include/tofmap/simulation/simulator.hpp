@@ -100,7 +100,7 @@ struct SimulatorOptions {
   /// 0 … 0.2 m (equation 12).
   double fixed_pattern_m = 0;
 
-  /// Seed of periodic errors and fixed pattern, 0 or larger. It stands for the individual camera.
+  /// Seed of periodic errors and fixed pattern, 0 or larger. It identifies the individual camera.
   int errors_seed = 1;
 
   // Ambient light.

@@ -35,8 +35,8 @@ struct CameraErrors {
   double systematic_m = 0;
   /// The number of frames that the model was learned from; 0: nothing is known.
   int frames = 0;
-  /// How many of the latest frames, without interruption, had B exposed later than directly after
-  /// A (up to one frame period).
+  /// Number of consecutive frames up to the latest one whose B was exposed late: up to one frame
+  /// period after A, not directly after it.
   int late_frames = 0;
 
   /// o: the constant part of the difference.
