@@ -84,17 +84,18 @@ std::string manual_page(const CLI::App& program) {
       << ".SH NAME\ntofmap \\- " << roff(program.get_description()) << '\n'
       << ".SH SYNOPSIS\n.B tofmap\n.I command\n[options]\n.SH COMMANDS\n";
   for (const CLI::App* command : commands_of(program)) write_command(out, *command);
-  out << ".SH SETTINGS\nOptions that\n.B \\-\\-set\nand a file for\n.B \\-\\-config\ntake, with "
-         "their defaults in parentheses. Each command has some of them: \\(aqtofmap "
-         "config COMMAND\\(aq prints these.\n";
+  out << ".SH SETTINGS\nThe options for\n.B \\-\\-set\nand for the file of\n.B "
+         "\\-\\-config\nwith their defaults in parentheses. Each command has some of them: "
+         "\\(aqtofmap config COMMAND\\(aq prints these.\n";
   ProgramOptions options;
   for (const OptionText& option : option_table("", options).texts()) {
     out << ".TP\n.B " << roff(option.key()) << " \\fR(" << roff(option.value) << ")\n"
         << roff(option.meaning) << " [" << roff(limits(option)) << "]\n";
   }
   out << ".SH EXIT STATUS\n"
-         ".TP\n0\ndone\n.TP\n1\na fault of the program itself\n.TP\n2\nwrong use\n.TP\n3\nbad "
-         "input\n.TP\n130\ninterrupted; what was finished is kept\n";
+         ".TP\n0\ndone\n.TP\n1\nan error in the program itself\n.TP\n2\nwrong usage or options\n"
+         ".TP\n3\nbad or missing input, or an output that cannot be written\n"
+         ".TP\n130\ninterrupted; finished work is kept\n";
   return out.str();
 }
 

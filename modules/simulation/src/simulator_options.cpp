@@ -86,7 +86,7 @@ std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
        "file of camera poses in TUM format, one per frame; empty: the path of the scene"},
       {"people", &S::people, 0, 8, "", "largest number of people who walk about"},
       {"people_paths", &S::people_paths, 0, 0, "",
-       "where people walk: ahead of the camera, on lines of their own, or by turns"},
+       "where people walk: ahead of the camera, on lines of their own, or alternately"},
       {"people_range_m", &S::people_range_m, 0.8, 10, "m",
        "mean range from the camera to the nearest person ahead of it"},
       {"doors", &S::doors, 0, 8, "", "largest number of doors that open and shut"},

@@ -7,8 +7,8 @@
 
 namespace tofmap {
 
-/// Wrong use: an argument or option that is not allowed. The message names the argument, the given
-/// value and the allowed values. The program exits with status 2.
+/// Wrong usage: an argument or option that is not allowed. The message names the argument, the
+/// given value and the allowed values. The program exits with status 2.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
