@@ -30,7 +30,7 @@ constexpr double steps_on_earlier_visits = 2;
 /// poses hardly change any more.
 constexpr double submap_radius_steps = 4;
 
-/// Number of frames since the begin of a map, or since something in front was found to move, in
+/// Number of frames since the beginning of a map, or since something in front was found to move, in
 /// which the background is registered by itself.
 constexpr int frames_until_trusted = 15;
 
@@ -143,7 +143,7 @@ TrackingResult RoomMapper::track_still(NewFrame& frame, std::span<const Keyframe
   const auto background = track_background(frame.timestamp_s, cloud, around, before, first);
   if (first.status != TrackingStatus::tracked) return first;
   // The oldest keyframe saw what was behind a thing that has moved since. Differences from a map
-  // that was joined tell of the join instead.
+  // that was joined are evidence about the join instead.
   std::vector<const Keyframe*> compared;
   for (const int id : first.targets) {
     if (is_own(keyframes_[id])) compared.push_back(&keyframes_[id]);

@@ -112,7 +112,7 @@ void RoomMapper::recognise_place() {
                       tolerance_m);
   };
   // The camera may be some way from the keyframe that recognises it, and turned, which moves the
-  // begin of its map.
+  // beginning of its map.
   const double since_begin_m =
       (keyframe.world_from_camera.translation() - travelled.back().begin_m).norm();
   const double near_m =
