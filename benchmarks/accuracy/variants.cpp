@@ -53,8 +53,8 @@ std::vector<Variant> ablations() {
   return {
       variant("joint", [](UnwrapOptions&) {}),
       variant("no coarser scales", [](auto& o) { o.scales = 1; }),
-      variant("amplitude tells of no edge", [](auto& o) { o.amplitude_edges = false; }),
-      variant("mixed pixels believed", [](auto& o) { o.mixed_pixels = false; }),
+      variant("edges in amplitude not used", [](auto& o) { o.amplitude_edges = false; }),
+      variant("mixed pixels not modelled", [](auto& o) { o.mixed_pixels = false; }),
       variant("no outliers", [](auto& o) { o.outlier_share = 1e-4; }),
       variant("surfaces face the camera (1 cm)", [](auto& o) { o.slope_m = 0.01; }),
       variant("1 iteration", [](auto& o) { o.count_iterations = 1; }),
@@ -97,7 +97,7 @@ std::vector<Variant> returns() {
       variant("no noise", [](JumpMethod& m) { m.has_noise_of_pixels = false; }),
       variant("two counts", [](JumpMethod& m) { m.has_all_counts = false; }),
       variant("sweeps one by one", [](JumpMethod& m) { m.schedule = MessageSchedule::one_by_one; }),
-      variant("residual unregarded", [](JumpMethod& m) { m.regards_residual = false; }),
+      variant("residual not used", [](JumpMethod& m) { m.regards_residual = false; }),
   };
 }
 

@@ -78,7 +78,7 @@ struct NamedScore {
 void print_scores(const std::string& title, const std::vector<NamedScore>& scores) {
   std::printf(
       "\n| %s | flying found, %% | removed are mixed, %% | right lost, %% | beyond 5 m | to 60° | "
-      "to 70° | to 80° | to 90° | RMSE, cm | over that before | median | ms |\n"
+      "to 70° | to 80° | to 90° | RMSE, cm | relative to unfiltered | median | ms |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
       title.c_str());
   for (const auto& [name, score] : scores) {

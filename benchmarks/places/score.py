@@ -75,7 +75,8 @@ class Score:
     frames: int
     registered: list
     ate_m: list
-    worst_m: float
+    worst_m: float  # largest error of a position
+    most_m: float  # error that at most one frame in a hundred of a map exceeds
     loops: int
     used: int
     wrong_loops: int
@@ -123,6 +124,7 @@ def score(recorded, result):
         frames=len(frames), registered=[len(path.indices) for path in paths],
         ate_m=[float(numpy.sqrt((errors ** 2).mean())) for errors in errors_m],
         worst_m=float(max(errors.max() for errors in errors_m)),
+        most_m=float(max(numpy.quantile(errors, 0.99, method="higher") for errors in errors_m)),
         loops=len(loops), used=len(used),
         wrong_loops=sum(bool(is_wrong(path, truth, one, [other])[0]) for path in paths
                         for one, other in used if one in path.row_of and other in path.row_of),

@@ -117,6 +117,22 @@ TEST(ResidualAgreement, AveragesNoiseOfSinglePixels) {
   EXPECT_NEAR(residual.residual_cycles, 0.05, 1e-5);
 }
 
+TEST(ResidualAgreement, LeavesOutNeighbourhoodsWhoseNoiseHidesTheWrapCount) {
+  DualFrequencyFrame frame = frame_at(7);
+  RangeImage image = image_of(frame, 1);
+  image.wrap_count.leftCols(10).setConstant(0);
+  for (Eigen::Index row = 0; row < frame.phase_b.rows(); ++row) {
+    for (Eigen::Index col = 20; col < frame.phase_b.cols(); ++col) {
+      frame.phase_b(row, col) += (row + col) % 2 == 0 ? 0.2F : -0.2F;  // a mean is off by 0.04
+    }
+  }
+  const double misfit = residual_agreement({{&frame, &image, {}}}, modulation).misfit_percent;
+  EXPECT_NEAR(misfit, 100.0 * 10 / 18, 1e-9) << "two columns are near the noise";
+
+  frame.phase_b.leftCols(20) = frame.phase_b.rightCols(20);
+  EXPECT_TRUE(std::isnan(residual_agreement({{&frame, &image, {}}}, modulation).misfit_percent));
+}
+
 TEST(ResidualAgreement, IsNotKnownWithoutPhases) {
   DualFrequencyFrame frame = frame_at(7);
   const RangeImage image = image_of(frame, 1);

@@ -21,15 +21,16 @@ namespace {
 /// were downsampled, keep the limit within this.
 constexpr double band = 1e-3;
 
-/// Width of the bands around and just before the limit, in which points are counted.
+/// Points just before the limit are counted from the inner border of its band to this many times
+/// its width.
 constexpr double bands_before = 5;
 
 constexpr std::size_t least_points = 30;
 constexpr double least_share = 1e-3;
 constexpr double most_beyond_share = 5e-4;
 
-/// A band of natural surfaces has less than a quarter of the points that are in the four bands
-/// before it; this is eight times as many.
+/// Least number of points at the limit over the number in the four bands before it. The outermost
+/// band of a real surface holds at most a quarter of those; this is eight times as many.
 constexpr double least_times_before = 2;
 
 /// Largest median deviation of the ranges, relative to that of planes in the same directions.

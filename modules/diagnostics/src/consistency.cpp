@@ -46,12 +46,31 @@ ImageF phase_b_residuals(const RangedFrame& ranged, const Modulation& modulation
   return residuals;
 }
 
-/// The mean residual of the pixels around a pixel that have the same wrap count, including the
-/// pixel itself.
-double mean_around(const ImageF& residuals, const ImageU8& counts, Eigen::Index row,
-                   Eigen::Index col) {
+/// The mean residual of the neighbourhood of a pixel.
+struct LocalMean {
+  double cycles = 0;
+  double standard_error = 0;  ///< by the scatter of the residuals
+  int pixels = 0;
+
+  /// Whether the mean is precise enough to tell apart two wrap counts whose residuals differ by
+  /// `step_cycles`: half of that difference exceeds three standard errors.
+  bool tells_apart(double step_cycles) const {
+    constexpr int least_pixels = 9;  // those around a corner of the image
+    constexpr double sigmas = 3;
+    return pixels >= least_pixels && sigmas * standard_error < step_cycles / 2;
+  }
+
+  /// Whether another wrap count, which changes residuals by `step_cycles`, would fit better.
+  bool is_misfit(double step_cycles) const { return std::abs(cycles) > step_cycles / 2; }
+};
+
+/// The mean residual of the 5 x 5 pixels around a pixel, including the pixel itself, that have the
+/// same wrap count.
+LocalMean mean_around(const ImageF& residuals, const ImageU8& counts, Eigen::Index row,
+                      Eigen::Index col) {
   constexpr Eigen::Index radius = 2;
   double sum = 0;
+  double square_sum = 0;
   int pixels = 0;
   const Eigen::Index last_row = std::min(residuals.rows() - 1, row + radius);
   const Eigen::Index last_col = std::min(residuals.cols() - 1, col + radius);
@@ -59,11 +78,15 @@ double mean_around(const ImageF& residuals, const ImageU8& counts, Eigen::Index 
     for (Eigen::Index c = std::max<Eigen::Index>(0, col - radius); c <= last_col; ++c) {
       if (std::isnan(residuals(r, c)) || counts(r, c) != counts(row, col)) continue;
       // Average the differences from the pixel's own residual: residuals wrap at half a cycle.
-      sum += nearest_cycle(residuals(r, c) - residuals(row, col));
+      const double difference = nearest_cycle(residuals(r, c) - residuals(row, col));
+      sum += difference;
+      square_sum += difference * difference;
       ++pixels;
     }
   }
-  return nearest_cycle(residuals(row, col) + sum / pixels);
+  // 0 / 0 for a single pixel, whose scatter is unknown.
+  const double variance = std::max(0.0, square_sum - sum * sum / pixels) / (pixels - 1);
+  return {nearest_cycle(residuals(row, col) + sum / pixels), std::sqrt(variance / pixels), pixels};
 }
 
 /// The smallest change of the residual that another wrap count of A makes, in cycles of B. Only
@@ -148,9 +171,11 @@ std::optional<double> thickness_at(const MapCloud& map, const Tree& tree, int in
 
 ResidualAgreement residual_agreement(const std::vector<RangedFrame>& frames,
                                      const Modulation& modulation) {
+  constexpr double least_telling_percent = 1;  // a few patches do not speak for a recording
   const double step_cycles = smallest_step_cycles(modulation);
   double square_sum = 0;
   double misfits = 0;
+  double telling = 0;
   double pixels = 0;
   for (const RangedFrame& ranged : frames) {
     const ImageF residuals = phase_b_residuals(ranged, modulation);
@@ -160,12 +185,15 @@ ResidualAgreement residual_agreement(const std::vector<RangedFrame>& frames,
         if (std::isnan(residual)) continue;
         ++pixels;
         square_sum += residual * residual;
-        const double around = mean_around(residuals, ranged.image->wrap_count, row, col);
-        misfits += std::abs(around) > step_cycles / 2 ? 1 : 0;
+        const LocalMean around = mean_around(residuals, ranged.image->wrap_count, row, col);
+        if (!around.tells_apart(step_cycles)) continue;
+        ++telling;
+        misfits += around.is_misfit(step_cycles) ? 1 : 0;
       }
     }
   }
-  return {std::isnan(step_cycles) ? nan : percent(misfits, pixels),
+  const bool is_known = telling >= least_telling_percent / 100 * pixels;
+  return {is_known ? percent(misfits, telling) : nan,
           pixels > 0 ? std::sqrt(square_sum / pixels) : nan};
 }
 
@@ -246,9 +274,9 @@ std::vector<std::string> warnings_about(const Consistency& consistency) {
   }
   if (consistency.residual_misfit_percent > most_misfit_percent) {
     warnings.push_back(
-        fmt::format("{:.0f} % of the pixels would fit both frequencies better with another "
-                    "wrap count: wrap counts are wrong, or there is an offset between the "
-                    "frequencies (see 'tofmap info')",
+        fmt::format("{:.0f} % of the pixels, of those with little noise, would fit both "
+                    "frequencies better with another wrap count: wrap counts are wrong, or there "
+                    "is an offset between the frequencies (see 'tofmap info')",
                     consistency.residual_misfit_percent));
   }
   return warnings;

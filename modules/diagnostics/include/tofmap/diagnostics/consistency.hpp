@@ -26,8 +26,10 @@ struct RangedFrame {
 
 /// How well the wrap counts agree with both frequencies. NaN if no pixel has both phases.
 struct ResidualAgreement {
-  /// Percentage of the pixels whose neighbourhood of 5 x 5 would fit both frequencies better with
-  /// another wrap count. Also NaN if the pair of frequencies cannot tell wrap counts apart.
+  /// Percentage of pixels whose neighbourhood of 5 x 5 would fit both frequencies better with
+  /// another wrap count. Neighbourhoods are left out whose noise hides the difference between wrap
+  /// counts: half of it must exceed three standard errors of the mean residual. Also NaN if more
+  /// than 99 % are left out, or if the pair of frequencies cannot tell wrap counts apart.
   double misfit_percent = 0;
   /// RMS difference between phase B and what the range from A predicts for it, per pixel.
   double residual_cycles = 0;
