@@ -74,6 +74,7 @@ struct MapOutput {
   FrameSample sample;
   std::vector<std::string> warnings = {};   ///< about the recording, then about the map
   nlohmann::ordered_json acquisition = {};  ///< report of a device; null for a recording
+  std::string state = {};                   ///< to resume an interrupted run from; else empty
   Failures failures = {};                   ///< failures of optional parts
 };
 
@@ -137,14 +138,9 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
   std::printf("map: %s, mesh beside it\n", (folder / "map.ply").c_str());
 }
 
-/// Adds consistency measures, mesh and map.pcd. A failure of one of them is stored, and the others
-/// are added all the same.
+/// Adds the state of an interrupted run, consistency measures, mesh and map.pcd. A failure of one of
+/// them is stored, and the others are still added.
 void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput& output) {
-  output.failures.attempt("consistency", [&] {
-    finished.consistency = consistency_of(finished.map, output.sample, output.sensor,
-                                          output.options.pipeline.unwrap.method);
-    std::ranges::move(warnings_about(finished.consistency), std::back_inserter(output.warnings));
-  });
   const auto add_file = [&](const char* name, const auto& write) {
     const std::filesystem::path file = out.path() / name;
     std::error_code ignored;
@@ -152,6 +148,14 @@ void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput&
       std::filesystem::remove(file, ignored);
     }
   };
+  if (!output.state.empty()) {
+    add_file(run_state_file, [&](const auto&) { out.write_text(run_state_file, output.state); });
+  }
+  output.failures.attempt("consistency", [&] {
+    finished.consistency = consistency_of(finished.map, output.sample, output.sensor,
+                                          output.options.pipeline.unwrap.method);
+    std::ranges::move(warnings_about(finished.consistency), std::back_inserter(output.warnings));
+  });
   const double voxel_m = output.options.pipeline.map.voxel_m;
   const MapCloud& surface = finished.map.surface;
   add_file("mesh.ply", [&](const auto& file) { write_mesh(file, extract_mesh(surface, voxel_m)); });
@@ -216,8 +220,8 @@ int add_reports(const OutputFolder& out, const FinishedMap& finished, const MapO
                          output.sensor, options.pipeline.unwrap, output.arguments.common.quiet);
   };
   const SequenceReader* recording = map.interrupted ? nullptr : input.recording();
-  const int status =
-      map.interrupted ? exit_status::interrupted : output.failures.status_or(exit_status::done);
+  const int status = output.failures.status_or(map.interrupted ? exit_status::interrupted
+                                                               : exit_status::done);
   return add_to_result(
       out.final_path(), status,
       {{"pictures", [&] { add_pictures(out.final_path(), draw); }},
@@ -290,7 +294,8 @@ void resume(MapRun& run, SequenceReader& recording, const std::filesystem::path&
 }
 
 void print_end(const RoomMap& map, const MapInput& input, const OutputFolder& out) {
-  const bool can_be_resumed = map.interrupted && input.is_recording();
+  const bool can_be_resumed =
+      map.interrupted && std::filesystem::exists(out.final_path() / run_state_file);
   if (can_be_resumed) {
     std::printf("interrupted; --resume continues from %s\n", out.final_path().c_str());
   }
@@ -327,7 +332,7 @@ int run_map(const MapArguments& arguments) {
     input.close();
     output.acquisition = input.acquisition();
     if (run.is_interrupted() && input.is_recording()) {
-      write_run_state(out.path(), run, *input.recording(), options.pipeline);
+      output.state = run_state(run, *input.recording(), options.pipeline);
     }
     finished = finish_map(run, out, output);
   });

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/input_file.hpp>
 #include <tofmap/core/text.hpp>
 #include <tofmap/simulation/triangle_mesh.hpp>
 #include <tofmap/visualization/map_pictures.hpp>
@@ -62,8 +63,8 @@ class ViewedMesh final : public Viewed {
 
 /// Whether a file is a mesh: an OBJ file, or a PLY file with faces.
 bool is_mesh(const fs::path& file) {
-  if (file.extension() == ".obj") return true;
-  if (file.extension() != ".ply") return false;
+  if (lower_extension(file) == ".obj") return true;
+  if (lower_extension(file) != ".ply") return false;
   std::ifstream in(file, std::ios::binary);
   for (std::string line; std::getline(in, line) && line.rfind("end_header", 0) != 0;) {
     if (line.rfind("element face ", 0) == 0) return line.rfind("element face 0", 0) != 0;

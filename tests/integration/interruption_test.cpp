@@ -111,6 +111,7 @@ class InterruptedMap : public Interruption {
     std::this_thread::sleep_for(300ms);  // some frames; none would do as well
     program.send(SIGINT);
     finished_ = program.wait();
+    whole_list_ = read_text(sequence_ / "frames.txt");
     shorten_recording(read_json(out_ / "report.json")["frames"].size() + frames_left);
   }
 
@@ -129,6 +130,7 @@ class InterruptedMap : public Interruption {
   }
 
   Finished finished_;
+  std::string whole_list_;  ///< frames.txt of the recording before it was shortened
 };
 
 TEST_F(InterruptedMap, KeepsTheMapSoFar) {
@@ -241,6 +243,32 @@ TEST_F(InterruptedMap, DoesNotGoOnWithOtherOptions) {
   EXPECT_EQ(resumed.status, 2);
   EXPECT_THAT(resumed.err, HasSubstr("voxel_m: 0.05"));
   EXPECT_TRUE(fs::exists(out_ / "state.bin")) << "what there was is lost";
+}
+
+TEST_F(InterruptedMap, DoesNotGoOnWithAnotherLargestRange) {
+  std::ofstream(sequence_ / "sequence.yaml", std::ios::app) << "max_range_m: 9\n";
+  const Finished resumed = resume();
+  EXPECT_EQ(resumed.status, 2);
+  EXPECT_THAT(resumed.err, HasSubstr("largest range: 9 m"));
+}
+
+TEST_F(InterruptedMap, IsKeptWithoutItsStateIfTheDiskIsFull) {
+  if (TOFMAP_COVERAGE) GTEST_SKIP() << "coverage is written to files, too";
+  const std::size_t state = fs::file_size(out_ / "state.bin");
+  const std::size_t map = fs::file_size(out_ / "map.ply");
+  ASSERT_LT(map, state / 2);
+  fs::remove_all(out_);
+  std::ofstream(sequence_ / "frames.txt") << whole_list_;
+  RunningProgram program(map_arguments(out_), {.max_file_bytes = state / 2});
+  EXPECT_TRUE(comes_true([&] { return !partial_folder().empty(); }));
+  std::this_thread::sleep_for(300ms);
+  program.send(SIGINT);
+  const Finished finished = program.wait();
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, HasSubstr("holds the map, but without state.bin: "));
+  EXPECT_THAT(finished.out, Not(HasSubstr("--resume")));
+  EXPECT_TRUE(fs::exists(out_ / "map.ply"));
+  EXPECT_FALSE(fs::exists(out_ / "state.bin"));
 }
 
 TEST_F(InterruptedMap, DoesNotGoOnWithAnotherRecording) {

@@ -3,6 +3,9 @@
 
 #include "any_cloud_file.hpp"
 
+#include "cloud_headers.hpp"
+#include "legacy_vtk.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -15,11 +18,9 @@
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
 #include <pcl/point_types.h>
-#include <vtkDataSetReader.h>
 #include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkObject.h>
-#include <vtkPointSet.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataReader.h>
@@ -45,10 +46,10 @@ class QuietVtk {
   }
 };
 
-/// Copies points into a cloud with the fields x, y and z as doubles.
-pcl::PCLPointCloud2 cloud_of(vtkPoints* points) {
+/// A cloud with the fields x, y and z as doubles.
+pcl::PCLPointCloud2 cloud_of(const std::vector<Eigen::Vector3d>& positions) {
+  static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
   pcl::PCLPointCloud2 cloud;
-  const vtkIdType count = points == nullptr ? 0 : points->GetNumberOfPoints();
   for (int axis = 0; axis < 3; ++axis) {
     pcl::PCLPointField field;
     field.name = std::string(1, static_cast<char>('x' + axis));
@@ -57,28 +58,27 @@ pcl::PCLPointCloud2 cloud_of(vtkPoints* points) {
     field.count = 1;
     cloud.fields.push_back(field);
   }
-  cloud.point_step = 3 * sizeof(double);
+  cloud.point_step = sizeof(Eigen::Vector3d);
   cloud.height = 1;
-  cloud.width = static_cast<std::uint32_t>(count);
+  cloud.width = static_cast<std::uint32_t>(positions.size());
   cloud.row_step = cloud.width * cloud.point_step;
-  cloud.data.resize(static_cast<std::size_t>(count) * cloud.point_step);
-  for (vtkIdType i = 0; i < count; ++i) {
-    std::array<double, 3> at{};
-    points->GetPoint(i, at.data());
-    std::memcpy(cloud.data.data() + static_cast<std::size_t>(i) * cloud.point_step, at.data(),
-                cloud.point_step);
-  }
+  cloud.data.resize(positions.size() * cloud.point_step);
+  if (!positions.empty()) std::memcpy(cloud.data.data(), positions.data(), cloud.data.size());
   return cloud;
 }
 
-template <class Reader>
-pcl::PCLPointCloud2 read_with(const std::filesystem::path& file) {
+std::vector<Eigen::Vector3d> read_vtp(const std::filesystem::path& file) {
   const QuietVtk quiet;
-  vtkNew<Reader> reader;
+  vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName(file.c_str());
   reader->Update();
-  auto* points = vtkPointSet::SafeDownCast(reader->GetOutput());
-  return cloud_of(points == nullptr ? nullptr : points->GetPoints());
+  vtkPoints* points = reader->GetOutput()->GetPoints();
+  const vtkIdType count = points == nullptr ? 0 : points->GetNumberOfPoints();
+  std::vector<Eigen::Vector3d> positions(static_cast<std::size_t>(count));
+  for (vtkIdType i = 0; i < count; ++i) {
+    points->GetPoint(i, positions[static_cast<std::size_t>(i)].data());
+  }
+  return positions;
 }
 
 template <class Number>
@@ -110,38 +110,26 @@ double value_at(const std::uint8_t* bytes, std::uint8_t datatype) {
   }
 }
 
-/// Whether a file has the header of a PCD file. PCL crashes on other files.
-bool has_pcd_header(const std::filesystem::path& file) {
-  constexpr int most_lines = 100;  // of a header, including comments
-  std::ifstream in(file, std::ios::binary);
-  bool has_fields = false;
-  std::string line;
-  for (int number = 0; number < most_lines && std::getline(in, line); ++number) {
-    if (line.starts_with("FIELDS") || line.starts_with("COLUMNS")) has_fields = true;
-    if (line.starts_with("DATA")) return has_fields;
-  }
-  return false;
-}
-
 /// Reads a file in the format that its ending names. Returns false if that fails, or if the header
-/// states more points than fit into memory. Throws InputError for other endings.
+/// states more points than fit into memory. Throws InputError for other endings, and for damage
+/// that is known.
 bool read_by_ending(const std::filesystem::path& file, AnyCloud& cloud) try {
   const QuietPcl quiet;
-  const std::string kind = file.extension().string();
+  const std::string kind = lower_extension(file);
   Eigen::Vector4f origin = Eigen::Vector4f::Zero();
   Eigen::Quaternionf orientation = Eigen::Quaternionf::Identity();
   int version = 0;
   int status = 0;
   if (kind == ".ply") {
+    check_ply_header(file);
     status = pcl::PLYReader().read(file.string(), cloud.data, origin, orientation, version);
   } else if (kind == ".pcd") {
-    status = has_pcd_header(file)
-                 ? pcl::PCDReader().read(file.string(), cloud.data, origin, orientation, version)
-                 : -1;
+    check_pcd_header(file);
+    status = pcl::PCDReader().read(file.string(), cloud.data, origin, orientation, version);
   } else if (kind == ".vtk") {
-    cloud.data = read_with<vtkDataSetReader>(file);
+    cloud.data = cloud_of(read_legacy_vtk(file));
   } else if (kind == ".vtp") {
-    cloud.data = read_with<vtkXMLPolyDataReader>(file);
+    cloud.data = cloud_of(read_vtp(file));
   } else {
     throw InputError("not a .ply, .pcd, .vtk or .vtp file; convert it to one of these formats");
   }
@@ -160,7 +148,7 @@ bool read_by_ending(const std::filesystem::path& file, AnyCloud& cloud) try {
 
 constexpr bool with_camera = false;
 
-bool is_pcd(const std::filesystem::path& file) { return file.extension() == ".pcd"; }
+bool is_pcd(const std::filesystem::path& file) { return lower_extension(file) == ".pcd"; }
 
 bool write_points(const std::filesystem::path& file, const pcl::PCLPointCloud2& cloud) {
   constexpr bool binary = true;

@@ -5,6 +5,9 @@
 
 #include "tofmap/core/error.hpp"
 
+#include <algorithm>
+#include <cctype>
+
 namespace tofmap {
 
 void refuse_no_file(const std::filesystem::path& path) {
@@ -14,6 +17,13 @@ void refuse_no_file(const std::filesystem::path& path) {
   throw InputError(path.string() + (std::filesystem::is_directory(status)
                                         ? ": is a folder; a file is expected"
                                         : ": is not a regular file"));
+}
+
+std::string lower_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
 }
 
 }  // namespace tofmap

@@ -17,9 +17,8 @@
 namespace tofmap {
 namespace {
 
-constexpr const char* file_name = "state.bin";
 // Raise the number after the comma whenever the stored data change between two releases.
-constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 16";
+constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 17";
 
 /// The camera, frequencies and options of a run, one per line. A run can only resume a run with the
 /// same lines.
@@ -28,9 +27,13 @@ std::vector<std::string> identity(const SensorModel& sensor, PipelineOptions opt
   text.precision(17);
   const CameraModel& camera = sensor.camera;
   text << "camera: " << camera.width_px << " x " << camera.height_px << " px, " << camera.fx_px
-       << ' ' << camera.fy_px << ' ' << camera.cx_px << ' ' << camera.cy_px << '\n'
+       << ' ' << camera.fy_px << ' ' << camera.cx_px << ' ' << camera.cy_px << ", distortion";
+  for (const double coefficient : camera.distortion) text << ' ' << coefficient;
+  text << '\n'
        << "frequencies: " << sensor.modulation.frequency_a_hz << ' '
-       << sensor.modulation.frequency_b_hz << " Hz\n";
+       << sensor.modulation.frequency_b_hz << " Hz\n"
+       << "largest range: " << sensor.max_range_m << " m, saturation: "
+       << sensor.saturation_amplitude << '\n';
   OptionTable table;
   bind_options(table, options);
   text << table.to_yaml(false);
@@ -106,8 +109,7 @@ std::string read_checked(const std::filesystem::path& file) {
 
 }  // namespace
 
-void write_run_state(const std::filesystem::path& folder, const MapRun& run,
-                     const SequenceReader& source, PipelineOptions options) {
+std::string run_state(const MapRun& run, const SequenceReader& source, PipelineOptions options) {
   std::ostringstream state;
   state << first_line << '\n';
   for (const std::string& line : identity(source.sensor(), std::move(options))) {
@@ -115,18 +117,15 @@ void write_run_state(const std::filesystem::path& folder, const MapRun& run,
   }
   state << recording_line(source, static_cast<int>(run.frames().size())) << '\n';
   run.save(state);
-  const std::string text = std::move(state).str();
-  const std::filesystem::path file = folder / file_name;
-  std::ofstream out(file, std::ios::binary);
-  out << text << checksum_line(text);
-  out.close();
-  if (!out) throw InputError(file.string() + ": cannot be written; is the disk full?");
+  std::string text = std::move(state).str();
+  text += checksum_line(text);
+  return text;
 }
 
 void resume_run(const std::filesystem::path& folder, MapRun& run, SequenceReader& source,
                 PipelineOptions options) {
   if (!std::filesystem::exists(folder)) return;
-  const std::filesystem::path file = folder / file_name;
+  const std::filesystem::path file = folder / run_state_file;
   if (!std::filesystem::is_regular_file(file)) {
     throw InputError(
         folder.string() +

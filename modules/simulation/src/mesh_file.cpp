@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -18,12 +17,6 @@ namespace {
 
 /// Larger meshes are hardly in metres.
 constexpr double max_extent_m = 1000;
-
-std::string ending(const std::filesystem::path& file) {
-  std::string text = file.extension().string();
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
 
 void check(const TriangleMesh& mesh, const std::filesystem::path& file) {
   if (mesh.triangles.empty()) {
@@ -74,7 +67,7 @@ void add_polygon(TriangleMesh& mesh, std::span<const long> corners,
 }
 
 TriangleMesh read_mesh(const std::filesystem::path& file) {
-  const std::string kind = ending(file);
+  const std::string kind = lower_extension(file);
   if (kind != ".ply" && kind != ".obj") {
     fail_to_read(file, "is neither .ply nor .obj; convert it to one of them");
   }

@@ -8,6 +8,7 @@
 #include <array>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/input_file.hpp>
 
 namespace tofmap {
 namespace {
@@ -34,8 +35,8 @@ constexpr std::array<NamedScene, 10> builtin{{{"wall", without_seed<wall_scene>}
                                               {"random", random_scene}}};
 
 bool is_mesh_name(const std::string& text) {
-  const std::string ending = std::filesystem::path(text).extension().string();
-  return ending == ".ply" || ending == ".obj" || ending == ".PLY" || ending == ".OBJ";
+  const std::string ending = lower_extension(text);
+  return ending == ".ply" || ending == ".obj";
 }
 
 }  // namespace

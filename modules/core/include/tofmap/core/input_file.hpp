@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace tofmap {
 
@@ -10,5 +11,8 @@ namespace tofmap {
 /// keep a reader waiting for ever. Does nothing if `path` does not exist, because the caller that
 /// opens it has a better message.
 void refuse_no_file(const std::filesystem::path& path);
+
+/// The extension of a file in lower case, with its dot: ".ply" for `a/b.PLY`.
+std::string lower_extension(const std::filesystem::path& file);
 
 }  // namespace tofmap

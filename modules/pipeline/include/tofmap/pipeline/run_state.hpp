@@ -3,18 +3,20 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
 
 namespace tofmap {
 
-/// Writes the state of an interrupted run into `folder` as `state.bin`, so that resume_run() can
+/// The name of the file that holds the state of an interrupted run in a result folder.
+inline constexpr const char* run_state_file = "state.bin";
+
+/// The state of an interrupted run as the bytes of a run_state_file, from which resume_run() can
 /// continue it later. `source` is the recording that the run reads, `options` are the run's
-/// options; both are stored to recognise them. Throws InputError if the file cannot be written
-/// whole.
-void write_run_state(const std::filesystem::path& folder, const MapRun& run,
-                     const SequenceReader& source, PipelineOptions options);
+/// options; both are stored to recognise them.
+std::string run_state(const MapRun& run, const SequenceReader& source, PipelineOptions options);
 
 /// Resumes the interrupted run of a result folder: fills `run`, and moves `source` to the first
 /// frame that is not processed yet. Does nothing if the folder does not exist. Throws InputError if
