@@ -115,15 +115,44 @@ void print_samples(const RecordingSamples& collected, const SensorModel& sensor)
   }
 }
 
+/// What the difference of the offsets contains besides them.
+const char* remark_on_motion(CalibrationReference reference) {
+  switch (reference) {
+    case CalibrationReference::residual:
+      return "; this includes motion between the two exposures";
+    case CalibrationReference::truth:
+      return "; if the camera moved, this includes its motion after the exposure of A, to which "
+             "the "
+             "true ranges belong";
+    case CalibrationReference::wall:
+    case CalibrationReference::best_there_is:
+      break;
+  }
+  return "";
+}
+
 void print_fit(const PhaseErrorFit& fit, CalibrationReference reference) {
   print_error("A", fit.error_a, fit.offset_sigma_a_m);
   print_error("B", fit.error_b, fit.offset_sigma_b_m);
   std::printf("A measures %.1f mm %s than B (within %.1f mm)%s\n",
               1000 * std::abs(fit.offset_m.value), fit.offset_m.value < 0 ? "less" : "more",
-              1000 * fit.offset_m.sigma,
-              reference == CalibrationReference::residual
-                  ? "; this includes motion between the two exposures"
-                  : "");
+              1000 * fit.offset_m.sigma, remark_on_motion(reference));
+}
+
+/// Throws InputError if the phases have nothing to do with the reference ranges.
+void refuse_unrelated(const RecordingSamples& collected, CalibrationReference reference,
+                      const SequenceReader& source) {
+  constexpr double least_agreement = 0.6;
+  if (reference == CalibrationReference::residual || collected.samples.empty()) return;
+  if (agreement_with_references(collected.samples, source.sensor().modulation) > least_agreement) {
+    return;
+  }
+  throw InputError(source.folder().string() +
+                   (reference == CalibrationReference::truth
+                        ? ": the true ranges are not those of the phases; does range_truth belong "
+                          "to this recording, and are the frequencies right?"
+                        : ": the distances of the wall are not those of the phases; do they belong "
+                          "to this recording, and are the frequencies right?"));
 }
 
 PhaseErrorFit fit_samples(const std::vector<RangeSample>& samples, CalibrationReference reference,
@@ -170,6 +199,7 @@ int run_calibrate(const CalibrateArguments& arguments) {
   if (is_interrupted()) return exit_status::interrupted;
   if (reference == CalibrationReference::truth) print_remarks(truth);
   refuse_mostly_damaged(collected.damaged, collected.read, collected.first_damage);
+  refuse_unrelated(collected, reference, source);
   const PhaseErrorFit fit = fit_samples(collected.samples, reference, source, fit_options);
   if (is_interrupted()) return exit_status::interrupted;
   CameraCalibration calibration;

@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 
 #include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/core/text.hpp>
 #include <tofmap/diagnostics/recording_survey.hpp>
 
 namespace tofmap::app {
@@ -89,6 +90,10 @@ int run_info(const InfoArguments& arguments) {
   const SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
   const RecordingSurvey survey = read_all(source, arguments.common.quiet);
   print_sensor(source.sensor());
+  if (is_interrupted()) {
+    std::printf("interrupted: all that follows is about the first %s alone\n",
+                counted(static_cast<std::size_t>(survey.frames), "frame").c_str());
+  }
   print_frames(source, survey);
   print_warnings(warnings_about(survey, source.sensor()));
   return is_interrupted() ? exit_status::interrupted : exit_status::done;

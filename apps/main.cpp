@@ -51,6 +51,13 @@ int run(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    const std::string first = argc > 1 ? argv[1] : "";
+    const auto is_first = [&](const CLI::App* one) { return one->check_name(first); };
+    const bool is_word = !first.empty() && !first.starts_with('-');
+    if (is_word && program.get_subcommands(is_first).empty()) {
+      return fail(exit_status::bad_use,
+                  "there is no command '" + first + "'; 'tofmap --help' lists all commands");
+    }
     const bool asked_for_text = program.exit(error) == 0;
     return asked_for_text ? exit_status::done : exit_status::bad_use;
   }

@@ -135,11 +135,12 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
   }
   if (map.damaged() > 0) std::printf("%d frames were damaged; see report.json\n", map.damaged());
   for (const std::string& remark : remarks_about(map.errors)) std::printf("%s\n", remark.c_str());
-  std::printf("map: %s, mesh beside it\n", (folder / "map.ply").c_str());
+  const bool has_mesh = std::filesystem::exists(folder / "mesh.ply");
+  std::printf("map: %s%s\n", (folder / "map.ply").c_str(), has_mesh ? ", mesh beside it" : "");
 }
 
-/// Adds the state of an interrupted run, consistency measures, mesh and map.pcd. A failure of one of
-/// them is stored, and the others are still added.
+/// Adds the state of an interrupted run, consistency measures, mesh and map.pcd. A failure of one
+/// of them is stored, and the others are still added.
 void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput& output) {
   const auto add_file = [&](const char* name, const auto& write) {
     const std::filesystem::path file = out.path() / name;
@@ -220,8 +221,8 @@ int add_reports(const OutputFolder& out, const FinishedMap& finished, const MapO
                          output.sensor, options.pipeline.unwrap, output.arguments.common.quiet);
   };
   const SequenceReader* recording = map.interrupted ? nullptr : input.recording();
-  const int status = output.failures.status_or(map.interrupted ? exit_status::interrupted
-                                                               : exit_status::done);
+  const int status =
+      output.failures.status_or(map.interrupted ? exit_status::interrupted : exit_status::done);
   return add_to_result(
       out.final_path(), status,
       {{"pictures", [&] { add_pictures(out.final_path(), draw); }},

@@ -25,6 +25,7 @@
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/side_by_side.hpp>
 #include <tofmap/core/text.hpp>
+#include <tofmap/evaluation/recorded_truth.hpp>
 #include <tofmap/filters/sliding_fusion.hpp>
 #include <tofmap/pipeline/frame_sample.hpp>
 #include <tofmap/pipeline/measured_recording.hpp>
@@ -56,10 +57,7 @@ void limit_to_image_format(UnwrapOptions& options, const SensorModel& sensor) {
 /// Reads a trajectory; throws InputError if it has no pose for any frame of the recording.
 Trajectory poses_of(const SequenceReader& source, const std::filesystem::path& file) {
   Trajectory poses = read_trajectory(file);
-  const bool fits = std::ranges::any_of(source.files(), [&](const SequenceFrameFiles& frame) {
-    return frame.damage.empty() && pose_at(poses, frame.timestamp_s).has_value();
-  });
-  if (fits) return poses;
+  if (has_pose_of_a_frame(poses, source.files())) return poses;
   throw InputError(file.string() + ": has no pose within " + std::to_string(max_pose_gap_s) +
                    " s of any frame of " + source.folder().string() +
                    "; does it belong to another recording?");

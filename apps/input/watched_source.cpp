@@ -4,12 +4,14 @@
 #include "input/watched_source.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include <fmt/format.h>
 
 #include <tofmap/core/median.hpp>
 #include <tofmap/core/text.hpp>
 #include <tofmap/diagnostics/axial_depth.hpp>
+#include <tofmap/diagnostics/recording_survey.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -28,28 +30,20 @@ FirstFrames judge_first(const std::vector<DualFrequencyFrame>& frames, const Sen
   return {{}, residual};
 }
 
-/// All warnings about a source: about its first frames, the offset between the frequencies, and
-/// gaps in time.
-std::vector<std::string> all_warnings(const FirstFrames& first, const CameraErrors* camera,
-                                      const std::optional<std::string>& gap) {
-  std::vector<std::string> warnings = first.warnings;
-  const auto offset = first.residual ? offset_warning(*first.residual, camera) : std::nullopt;
-  for (const auto& warning : {offset, gap}) {
-    if (warning) warnings.push_back(*warning);
-  }
-  return warnings;
+/// The times between the frames at these times.
+std::vector<double> periods_between(const std::vector<double>& times_s) {
+  std::vector<double> periods_s;
+  for (std::size_t i = 1; i < times_s.size(); ++i) periods_s.push_back(times_s[i] - times_s[i - 1]);
+  return periods_s;
 }
 
 /// A warning if some frames are more than 3.5 median frame periods apart. Empty if there are none.
-std::optional<std::string> gap_warning(const std::vector<double>& times_s) {
-  std::vector<double> periods_s;
-  for (std::size_t i = 1; i < times_s.size(); ++i) periods_s.push_back(times_s[i] - times_s[i - 1]);
-  if (periods_s.empty()) return std::nullopt;
+std::optional<std::string> gap_warning(const std::vector<double>& times_s,
+                                       const std::vector<double>& periods_s, double usual_s) {
   const auto longest = std::ranges::max_element(periods_s);
   const double longest_s = *longest;
   const double before_s = times_s[static_cast<std::size_t>(longest - periods_s.begin())];
   constexpr double most_periods = 3.5;
-  const double usual_s = median(periods_s);
   const auto gaps = static_cast<std::size_t>(std::ranges::count_if(
       periods_s, [&](double period_s) { return period_s > most_periods * usual_s; }));
   if (gaps == 0) return std::nullopt;
@@ -57,6 +51,30 @@ std::optional<std::string> gap_warning(const std::vector<double>& times_s) {
                                     " between frames, the longest of {:.2f} s after time {:.3f} s; "
                                     "the trajectory across a gap is less certain",
                                     longest_s, before_s);
+}
+
+/// Warnings about the times of the frames of a source.
+std::vector<std::string> time_warnings(const std::vector<double>& times_s) {
+  const std::vector<double> periods_s = periods_between(times_s);
+  if (periods_s.empty()) return {};
+  std::vector<double> sorted_s = periods_s;
+  const double usual_s = median(sorted_s);
+  std::vector<std::string> warnings;
+  for (const auto& warning : {period_warning(usual_s), gap_warning(times_s, periods_s, usual_s)}) {
+    if (warning) warnings.push_back(*warning);
+  }
+  return warnings;
+}
+
+/// All warnings about a source: about its first frames, the offset between the frequencies, and the
+/// times of the frames.
+std::vector<std::string> all_warnings(const FirstFrames& first, const CameraErrors* camera,
+                                      const std::vector<double>& times_s) {
+  std::vector<std::string> warnings = first.warnings;
+  const auto offset = first.residual ? offset_warning(*first.residual, camera) : std::nullopt;
+  if (offset) warnings.push_back(*offset);
+  std::ranges::move(time_warnings(times_s), std::back_inserter(warnings));
+  return warnings;
 }
 
 }  // namespace
@@ -78,7 +96,7 @@ void WatchedSource::judge() {
 
 std::vector<std::string> WatchedSource::warnings(const CameraErrors* camera) {
   if (!judged_) judge();
-  return all_warnings(*judged_, camera, gap_warning(times_s_));
+  return all_warnings(*judged_, camera, times_s_);
 }
 
 std::vector<std::string> warnings_about(const SequenceReader& recording,
@@ -92,7 +110,7 @@ std::vector<std::string> warnings_about(const SequenceReader& recording,
     SourcedFrame sourced = recording.read(i);
     if (sourced.frame) first.push_back(*std::move(sourced.frame));
   }
-  return all_warnings(judge_first(first, recording.sensor()), camera, gap_warning(times_s));
+  return all_warnings(judge_first(first, recording.sensor()), camera, times_s);
 }
 
 }  // namespace tofmap::app

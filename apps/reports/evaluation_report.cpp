@@ -6,6 +6,7 @@
 #include "output/frame_report.hpp"
 #include "reports/consistency_report.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -58,7 +59,8 @@ Json over_range_json(const MethodResult& result) {
 }
 
 Json trajectory_json(const MethodResult& result) {
-  Json json = {{"registered_frames", result.map->trajectory.size()}};
+  Json json = {{"registered_frames", result.map->trajectory.size()},
+               {"separate_maps", result.map->separate_maps.size()}};
   if (!result.scores.trajectory) return json;
   json["ate_rmse_m"] = json_number(result.scores.trajectory->ate_rmse_m);
   json["ate_max_m"] = json_number(result.scores.trajectory->ate_max_m);
@@ -101,6 +103,7 @@ struct Column {
   const char* title;
   const char* unit;
   int decimals;
+  bool is_hidden_if_zero = false;  ///< the column is left out if it is 0 for all methods
 };
 
 constexpr std::array columns{
@@ -109,6 +112,7 @@ constexpr std::array columns{
     Column{"unwrapping", "milliseconds_per_frame", "unwrap", "ms/frame", 1},
     Column{"filters", "removed_percent", "filters", "remove %", 1},
     Column{"trajectory", "registered_frames", "frames", "registered", 0},
+    Column{"trajectory", "separate_maps", "other", "maps", 0, true},
     Column{"trajectory", "ate_rmse_m", "ATE", "RMSE m", 4},
     Column{"trajectory", "rpe_rmse_m_per_m", "RPE", "m per m", 4},
     Column{"map", "accuracy_m", "map", "error m", 4},
@@ -121,6 +125,16 @@ std::string cell(const Json& report, const Column& column, const std::string& me
   const Json& values = (*group)[method];
   if (!values.contains(column.metric) || !values[column.metric].is_number()) return "-";
   return fmt::format("{:.{}f}", values[column.metric].get<double>(), column.decimals);
+}
+
+/// Whether a column is not worth its place in the table.
+bool is_hidden(const Json& report, const Column& column) {
+  const auto group = report.find(column.group);
+  if (group == report.end()) return true;
+  if (!column.is_hidden_if_zero) return false;
+  return std::ranges::all_of(*group, [&](const Json& values) {
+    return !values.contains(column.metric) || values[column.metric] == 0;
+  });
 }
 
 }  // namespace
@@ -140,7 +154,7 @@ std::vector<std::vector<std::string>> table_of(const Json& report) {
   std::vector<std::vector<std::string>> lines{{"method"}, {""}};
   for (const auto& [method, values] : report["unwrapping"].items()) lines.push_back({method});
   for (const Column& column : columns) {
-    if (!report.contains(column.group)) continue;
+    if (is_hidden(report, column)) continue;
     lines[0].push_back(column.title);
     lines[1].push_back(column.unit);
     for (std::size_t i = 2; i < lines.size(); ++i) {

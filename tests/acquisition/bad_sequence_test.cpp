@@ -158,6 +158,21 @@ TEST_F(BadSequence, MaximumRangeIsNotAboveZero) {
   }
 }
 
+TEST_F(BadSequence, MaximumRangeNeedsTooManyWraps) {
+  replace("sequence.yaml", "12.75", "1e9");
+  expect_refusal({"sequence.yaml", "max_range_m", "255 wavelengths"});
+}
+
+TEST_F(BadSequence, LineNamesAFileTwice) {
+  for (const char* files : {"phase_a/000000.png phase_a/000000.png",
+                            "phase_a/000000.png phase_b/000000.png phase_a/000000.png"}) {
+    std::ofstream(folder_ / "frames.txt") << "0 " << files << '\n';
+    expect_refusal({"frames.txt:1", "'phase_a/000000.png' twice"});
+  }
+  std::ofstream(folder_ / "frames.txt") << "0 phase_a/000000.png phase_b/000000.png - -\n";
+  EXPECT_NO_THROW(SequenceReader{folder_});
+}
+
 TEST_F(BadSequence, LineHasTooFewOrTooManyColumns) {
   std::ofstream(folder_ / "frames.txt") << "# c\n0 phase_a/000000.png\n";
   expect_refusal({"frames.txt:2", "2 column"});

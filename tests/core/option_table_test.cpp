@@ -240,6 +240,13 @@ TEST_F(Options, InAFileAreRefusedWithFileAndLine) {
                              {"options.yaml:2", "other.count"});
 }
 
+TEST_F(Options, ThatAFileGivesTwiceAreRefused) {
+  expect_refusal<InputError>([&] { table_.load(file("stage:\n  count: 3\n  count: 4\n")); },
+                             {"options.yaml:3", "stage.count", "twice"});
+  expect_refusal<InputError>([&] { table_.load(file("stage:\n  count: 3\nstage:\n")); },
+                             {"options.yaml:3", "stage", "twice"});
+}
+
 TEST_F(Options, OfAFileThatCannotBeReadAreBadInput) {
   expect_refusal<InputError>([&] { table_.load(folder_.path() / "none.yaml"); }, {"none.yaml"});
   expect_refusal<InputError>([&] { table_.load(file("stage: [1\n")); },

@@ -60,6 +60,12 @@ TEST_F(BadOptions, AssignmentWithoutValueIsRefused) {
   expect_bad_use({"--set", "unwrap.max_range_m"}, {"group.name=value"});
 }
 
+TEST(BadCommand, IsNamed) {
+  const Finished finished = run_program({"foo", "--out", "bar"});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_THAT(finished.err, HasSubstr("no command 'foo'"));
+}
+
 TEST_F(BadOptions, UnknownArgumentIsRefused) { expect_bad_use({"--fast"}, {"--fast"}); }
 
 TEST_F(BadOptions, NumberOfThreadsIsChecked) { expect_bad_use({"--threads", "-1"}, {"--threads"}); }

@@ -6,6 +6,8 @@
 #include "program.hpp"
 
 #include <fstream>
+#include <sstream>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <sys/stat.h>
@@ -175,6 +177,19 @@ TEST_F(BadRecording, ThatStandsStillForAWhileGetsAWarning) {
   EXPECT_EQ(report["summary"]["repeated"], 1);
   EXPECT_FALSE(report["frames"][2].contains("repeats"));
   EXPECT_EQ(report["frames"][3]["repeats"], true);
+}
+
+TEST_F(BadRecording, WithTimesInMillisecondsGetsAWarning) {
+  std::istringstream list(read_text(sequence_ / "frames.txt"));
+  std::ofstream changed(sequence_ / "frames.txt");
+  double time_s = 0;
+  std::string files;
+  std::getline(list, files);  // the names of the columns
+  while (list >> time_s && std::getline(list, files)) changed << 1000 * time_s << files << '\n';
+  changed.close();
+  ASSERT_EQ(run("map").status, 0);
+  EXPECT_THAT(read_json(out_ / "report.json")["warnings"],
+              testing::Contains(HasSubstr("are their times in seconds?")));
 }
 
 TEST_F(BadRecording, WhoseFrequenciesCannotTellTheSceneApartGetsAWarning) {

@@ -139,6 +139,18 @@ TEST_F(Calibrate, NamesFramesThatTheRecordingDoesNotHave) {
   EXPECT_THAT(finished.err, testing::HasSubstr("frame 999"));
 }
 
+TEST_F(Calibrate, RefusesTrueRangesOfAnotherRecording) {
+  const fs::path other = folder_.path() / "other";
+  ASSERT_EQ(run_program({"simulate", "flat", "--frames", "12", "--out", other.string()}).status, 0);
+  fs::remove_all(sequence_ / "range_truth");
+  fs::copy(other / "range_truth", sequence_ / "range_truth");
+  const Finished finished =
+      run_program({"calibrate", sequence_.string(), "--out", (folder_.path() / "c.yaml").string()});
+  EXPECT_EQ(finished.status, 3);
+  EXPECT_THAT(finished.err, testing::HasSubstr("does range_truth belong to this recording"));
+  EXPECT_FALSE(fs::exists(folder_.path() / "c.yaml"));
+}
+
 TEST_F(Calibrate, AsksForTheUnitOfDistancesThatNoRangeReaches) {
   const fs::path wall = folder_.path() / "wall.txt";
   std::ofstream(wall) << "0 2500\n";

@@ -147,6 +147,13 @@ TEST_F(DamagedTruth, OfPosesIsNamedAndCostsTheComparisonAlone) {
   EXPECT_TRUE(report["unwrapping"]["joint"]["wrong_wrap_percent"].is_number());
 }
 
+TEST_F(DamagedTruth, WithTimesOfAnotherRecordingIsNamed) {
+  std::ofstream(sequence_ / "groundtruth.txt") << "1000 0 0 0 0 0 0 1\n1001 0 0 0 0 0 0 1\n";
+  for (const std::string command : {"info", "map", "evaluate"}) {
+    expect_remark(command, "no true pose is within 0.02 s of any frame");
+  }
+}
+
 TEST_F(DamagedTruth, OfOnePoseLeavesTheOthers) {
   std::ofstream(sequence_ / "groundtruth.txt", std::ios::app) << "0.5 1e39 0 0 0 0 0 1\n";
   ASSERT_EQ(run("evaluate").status, 0);

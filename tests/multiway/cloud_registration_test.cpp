@@ -60,6 +60,21 @@ TEST(RegisterClouds, PlacesScansOfOneRoomInAnyOrder) {
   EXPECT_EQ(found.pairs.size(), 6U);
 }
 
+TEST(RegisterClouds, PlacesScansOfFewPoints) {
+  Scans scans = scans_of("room", {0, 0.05});
+  const auto thin_out = [](PointSet& cloud, std::size_t step) {
+    for (std::size_t i = 0; i * step < cloud.points.size(); ++i) {
+      cloud.points[i] = cloud.points[i * step];
+    }
+    cloud.points.resize((cloud.points.size() + step - 1) / step);
+  };
+  thin_out(scans.clouds[0], 3);
+  thin_out(scans.clouds[1], 7);  // 3600 points, and 8400
+  const CloudRegistration found = register_clouds(scans.clouds, scans.names, {});
+  EXPECT_EQ(found.registered(), 2);
+  EXPECT_LT(largest_error_m(found, scans.poses), 0.05);
+}
+
 TEST(RegisterClouds, NamesACloudOfAnotherPlaceAndLeavesItOut) {
   Scans scans = scans_of("room", {0, 0.1});
   const Scans other = scans_of("hall", {0});

@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+#include <tofmap/core/range_image.hpp>
+
 namespace tofmap {
 namespace {
 
@@ -42,6 +44,10 @@ SensorModel read_sequence_header(const std::filesystem::path& file) {
   naming(file.string(), [&] {
     validate(sensor.camera);
     validate(sensor.modulation);
+    const double most_m = invalid_wrap_count * sensor.modulation.wavelength_a_m();
+    if (sensor.max_range_m <= most_m) return;
+    throw InputError("max_range_m must be at most " + std::to_string(invalid_wrap_count) +
+                     " wavelengths of A, " + shortest(most_m) + " m");
   });
   return sensor;
 }

@@ -53,6 +53,10 @@ SequenceFrameFiles parse_line(const std::vector<std::string>& words, const std::
   if (words[1] == "-" || words[2] == "-") {
     throw InputError(place + expected + "; only an amplitude may be '-'");
   }
+  for (auto word = words.begin() + 1; word != words.end(); ++word) {
+    if (*word == "-" || std::find(words.begin() + 1, word, *word) == word) continue;
+    throw InputError(place + ": names '" + *word + "' twice; every image has a file of its own");
+  }
   files.phase_a = inner_path(words[1], place);
   files.phase_b = inner_path(words[2], place);
   if (words.size() > 3 && words[3] != "-") files.amplitude_a = inner_path(words[3], place);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <functional>
 #include <numbers>
 
@@ -240,6 +241,16 @@ void append_range_samples(const DualFrequencyFrame& frame, const SensorModel& se
     }
     samples.push_back(sample);
   }
+}
+
+double agreement_with_references(std::span<const RangeSample> samples,
+                                 const Modulation& modulation) {
+  const double rad_per_m = 2 * std::numbers::pi / modulation.wavelength_a_m();
+  std::complex<double> sum = 0;
+  for (const RangeSample& sample : samples) {
+    sum += std::polar(1.0, rad_per_m * (double{sample.a_m} - double{sample.reference_m}));
+  }
+  return std::abs(sum) / static_cast<double>(samples.size());
 }
 
 PhaseErrorFit fit_to_references(std::span<const RangeSample> samples, const Modulation& modulation,

@@ -7,7 +7,9 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <sstream>
+#include <string>
 
 #include <yaml-cpp/yaml.h>
 
@@ -151,12 +153,20 @@ void OptionTable::load(const std::filesystem::path& file, const OptionTable& oth
   }
   if (root.IsNull()) return;  // an empty file sets nothing
   if (!root.IsMap()) throw InputError(file.string() + ": expected a map of option groups");
+  std::set<std::string> given;
+  const auto refuse_twice = [&](const std::string& name, const YAML::Node& key) {
+    if (given.insert(name).second) return;
+    throw InputError(file.string() + ":" + std::to_string(key.Mark().line + 1) + ": " + name +
+                     " is given twice");
+  };
   for (const auto& group : root) {
     const std::string name = group.first.as<std::string>();
+    refuse_twice(name, group.first);
     if (!has_group(name) && others.has_group(name)) continue;
     if (group.second.IsMap()) {
       for (const auto& option : group.second) {
         const std::string key = name + "." + option.first.as<std::string>();
+        refuse_twice(key, option.first);
         scalar(key, option.second);
       }
     } else if (!group.second.IsNull() || !has_group(name)) {  // an empty group sets nothing

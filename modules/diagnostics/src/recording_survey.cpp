@@ -128,16 +128,7 @@ void warn_of_images(const RecordingSurvey& survey, std::vector<std::string>& war
 }
 
 void warn_of_times(const RecordingSurvey& survey, std::vector<std::string>& warnings) {
-  constexpr double longest_period_s = 10;
-  constexpr double shortest_period_s = 1e-3;
-  const bool is_none_of_a_camera =
-      survey.median_period_s > longest_period_s ||
-      (survey.median_period_s > 0 && survey.median_period_s < shortest_period_s);
-  if (is_none_of_a_camera) {
-    warnings.push_back(
-        fmt::format("frames are {:.3g} s apart; are the times in frames.txt in seconds?",
-                    survey.median_period_s));
-  }
+  if (const auto warning = period_warning(survey.median_period_s)) warnings.push_back(*warning);
   constexpr double most_periods = 5;
   if (survey.longest_gap_s > most_periods * survey.median_period_s) {
     warnings.push_back(
@@ -155,6 +146,14 @@ std::optional<std::string> repetition_warning(int repeated) {
   return counted(static_cast<std::size_t>(repeated), "frame") +
          (repeated == 1 ? " repeats" : " repeat") +
          " the previous frame; did the camera or its software stall?";
+}
+
+std::optional<std::string> period_warning(double median_period_s) {
+  constexpr double longest_s = 10;
+  constexpr double shortest_s = 1e-3;
+  const bool is_of_a_camera = median_period_s >= shortest_s && median_period_s <= longest_s;
+  if (is_of_a_camera || median_period_s == 0) return std::nullopt;
+  return fmt::format("frames are {:.3g} s apart; are their times in seconds?", median_period_s);
 }
 
 RecordingSurvey survey_recording(const SequenceReader& recording,

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/text.hpp>
 
@@ -18,6 +20,12 @@ std::string remark_on(std::size_t count, std::string_view what, const std::strin
 }
 
 }  // namespace
+
+bool has_pose_of_a_frame(const Trajectory& poses, const std::vector<SequenceFrameFiles>& frames) {
+  return std::ranges::any_of(frames, [&](const SequenceFrameFiles& frame) {
+    return frame.damage.empty() && pose_at(poses, frame.timestamp_s).has_value();
+  });
+}
 
 RecordedTruth::RecordedTruth(const SequenceReader& recording) : recording_(recording) {
   const std::filesystem::path file = recording.folder() / "groundtruth.txt";
@@ -54,6 +62,12 @@ std::vector<std::string> RecordedTruth::remarks() const {
   std::vector<std::string> remarks;
   if (!damaged_poses_.empty()) {
     remarks.push_back(remark_on(damaged_poses_.size(), "true pose", damaged_poses_.front()));
+  }
+  if (!poses_.empty() && !has_pose_of_a_frame(poses_, recording_.files())) {
+    remarks.push_back(
+        fmt::format("no true pose is within {} s of any frame, so that none is used; "
+                    "does groundtruth.txt belong to this recording?",
+                    max_pose_gap_s));
   }
   const std::lock_guard lock(mutex_);
   if (!damaged_ranges_.empty()) {

@@ -46,17 +46,21 @@ class Registration {
         names_(names),
         options_(options),
         keep_going_(keep_going),
-        spacings_(side_by_side(static_cast<int>(clouds.size()),
-                               [&](int i) { return feature_voxel(clouds[i]); })),
-        is_common_(of_common_size(spacings_)),
+        voxels_(side_by_side(static_cast<int>(clouds.size()),
+                             [&](int i) { return feature_voxel(clouds[i]); })),
+        extents_(side_by_side(
+            static_cast<int>(clouds.size()),
+            [&](int i) { return extent_voxel(clouds[i], voxels_[static_cast<std::size_t>(i)]); })),
+        is_common_(of_common_size(extents_)),
         sensors_(
             side_by_side(static_cast<int>(clouds.size()),
                          [&](int i) { return find_sensor(clouds[i], options.sensor_at_origin); })),
         levels_(clouds.size()) {
     out_.clouds.resize(clouds.size());
     for (std::size_t i = 0; i < clouds.size(); ++i) out_.clouds[i].sensor = sensors_[i];
-    out_.voxel_m = options.voxel_m > 0 ? options.voxel_m : common_voxel();
-    const double least_m = common_voxel() / most_refinement;
+    const double common_voxel = median_of_common(voxels_);
+    out_.voxel_m = options.voxel_m > 0 ? options.voxel_m : common_voxel;
+    const double least_m = common_voxel / most_refinement;
     if (out_.voxel_m >= least_m) return;
     throw UsageError(too_fine(out_.voxel_m, least_m));
   }
@@ -77,10 +81,10 @@ class Registration {
   RegisteredCloud& cloud(int i) { return out_.clouds[static_cast<std::size_t>(i)]; }
   std::optional<LevelledCloud>& levels(int i) { return levels_[static_cast<std::size_t>(i)]; }
 
-  double common_voxel() const {
+  double median_of_common(const std::vector<double>& values) const {
     std::vector<double> common;
-    for (std::size_t i = 0; i < spacings_.size(); ++i) {
-      if (is_common_[i]) common.push_back(spacings_[i]);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (is_common_[i]) common.push_back(values[i]);
     }
     return median(common);
   }
@@ -143,8 +147,8 @@ class Registration {
 
   /// Tries whether a cloud that is not registered fits a reference cloud in another unit.
   void try_other_units(int i) {
-    const double spacing = spacings_[static_cast<std::size_t>(i)];
-    for (const LengthUnit& unit : likely_units(spacing, common_voxel())) {
+    const double extent = extents_[static_cast<std::size_t>(i)];
+    for (const LengthUnit& unit : likely_units(extent, median_of_common(extents_))) {
       std::optional<LevelledCloud> scaled = levels_with_unit(i, unit.length);
       if (!scaled) continue;
       for (int other = 0; other < static_cast<int>(clouds_.size()); ++other) {
@@ -179,7 +183,7 @@ class Registration {
           (is_common_[index] && !levels(i))) {
         cloud(i).remark = "has too few points on surfaces";
       } else if (!is_common_[index]) {
-        cloud(i).remark = odd_size(spacings_[index] / common_voxel());
+        cloud(i).remark = odd_size(extents_[index] / median_of_common(extents_));
       } else {
         cloud(i).remark = why_not_registered(i, out_.pairs, names_);
       }
@@ -226,8 +230,9 @@ class Registration {
   std::span<const std::string> names_;
   const CloudRegistrationOptions& options_;
   const std::function<bool(int, int)>& keep_going_;
-  std::vector<double> spacings_;  ///< feature_voxel() of each cloud, in its own unit
-  std::vector<bool> is_common_;   ///< of_common_size()
+  std::vector<double> voxels_;   ///< feature_voxel() of each cloud, in its own unit
+  std::vector<double> extents_;  ///< extent_voxel() of each cloud, in its own unit
+  std::vector<bool> is_common_;  ///< of_common_size()
   std::vector<CloudSensor> sensors_;
   std::vector<std::optional<LevelledCloud>> levels_;
   CloudRegistration out_;
@@ -240,7 +245,7 @@ std::vector<OptionField<CloudRegistrationOptions>> CloudRegistrationOptions::fie
   return {
       {"voxel_m", &O::voxel_m, 0, 1000, "m",
        "edge length of the voxels of the coarsest level, where features are matched; 0 chooses it "
-       "so that about 5000 points per cloud remain"},
+       "so that about 5000 points per cloud remain, half of smaller clouds"},
       {"method", &O::method, 0, 0, "",
        "how poses are refined; the methods of PCL are for comparison"},
       {"sensor_at_origin", &O::sensor_at_origin, 0, 0, "",

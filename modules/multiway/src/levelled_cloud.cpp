@@ -5,6 +5,9 @@
 
 #include "possible_views.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include <tofmap/cloud/downsample.hpp>
 
 namespace tofmap {
@@ -24,6 +27,12 @@ std::vector<Eigen::Vector3d> centred(const PointSet& cloud, double unit_m,
   return points;
 }
 
+/// How many points feature_voxel() leaves. Each has a surface to itself that grows with the square
+/// of the voxel size.
+std::size_t points_left(const PointSet& cloud) {
+  return std::clamp<std::size_t>(cloud.points.size() / 2, 1, feature_points);
+}
+
 Eigen::Vector3d mean(const std::vector<Eigen::Vector3d>& points) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& point : points) sum += point;
@@ -33,7 +42,12 @@ Eigen::Vector3d mean(const std::vector<Eigen::Vector3d>& points) {
 }  // namespace
 
 double feature_voxel(const PointSet& cloud) {
-  return voxel_for_count(cloud.points, feature_points);
+  return voxel_for_count(cloud.points, points_left(cloud));
+}
+
+double extent_voxel(const PointSet& cloud, double voxel) {
+  const auto left = static_cast<double>(points_left(cloud));
+  return voxel * std::sqrt(left / feature_points);
 }
 
 std::optional<LevelledCloud> make_levels(const PointSet& cloud, const CloudSensor& sensor,

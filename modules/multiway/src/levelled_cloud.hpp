@@ -25,9 +25,14 @@ struct LevelledCloud {
   std::vector<SphericalView> views;
 };
 
-/// The voxel size that leaves about 5000 points of a cloud, in the unit of the cloud. That is
-/// enough for distinctive features, and few enough to compare all pairs of matches.
+/// The voxel size that leaves about 5000 points of a cloud, or half of the points if they are fewer
+/// than 10 000, in the unit of the cloud. That is enough for distinctive features, and few enough
+/// to compare all pairs of matches.
 double feature_voxel(const PointSet& cloud);
+
+/// The voxel size that would leave 5000 points if the surfaces of a cloud were sampled densely, in
+/// the unit of the cloud: a measure of their extent. `voxel` is feature_voxel().
+double extent_voxel(const PointSet& cloud, double voxel);
 
 /// Builds the levels of a cloud. `sensor` is in the frame and the unit of the cloud; `unit_m` is
 /// the unit of length of the cloud, metres; `voxel_m` the voxel size of the coarsest level. Levels

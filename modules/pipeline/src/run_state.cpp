@@ -32,8 +32,8 @@ std::vector<std::string> identity(const SensorModel& sensor, PipelineOptions opt
   text << '\n'
        << "frequencies: " << sensor.modulation.frequency_a_hz << ' '
        << sensor.modulation.frequency_b_hz << " Hz\n"
-       << "largest range: " << sensor.max_range_m << " m, saturation: "
-       << sensor.saturation_amplitude << '\n';
+       << "largest range: " << sensor.max_range_m
+       << " m, saturation: " << sensor.saturation_amplitude << '\n';
   OptionTable table;
   bind_options(table, options);
   text << table.to_yaml(false);

@@ -29,6 +29,13 @@ void append_range_samples(const DualFrequencyFrame& frame, const SensorModel& se
                           const ImageF& reference_m, int first, int stride,
                           std::vector<RangeSample>& samples);
 
+/// How well the phases of A agree with the reference ranges apart from a common offset, 0 … 1: the
+/// length of the mean of exp(i ψ), where ψ is the difference of the phases in radians. It is 0 if
+/// they are unrelated, and 0.6 if their difference has a standard deviation of a sixth of a
+/// wavelength. NaN without samples.
+double agreement_with_references(std::span<const RangeSample> samples,
+                                 const Modulation& modulation);
+
 /// An estimated value and the standard deviation of its error.
 struct Estimate {
   double value = 0;

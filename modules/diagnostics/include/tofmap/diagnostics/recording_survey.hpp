@@ -37,6 +37,10 @@ struct RecordingSurvey {
 /// A warning that `repeated` frames repeat the previous frame. Empty if `repeated` is 0.
 std::optional<std::string> repetition_warning(int repeated);
 
+/// A warning if frames are so far apart, or so near in time, that their times are hardly in
+/// seconds. Empty otherwise; `median_period_s` is 0 if it is unknown.
+std::optional<std::string> period_warning(double median_period_s);
+
 /// Reads all frames of a recording and surveys them. `keep_going` is called before each frame with
 /// the number of frames done; the survey ends early if it returns false. It may be empty.
 RecordingSurvey survey_recording(const SequenceReader& recording,

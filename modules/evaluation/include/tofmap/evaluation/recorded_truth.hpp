@@ -12,6 +12,9 @@
 
 namespace tofmap {
 
+/// Whether any frame of a recording that is not damaged has a pose, by pose_at().
+bool has_pose_of_a_frame(const Trajectory& poses, const std::vector<SequenceFrameFiles>& frames);
+
 /// The ground truth of a recording, as far as it can be read. Damaged parts are left out and named
 /// in remarks(), since commands work without truth. Thread-safe.
 class RecordedTruth {
@@ -30,8 +33,8 @@ class RecordedTruth {
   /// of true ranges, or a damaged one.
   std::optional<ImageF> range_m(int frame) const;
 
-  /// Messages about the damage found so far: at most one about poses and one about ranges. Each
-  /// names the first damaged line or file.
+  /// Messages about the damage found so far, each with the first damaged line or file, and about
+  /// poses whose times are those of no frame.
   std::vector<std::string> remarks() const;
 
  private:
