@@ -169,6 +169,43 @@ TEST(MovingRegions, DoNotExplainAWrongPose) {
   EXPECT_TRUE(motion.contradicts_pose);
 }
 
+TEST(MovingRegions, MayCoverMostOfTheViewIfTheyAreKnown) {
+  // People side by side, who come nearer until they cover three quarters of the image.
+  const auto people_at = [](double z) {
+    return Person(Vector3d(-0.6, -1.1, z - 0.15), Vector3d(0.6, room_max.y(), z + 0.15));
+  };
+  const Keyframe keyframe = keyframe_of(view_of({}, Pose::Identity()));
+  const std::array<const Keyframe*, 1> keyframes{&keyframe};
+  constexpr double nearest_m = 1.3;
+  MovingRegions regions(test::small_camera());
+  for (double z = 2.2; z > nearest_m; z -= 0.15) {
+    const View now = view_of(people_at(z), Pose::Identity());
+    const Motion motion = regions.find(now.cloud, Pose::Identity(), keyframes);
+    ASSERT_FALSE(motion.contradicts_pose) << z;
+    EXPECT_LT(left_in(*motion.still, now).of_person, 0.1) << z;
+    regions.remember(motion);
+  }
+  const View last = view_of(people_at(nearest_m), Pose::Identity());
+  EXPECT_TRUE(MovingRegions(test::small_camera())
+                  .find(last.cloud, Pose::Identity(), keyframes)
+                  .contradicts_pose)
+      << "nothing is known of the people, so the pose may be wrong instead";
+}
+
+TEST(MovingRegions, AreNotForgottenWhileThePoseIsContradicted) {
+  const View now = view_of(person_at(0.3, 2), Pose::Identity());
+  MovingRegions regions(test::small_camera());
+  regions.remember(motion_between(view_of({}, Pose::Identity()), now));
+  const Motion contradicted{
+      .still = now.cloud, .keyframes = {}, .points = {}, .contradicts_pose = true};
+  int frames = 0;
+  for (; frames < 100; ++frames) {
+    if (regions.without_known(now.cloud, Pose::Identity()) == now.cloud) break;
+    regions.remember(contradicted);
+  }
+  EXPECT_EQ(frames, 15);
+}
+
 TEST(MovingRegions, MoveWithTheWorld) {
   MovingRegions regions(test::small_camera());
   const View now = view_of(person_at(0.3, 2), Pose::Identity());

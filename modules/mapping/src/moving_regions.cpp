@@ -68,9 +68,14 @@ struct Evidence {
   Cells<int> seeds;      ///< `growing` where something moved since the keyframes, else `no_region`
   Cells<char> is_still;  ///< where a keyframe agrees and none sees through
 
-  /// Whether there are more contradictions than agreements.
-  bool is_of_wrong_pose() const {
-    return std::ranges::count(seeds, growing) > std::ranges::count(is_still, 1);
+  /// Whether there are more contradictions than agreements, apart from cells that are known to move
+  /// (known_cells()): they cannot but contradict.
+  bool is_of_wrong_pose(const Cells<int>& known) const {
+    std::ptrdiff_t contradictions = 0;
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+      contradictions += seeds[i] == growing && known[i] == no_region ? 1 : 0;
+    }
+    return contradictions > std::ranges::count(is_still, 1);
   }
 };
 
@@ -166,7 +171,8 @@ Motion MovingRegions::find(const CloudPointer& cloud, const Pose& world_from_cam
   std::vector<Comparison> comparisons;
   for (const Keyframe* keyframe : keyframes) comparisons.push_back(compare(*keyframe));
   Evidence evidence = gather(grid, comparisons);
-  motion.contradicts_pose = evidence.is_of_wrong_pose();
+  const Cells<int> known = known_cells(known_, grid, world_from_camera, camera_);
+  motion.contradicts_pose = evidence.is_of_wrong_pose(known);
   if (motion.contradicts_pose) return motion;
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
     if (auto cleaned = clean(*keyframes[i], comparisons[i])) {
@@ -175,7 +181,6 @@ Motion MovingRegions::find(const CloudPointer& cloud, const Pose& world_from_cam
                 camera_, evidence);
     }
   }
-  const Cells<int> known = known_cells(known_, grid, world_from_camera, camera_);
   for (std::size_t i = 0; i < grid.size(); ++i) {
     if (evidence.seeds[i] == no_region && known[i] != no_region && known[i] < frames_until_still) {
       evidence.seeds[i] = known[i] + 1;
@@ -189,6 +194,15 @@ Motion MovingRegions::find(const CloudPointer& cloud, const Pose& world_from_cam
     motion.points.push_back({world_from_camera * grid.point_m(i).cast<double>(), regions[i]});
   }
   return motion;
+}
+
+void MovingRegions::remember(const Motion& motion) {
+  if (!motion.contradicts_pose) {
+    known_ = motion.points;
+    return;
+  }
+  for (MovingPoint& point : known_) ++point.age;
+  std::erase_if(known_, [](const MovingPoint& point) { return point.age >= frames_until_still; });
 }
 
 void MovingRegions::move(const Pose& new_from_old_world) {

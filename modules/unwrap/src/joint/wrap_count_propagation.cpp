@@ -167,7 +167,7 @@ template <class Vector, class Number>
   return std::bit_cast<Lanes>(bits);
 }
 
-[[gnu::always_inline]] inline void store_halved(const Lanes& lanes, BFloat16* to) {
+[[gnu::always_inline]] inline void store_narrowed(const Lanes& lanes, BFloat16* to) {
   const LaneBits rounded = (std::bit_cast<LaneBits>(lanes) + 0x8000U) >> 16U;
   store(__builtin_convertvector(rounded, LaneHalves), to);
 }
@@ -198,7 +198,7 @@ template <class Vector, class Number>
   for (int n = 0; n < block.counts; ++n) {
     const auto after = load<Lanes>(weighted + (n + 1) * DiagonalLayout::lanes);
     const Lanes total = sum + same * here + up * before + down * after;
-    store_halved(total * scale, edge.out[n] + row);
+    store_narrowed(total * scale, edge.out[n] + row);
     before = here;
     here = after;
   }

@@ -59,8 +59,9 @@ struct Motion {
 /// at its pace, covers what keyframes could see through.
 ///
 /// Regions are found on a coarse grid of about 1/32 rad; those with fewer than six cells of
-/// evidence are ignored. If more than half of what can be compared contradicts the keyframes, the
-/// pose is wrong rather than the room, and nothing is said to move.
+/// evidence are ignored. If more than half of what can be compared, apart from what moved in the
+/// frame before, contradicts the keyframes, the pose is wrong rather than the room, and nothing is
+/// said to move.
 class MovingRegions {
  public:
   explicit MovingRegions(const CameraModel& camera) : camera_(camera) {}
@@ -82,8 +83,9 @@ class MovingRegions {
   Motion find(const std::shared_ptr<const SurfaceCloud>& cloud, const Pose& world_from_camera,
               std::span<const Keyframe* const> keyframes) const;
 
-  /// Expects what moves in a frame to be near the same places in the next one.
-  void remember(const Motion& motion) { known_ = motion.points; }
+  /// Expects what moves in a frame to be near the same places in the next one. If nothing is known
+  /// of the frame, since its pose is contradicted, expects what moved in the frame before.
+  void remember(const Motion& motion);
 
   /// Transforms the remembered places when the pose graph has moved the keyframes around.
   void move(const Pose& new_from_old_world);
