@@ -151,7 +151,7 @@ void add_view_command(CLI::App& program, Outcome& outcome) {
       "view", "show a map, cloud, mesh or recording, or the maps of an evaluation");
   app->add_option(
          "PATH", request.path,
-         "result folder of map, register or evaluate, a PLY, PCD or OBJ file, or a recording")
+         "result folder of map, register or evaluate, a PLY, PCD, VTK or OBJ file, or a recording")
       ->required();
   app->add_option("--screenshot", arguments->screenshot,
                   "write a PNG picture instead of opening a window; needs no display");

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
 
 namespace tofmap::app {
 namespace fs = std::filesystem;
@@ -59,12 +60,16 @@ void ResultAddition::commit() {
 int add_to_result(const fs::path& result, int status, const std::vector<OptionalPart>& parts) {
   if (status == exit_status::interrupted) count_interruptions_anew();
   Failures failures;
+  std::vector<std::string> missing;
+  for (const OptionalPart& part : parts) missing.push_back(part.name);
   try {
-    for (const OptionalPart& part : parts) failures.attempt(part.name, part.add);
+    for (const OptionalPart& part : parts) {
+      failures.attempt(part.name, part.add);
+      missing.erase(missing.begin());
+    }
   } catch (const Interrupted&) {
-    std::fprintf(stderr,
-                 "tofmap: interrupted; %s is complete, but without pictures or report.html\n",
-                 result.c_str());
+    std::fprintf(stderr, "tofmap: interrupted; %s is complete, but without %s\n", result.c_str(),
+                 joined(missing, " or ").c_str());
     return exit_status::interrupted;
   }
   for (const std::string& text : failures.texts()) {

@@ -18,6 +18,7 @@
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
 #include <pcl/point_types.h>
+#include <vtkErrorCode.h>
 #include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkObject.h>
@@ -72,6 +73,9 @@ std::vector<Eigen::Vector3d> read_vtp(const std::filesystem::path& file) {
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName(file.c_str());
   reader->Update();
+  if (reader->GetErrorCode() != vtkErrorCode::NoError) {
+    throw InputError("cannot be parsed; is the file complete?");
+  }
   vtkPoints* points = reader->GetOutput()->GetPoints();
   const vtkIdType count = points == nullptr ? 0 : points->GetNumberOfPoints();
   std::vector<Eigen::Vector3d> positions(static_cast<std::size_t>(count));
