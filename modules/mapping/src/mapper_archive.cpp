@@ -142,12 +142,16 @@ void MovingRegions::serialize(Archive& archive, unsigned) {
 }
 
 template <class Archive>
+void StillOdometry::serialize(Archive& archive, unsigned) {
+  archive& odometry_& moving_& frames_since_front_moved_;
+}
+
+template <class Archive>
 void RoomMapper::serialize(Archive& archive, unsigned) {
-  archive& odometry_& moving_& keyframes_& frames_& edges_& loops_;
+  archive& odometry_& keyframes_& frames_& edges_& loops_;
   archive& unfitted_loops_& loop_awaits_others_& last_fit_& current_& map_& begun_maps_&
       lost_frames_& searched_;
-  archive& frames_since_front_moved_& held_& recognitions_& joins_& differing_keyframes_&
-      joins_taken_back_;
+  archive& held_& recognitions_& joins_& differing_keyframes_& joins_taken_back_;
 }
 
 void RoomMapper::save(std::ostream& out) const {

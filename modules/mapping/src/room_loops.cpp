@@ -66,7 +66,6 @@ void RoomMapper::set_poses(std::span<const Pose> poses) {
   }
   const Pose new_from_old_world = keyframes_[current_].world_from_camera * current_before.inverse();
   odometry_.move(new_from_old_world);
-  moving_.move(new_from_old_world);
 }
 
 /// Searches for slips that explain the loops since the last fit, and mends them.

@@ -30,27 +30,6 @@ constexpr double steps_on_earlier_visits = 2;
 /// poses hardly change any more.
 constexpr double submap_radius_steps = 4;
 
-/// Number of frames since the beginning of a map, or since something in front was found to move, in
-/// which the background is registered by itself.
-constexpr int frames_until_trusted = 15;
-
-/// Whether a registration with fewer points contradicts another one: they differ by more than
-/// registrations of still scenes do, by what the former knows.
-bool contradicts(const RegistrationResult& one, const RegistrationResult& other) {
-  constexpr double least_m = 0.005;
-  constexpr double least_sigmas = 6;
-  const Pose& a = one.world_from_camera;
-  const Pose& b = other.world_from_camera;
-  const Eigen::AngleAxisd rotation(a.linear() * b.linear().transpose());
-  Eigen::Matrix<double, 6, 1> twist;
-  twist << rotation.angle() * rotation.axis(), a.translation() - b.translation();
-  double squared_sigmas = 0;
-  for (const auto& information : one.target_information) {
-    squared_sigmas += twist.dot(information * twist);
-  }
-  return twist.tail<3>().norm() > least_m && squared_sigmas > least_sigmas * least_sigmas;
-}
-
 }  // namespace
 
 RoomMapper::RoomMapper(const CameraModel& camera, const OdometryOptions& odometry,
@@ -61,8 +40,7 @@ RoomMapper::RoomMapper(const CameraModel& camera, const OdometryOptions& odometr
       registration_(registration),
       loop_options_(loops),
       surface_options_(surface),
-      odometry_(camera, odometry, registration, loops),
-      moving_(camera) {}
+      odometry_(camera, odometry, registration, loops) {}
 
 AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
   AddedFrame added;
@@ -100,8 +78,8 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
   if (lost_frames_ < frames_until_given_up && !was_blind(frame.timestamp_s)) {
     around = keyframes_around();
   }
-  const Odometry before = odometry_;
-  TrackingResult result = track_still(frame, around);
+  const StillOdometry before = odometry_;
+  TrackingResult result = track_with(around, frame);
   if (!result.registered() && is_joined()) {
     odometry_ = before;
     result = track_apart(frame, around);
@@ -130,69 +108,13 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
   return result;
 }
 
-/// Registers a frame, then again without what moves in it and has moved in the keyframes around,
-/// which is taken out of their clouds and that of the frame.
-TrackingResult RoomMapper::track_still(NewFrame& frame, std::span<const Keyframe* const> around) {
-  if (!odometry_options_.leave_out_moving ||
-      registration_.method != RegistrationMethod::projective) {
-    return odometry_.track(frame.timestamp_s, *frame.cloud, around);
-  }
-  const Odometry before = odometry_;
-  const auto cloud = moving_.without_known(frame.cloud, odometry_.expected_pose(frame.timestamp_s));
-  TrackingResult first = odometry_.track(frame.timestamp_s, *cloud, around);
-  const auto background = track_background(frame.timestamp_s, cloud, around, before, first);
-  if (first.status != TrackingStatus::tracked) return first;
-  // The oldest keyframe saw what was behind a thing that has moved since. Differences from a map
-  // that was joined are evidence about the join instead.
-  std::vector<const Keyframe*> compared;
-  for (const int id : first.targets) {
-    if (is_own(keyframes_[id])) compared.push_back(&keyframes_[id]);
-  }
-  const Keyframe* oldest = own(around).front();
-  if (std::ranges::find(compared, oldest) == compared.end()) compared.push_back(oldest);
-  const Motion motion = moving_.find(frame.cloud, first.world_from_camera, compared);
-  moving_.remember(motion);
-  for (const CleanedKeyframe& keyframe : motion.keyframes) {
-    keyframes_.set_cloud(keyframe.id, keyframe.cloud);
-  }
-  frame.cloud = motion.still;
-  if (background) frame.cloud = moving_.background(frame.cloud);
-  if (motion.is_empty()) return first;
-  const Odometry after_first = std::exchange(odometry_, before);
-  TrackingResult second = odometry_.track(frame.timestamp_s, *frame.cloud, around);
-  if (second.registered()) return second;
-  odometry_ = after_first;
-  return first;
-}
-
-/// In the first 15 frames of a map the motion of the camera is not known yet, and registration
-/// may lock onto people who are there from the beginning. Then, and whenever a cloud fits worse
-/// than is usual, it is also registered without the things in front of others. If that
-/// contradicts `all`, the registration of the whole cloud, something in front moves: `all` is
-/// replaced, and the result is true.
-bool RoomMapper::track_background(double timestamp_s,
-                                  const std::shared_ptr<const SurfaceCloud>& cloud,
-                                  std::span<const Keyframe* const> around, const Odometry& before,
-                                  TrackingResult& all) {
-  if (around.empty()) return false;
-  const bool is_trusted = ++frames_since_front_moved_ > frames_until_trusted;
-  if (is_trusted && all.status == TrackingStatus::tracked &&
-      before.fits_as_usual(all.registration)) {
-    return false;
-  }
-  const auto background = moving_.background(cloud);
-  if (background == cloud) return false;
-  const Odometry after_all = std::exchange(odometry_, before);
-  const TrackingResult behind = odometry_.track(timestamp_s, *background, around);
-  if (behind.status == TrackingStatus::tracked &&
-      (all.status != TrackingStatus::tracked ||
-       contradicts(behind.registration, all.registration))) {
-    frames_since_front_moved_ = 0;
-    all = behind;
-    return true;
-  }
-  odometry_ = after_all;
-  return false;
+/// Registers a frame with keyframes, and takes what moves out of its cloud. Only keyframes of the
+/// newest map tell what moves: differences from a map that was joined are evidence about the join.
+TrackingResult RoomMapper::track_with(std::span<const Keyframe* const> around, NewFrame& frame) {
+  StillTracking found =
+      odometry_.track(frame.timestamp_s, frame.cloud, around, own(around), keyframes_);
+  frame.cloud = found.still;
+  return std::move(found.tracking);
 }
 
 /// Those of the keyframes that were taken in the newest map, whatever it was joined with since.

@@ -56,9 +56,7 @@ std::vector<LateFrame> RoomMapper::start_map() {
   std::vector<LateFrame> late = drop_fragment();
   map_ = begun_maps_++;
   odometry_.start_anew();
-  moving_ = MovingRegions(camera_);
   lost_frames_ = 0;
-  frames_since_front_moved_ = 0;
   for (NewFrame& frame : std::exchange(held_, {})) {
     TrackingResult tracking = track(frame);
     if (tracking.registered()) integrate(*frame.cloud);
@@ -159,7 +157,6 @@ void RoomMapper::join_maps(std::span<const Stretch> travelled) {
                     .is_blind = gap != travelled.end()});
   keyframes_.join(join->map, join->into, join->into_from_map);
   odometry_.move(join->into_from_map);
-  moving_.move(join->into_from_map);
   map_ = join->into;
   for (const PoseEdge& edge : join->edges) {
     const Pose found = keyframes_[edge.from].world_from_camera * edge.from_from_to;
@@ -200,7 +197,7 @@ bool RoomMapper::differs_from_others(const Keyframe& keyframe) const {
 /// maps that were joined has failed. If it fits the one and contradicts the others, the join is
 /// taken back.
 TrackingResult RoomMapper::track_apart(NewFrame& frame, std::span<const Keyframe* const> around) {
-  TrackingResult result = track_still(frame, own(around));
+  TrackingResult result = track_with(own(around), frame);
   if (!result.registered()) return result;
   const Keyframe* other = keyframe_near(result.world_from_camera, map_);
   if (other != nullptr && contradicts_free_space({frame.cloud.get(), result.world_from_camera},
@@ -257,7 +254,6 @@ void RoomMapper::return_to_origin(int map) {
   keyframes_.join(map, map, origin_from_world);
   if (map != map_) return;
   odometry_.move(origin_from_world);
-  moving_.move(origin_from_world);
 }
 
 /// The keyframe of a map that is nearest to a pose, among those of maps that the newest one was

@@ -10,8 +10,7 @@
 #include <tofmap/mapping/camera_travel.hpp>
 #include <tofmap/mapping/keyframe_graph.hpp>
 #include <tofmap/mapping/loop_closure.hpp>
-#include <tofmap/mapping/moving_regions.hpp>
-#include <tofmap/mapping/odometry.hpp>
+#include <tofmap/mapping/still_odometry.hpp>
 #include <tofmap/mapping/surface_map.hpp>
 
 namespace boost::serialization {
@@ -83,10 +82,8 @@ struct AddedFrame {
 /// differ from what the other map has there, or when a frame fits only its own map and contradicts
 /// the other. A map of fewer than three frames is dropped again when the next one begins.
 ///
-/// People, doors and other things that move are found (MovingRegions); they have no part in
-/// registration, keyframes and surface. In the first 15 frames of a map, and whenever a frame fits
-/// worse than is usual, the background is also registered without the things in front of it, and
-/// determines the pose if the two results differ.
+/// People, doors and other things that move are found (StillOdometry); they have no part in
+/// registration, keyframes and surface.
 class RoomMapper {
  public:
   RoomMapper(const CameraModel& camera, const OdometryOptions& odometry,
@@ -178,10 +175,7 @@ class RoomMapper {
 
   TrackingResult track(NewFrame& frame);
   bool was_blind(double timestamp_s) const;
-  TrackingResult track_still(NewFrame& frame, std::span<const Keyframe* const> around);
-  bool track_background(double timestamp_s, const std::shared_ptr<const SurfaceCloud>& cloud,
-                        std::span<const Keyframe* const> around, const Odometry& before,
-                        TrackingResult& all);
+  TrackingResult track_with(std::span<const Keyframe* const> around, NewFrame& frame);
   std::vector<LateFrame> start_map();
   std::vector<LateFrame> drop_fragment();
   void integrate(const SurfaceCloud& cloud);
@@ -218,8 +212,7 @@ class RoomMapper {
   RegistrationOptions registration_;
   LoopOptions loop_options_;
   SurfaceMapOptions surface_options_;
-  Odometry odometry_;
-  MovingRegions moving_;  ///< at the last registered frame
+  StillOdometry odometry_;
   KeyframeGraph keyframes_;
   std::vector<Submap> submaps_;
   std::vector<int> submap_of_;  ///< for each keyframe, the index of the submap of its frames
@@ -235,9 +228,8 @@ class RoomMapper {
   int lost_frames_ = 0;         ///< number of frames since the last registered one
   int searched_ = 0;            ///< number of keyframes for which loops were searched
   std::vector<NewFrame> held_;  ///< frames with a surface since the last registered one
-  std::vector<JoinedMaps> joins_;     ///< those not taken back, in order
-  int frames_since_front_moved_ = 0;  ///< since the beginning of the map, or since that was found
-  int differing_keyframes_ = 0;       ///< of the newest map, from the map that it was joined with
+  std::vector<JoinedMaps> joins_;  ///< those not taken back, in order
+  int differing_keyframes_ = 0;    ///< of the newest map, from the map that it was joined with
   int joins_taken_back_ = 0;
   std::vector<PoseEdge> recognitions_;  ///< from a keyframe of another map to one of `map_`
 };

@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/mapping/still_odometry.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+namespace tofmap {
+namespace {
+
+using CloudPointer = std::shared_ptr<const SurfaceCloud>;
+
+/// Number of frames since the beginning of a map, or since something in front was found to move, in
+/// which the background is registered by itself.
+constexpr int frames_until_trusted = 15;
+
+/// Whether a registration with fewer points contradicts another one: they differ by more than
+/// registrations of still scenes do, by what the former knows.
+bool contradicts(const RegistrationResult& one, const RegistrationResult& other) {
+  constexpr double least_m = 0.005;
+  constexpr double least_sigmas = 6;
+  const Pose& a = one.world_from_camera;
+  const Pose& b = other.world_from_camera;
+  const Eigen::AngleAxisd rotation(a.linear() * b.linear().transpose());
+  Eigen::Matrix<double, 6, 1> twist;
+  twist << rotation.angle() * rotation.axis(), a.translation() - b.translation();
+  double squared_sigmas = 0;
+  for (const auto& information : one.target_information) {
+    squared_sigmas += twist.dot(information * twist);
+  }
+  return twist.tail<3>().norm() > least_m && squared_sigmas > least_sigmas * least_sigmas;
+}
+
+/// The targets of a registration among some keyframes, in the order of the targets, and the first
+/// of the keyframes.
+std::vector<const Keyframe*> targets_and_first(const std::vector<int>& targets,
+                                               std::span<const Keyframe* const> keyframes) {
+  std::vector<const Keyframe*> found;
+  for (const int id : targets) {
+    const auto target = std::ranges::find(keyframes, id, &Keyframe::id);
+    if (target != keyframes.end()) found.push_back(*target);
+  }
+  const bool has_first = std::ranges::find(found, keyframes.front()) != found.end();
+  if (!has_first) found.push_back(keyframes.front());
+  return found;
+}
+
+}  // namespace
+
+StillOdometry::StillOdometry(const CameraModel& camera, const OdometryOptions& options,
+                             const RegistrationOptions& registration,
+                             const LoopOptions& recognition)
+    : camera_(camera),
+      leaves_out_moving_(options.leave_out_moving &&
+                         registration.method == RegistrationMethod::projective),
+      odometry_(camera, options, registration, recognition),
+      moving_(camera) {}
+
+StillTracking StillOdometry::track(double timestamp_s, const CloudPointer& cloud,
+                                   std::span<const Keyframe* const> around,
+                                   std::span<const Keyframe* const> compared,
+                                   KeyframeGraph& keyframes) {
+  if (!leaves_out_moving_) return {odometry_.track(timestamp_s, *cloud, around), cloud};
+  const Odometry before = odometry_;
+  const CloudPointer expected = moving_.without_known(cloud, odometry_.expected_pose(timestamp_s));
+  TrackingResult first = odometry_.track(timestamp_s, *expected, around);
+  const bool is_of_background = track_background(timestamp_s, expected, around, before, first);
+  if (first.status != TrackingStatus::tracked || compared.empty()) return {first, cloud};
+  const Motion motion =
+      moving_.find(cloud, first.world_from_camera, targets_and_first(first.targets, compared));
+  moving_.remember(motion);
+  for (const CleanedKeyframe& keyframe : motion.keyframes) {
+    keyframes.set_cloud(keyframe.id, keyframe.cloud);
+  }
+  const CloudPointer still = is_of_background ? moving_.background(motion.still) : motion.still;
+  if (motion.is_empty()) return {first, still};
+  const Odometry after_first = std::exchange(odometry_, before);
+  TrackingResult second = odometry_.track(timestamp_s, *still, around);
+  if (second.registered()) return {second, still};
+  odometry_ = after_first;
+  return {first, still};
+}
+
+/// In the first frames of a map the motion of the camera is not known yet, and registration may
+/// lock onto people who are there from the beginning. Then, and whenever a cloud fits worse than is
+/// usual, it is also registered without the things in front of others. If that contradicts `all`,
+/// the registration of the whole cloud, something in front moves: `all` is replaced, and the result
+/// is true.
+bool StillOdometry::track_background(double timestamp_s, const CloudPointer& cloud,
+                                     std::span<const Keyframe* const> around,
+                                     const Odometry& before, TrackingResult& all) {
+  if (around.empty()) return false;
+  const bool is_trusted = ++frames_since_front_moved_ > frames_until_trusted;
+  if (is_trusted && all.status == TrackingStatus::tracked &&
+      before.fits_as_usual(all.registration)) {
+    return false;
+  }
+  const CloudPointer background = moving_.background(cloud);
+  if (background == cloud) return false;
+  const Odometry after_all = std::exchange(odometry_, before);
+  const TrackingResult behind = odometry_.track(timestamp_s, *background, around);
+  if (behind.status == TrackingStatus::tracked &&
+      (all.status != TrackingStatus::tracked ||
+       contradicts(behind.registration, all.registration))) {
+    frames_since_front_moved_ = 0;
+    all = behind;
+    return true;
+  }
+  odometry_ = after_all;
+  return false;
+}
+
+void StillOdometry::start_anew() {
+  odometry_.start_anew();
+  moving_ = MovingRegions(camera_);
+  frames_since_front_moved_ = 0;
+}
+
+void StillOdometry::move(const Pose& new_from_old_world) {
+  odometry_.move(new_from_old_world);
+  moving_.move(new_from_old_world);
+}
+
+}  // namespace tofmap
