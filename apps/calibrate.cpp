@@ -122,8 +122,7 @@ const char* remark_on_motion(CalibrationReference reference) {
       return "; this includes motion between the two exposures";
     case CalibrationReference::truth:
       return "; if the camera moved, this includes its motion after the exposure of A, to which "
-             "the "
-             "true ranges belong";
+             "the true ranges belong";
     case CalibrationReference::wall:
     case CalibrationReference::best_there_is:
       break;
