@@ -151,6 +151,7 @@ void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput&
   };
   if (!output.state.empty()) {
     add_file(run_state_file, [&](const auto&) { out.write_text(run_state_file, output.state); });
+    output.state = {};  // it may be large
   }
   output.failures.attempt("consistency", [&] {
     finished.consistency = consistency_of(finished.map, output.sample, output.sensor,

@@ -31,13 +31,6 @@ std::filesystem::path inner_path(const std::string& text, const std::string& pla
   return path;
 }
 
-std::vector<std::string> words_of(const std::string& line) {
-  std::istringstream in(line);
-  std::vector<std::string> words;
-  for (std::string word; in >> word;) words.push_back(word);
-  return words;
-}
-
 SequenceFrameFiles parse_line(const std::vector<std::string>& words, const std::string& place) {
   constexpr const char* expected =
       ": expected 'timestamp phase_a phase_b [amplitude_a amplitude_b]'";
@@ -131,7 +124,7 @@ std::vector<SequenceFrameFiles> read_frame_list(const std::filesystem::path& fil
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   for (int number = 1; std::getline(in, line); ++number) {
     if (number == 1 && line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
-    const std::vector<std::string> words = words_of(line);
+    const std::vector<std::string> words = words_of_line(line);
     if (words.empty() || words.front().starts_with('#')) continue;
     try {
       frames.push_back(parse_line(words, file.string() + ":" + std::to_string(number)));

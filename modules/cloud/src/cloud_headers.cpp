@@ -16,6 +16,7 @@
 #include <vector>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/input_file.hpp>
 
 namespace tofmap {
 namespace {
@@ -24,13 +25,6 @@ constexpr int most_header_lines = 1000;
 
 [[noreturn]] void fail_as_damaged(const std::string& line) {
   throw InputError("has a damaged header: '" + line.substr(0, 60) + "'");
-}
-
-std::vector<std::string> words_of(const std::string& line) {
-  std::istringstream in(line);
-  std::vector<std::string> words;
-  for (std::string word; in >> word;) words.push_back(word);
-  return words;
 }
 
 /// The whole number of a header line.
@@ -62,7 +56,7 @@ class PcdHeader {
  public:
   explicit PcdHeader(std::istream& in) {
     for (int number = 0; number < most_header_lines && std::getline(in, line_); ++number) {
-      std::vector<std::string> words = words_of(line_);
+      std::vector<std::string> words = words_of_line(line_);
       if (words.empty() || words.front().starts_with('#')) continue;
       const std::string keyword = words.front() == "COLUMNS" ? "FIELDS" : words.front();
       words.erase(words.begin());
@@ -146,7 +140,7 @@ PlyHeader read_ply_header(std::istream& in) {
   std::string line;
   if (!std::getline(in, line) || !line.starts_with("ply")) throw InputError("is no PLY file");
   for (int number = 0; number < most_header_lines && std::getline(in, line); ++number) {
-    const std::vector<std::string> words = words_of(line);
+    const std::vector<std::string> words = words_of_line(line);
     if (words.empty()) continue;
     if (words[0] == "end_header") return header;
     if (words[0] == "format" && words.size() > 1) header.is_binary = words[1] != "ascii";

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include <tofmap/core/timed.hpp>
@@ -78,10 +79,10 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
   if (lost_frames_ < frames_until_given_up && !was_blind(frame.timestamp_s)) {
     around = keyframes_around();
   }
-  const StillOdometry before = odometry_;
+  const auto before = is_joined() ? std::optional(odometry_) : std::nullopt;
   TrackingResult result = track_with(around, frame);
-  if (!result.registered() && is_joined()) {
-    odometry_ = before;
+  if (!result.registered() && before) {
+    odometry_ = *before;
     result = track_apart(frame, around);
   }
   odometry_.note_frame(frame.timestamp_s);

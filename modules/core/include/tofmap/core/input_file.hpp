@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace tofmap {
 
@@ -14,5 +15,8 @@ void refuse_no_file(const std::filesystem::path& path);
 
 /// The extension of a file in lower case, with its dot: ".ply" for `a/b.PLY`.
 std::string lower_extension(const std::filesystem::path& file);
+
+/// The words of a line, which are separated by white space.
+std::vector<std::string> words_of_line(const std::string& line);
 
 }  // namespace tofmap
