@@ -113,8 +113,12 @@ Evaluated evaluate_methods(const std::vector<UnwrapMethod>& methods, const Outpu
   return evaluated;
 }
 
-void write_report(const OutputFolder& out, Evaluated& evaluated, const RecordedTruth& truth) {
+void write_report(const OutputFolder& out, Evaluated& evaluated, const RecordedTruth& truth,
+                  const PipelineOptions& options, const SourceSurvey& survey) {
   Json& report = evaluated.report;
+  for (const MethodResult& result : evaluated.results) {
+    add_judgement(report, result, options, all_warnings(survey, result));
+  }
   report["interrupted"] = evaluated.interrupted;
   if (!evaluated.failures.empty()) report["failed"] = evaluated.failures.texts();
   if (!truth.remarks().empty()) report["truth_left_out"] = truth.remarks();
@@ -158,16 +162,13 @@ Truth truth_of(const SequenceReader& source, const RecordedTruth& recorded, bool
   });
 }
 
-/// The warnings for the page.
-std::vector<std::string> warnings_of(const SequenceReader& source, const Evaluated& evaluated,
-                                     const std::vector<UnwrapMethod>& methods) {
-  const CameraErrors* camera = nullptr;
-  if (!evaluated.results.empty() && evaluated.results.back().map) {
-    camera = &evaluated.results.back().map->errors.camera;
-  }
-  std::vector<std::string> warnings = warnings_about(source, camera);
-  if (evaluated.interrupted)
+/// Warnings about the evaluation itself, for the page.
+std::vector<std::string> page_warnings(const Evaluated& evaluated,
+                                       const std::vector<UnwrapMethod>& methods) {
+  std::vector<std::string> warnings;
+  if (evaluated.interrupted) {
     warnings.push_back("the run was interrupted; " + what_is_missing(methods, evaluated.done));
+  }
   for (const std::string& text : evaluated.failures.texts()) {
     warnings.push_back("failed, and is missing here: " + text);
   }
@@ -201,7 +202,8 @@ int run_evaluate(const EvaluateArguments& arguments) {
     return down_to_map ? run_down_to_map(run, source, recorded, truth)
                        : run_unwrapping(run, source, recorded);
   });
-  write_report(out, evaluated, recorded);
+  const SourceSurvey survey = survey_source(source);
+  write_report(out, evaluated, recorded, options.pipeline, survey);
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit(evaluated.interrupted ? Completeness::interrupted : Completeness::whole);
   for (const std::string& text : evaluated.failures.texts()) {
@@ -224,7 +226,8 @@ int run_evaluate(const EvaluateArguments& arguments) {
                                       truth,
                                       evaluated.results,
                                       evaluated.report,
-                                      warnings_of(source, evaluated, methods),
+                                      survey,
+                                      page_warnings(evaluated, methods),
                                       options,
                                       table.to_yaml(false)};
   const int end =

@@ -24,6 +24,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -72,16 +74,19 @@ struct MapOutput {
   std::string options_yaml;
   SensorModel sensor;
   FrameSample sample;
+  SourceSurvey survey = {};                 ///< of the recording or device
   std::vector<std::string> warnings = {};   ///< about the recording, then about the map
   nlohmann::ordered_json acquisition = {};  ///< report of a device; null for a recording
+  std::string losses = {};                  ///< MapInput::losses()
   std::string state = {};                   ///< to resume an interrupted run from; else empty
   Failures failures = {};                   ///< failures of optional parts
 };
 
-/// A map and its consistency measures.
+/// A map, its consistency measures, and the verdict on it without ground truth.
 struct FinishedMap {
   RoomMap map;
   Consistency consistency;
+  Judgement judgement = {};
 };
 
 /// Writes the map and the trajectories, which are kept even if a later step fails.
@@ -101,6 +106,7 @@ void write_map_and_path(OutputFolder& out, const RoomMap& map) {
 
 void write_report(const OutputFolder& out, const FinishedMap& finished, const MapOutput& output) {
   nlohmann::ordered_json report;
+  report["judgement"] = judgement_json(finished.judgement);
   report["summary"] = summary_json(finished.map);
   report["camera_errors"] = errors_json(finished.map.errors);
   report["consistency"] = consistency_json(finished.consistency);
@@ -156,7 +162,6 @@ void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput&
   output.failures.attempt("consistency", [&] {
     finished.consistency = consistency_of(finished.map, output.sample, output.sensor,
                                           output.options.pipeline.unwrap.method);
-    std::ranges::move(warnings_about(finished.consistency), std::back_inserter(output.warnings));
   });
   const double voxel_m = output.options.pipeline.map.voxel_m;
   const MapCloud& surface = finished.map.surface;
@@ -166,16 +171,28 @@ void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput&
   }
 }
 
-/// Finishes the map, writes the result and moves it into place. Adds the warnings about the map.
+/// The warnings about the recording or device, and about the map.
+std::vector<std::string> all_warnings(const MapOutput& output, const FinishedMap& finished) {
+  std::vector<std::string> warnings = warnings_about(
+      output.survey, &finished.map.errors.camera, frames_agree(finished.map, finished.consistency));
+  if (!output.losses.empty()) warnings.push_back("not mapped: " + output.losses);
+  if (auto warning = repetition_warning(finished.map.repeated())) {
+    warnings.push_back(*std::move(warning));
+  }
+  std::ranges::move(warnings_about(finished.map.errors), std::back_inserter(warnings));
+  std::ranges::move(warnings_about(finished.consistency), std::back_inserter(warnings));
+  return warnings;
+}
+
+/// Finishes the map, writes the result and moves it into place. Sets the warnings.
 FinishedMap finish_map(MapRun& run, OutputFolder& out, MapOutput& output) {
-  FinishedMap finished{run.finish(), unknown_consistency()};
+  FinishedMap finished{.map = run.finish(), .consistency = unknown_consistency()};
   check_result(finished.map);
   write_map_and_path(out, finished.map);
-  if (const auto warning = repetition_warning(finished.map.repeated()))
-    output.warnings.push_back(*warning);
-  std::ranges::move(tofmap::warnings_about(finished.map.errors),
-                    std::back_inserter(output.warnings));
   add_what_follows(out, finished, output);
+  output.warnings = all_warnings(output, finished);
+  finished.judgement = judge(
+      evidence_of(finished.map, output.options.pipeline, finished.consistency, output.warnings));
   keeping_map(out, [&] { write_report(out, finished, output); });
   const auto interrupted =
       output.arguments.resume ? Completeness::resumable : Completeness::interrupted;
@@ -187,6 +204,9 @@ FinishedMap finish_map(MapRun& run, OutputFolder& out, MapOutput& output) {
   if (!output.arguments.common.quiet) {
     print_summary(finished.map, out.final_path());
     print_warnings(output.warnings);
+    const Judgement& judgement = finished.judgement;
+    std::printf("verdict: %s%s\n", std::string(sentence_of(judgement.verdict)).c_str(),
+                told_reasons(judgement).c_str());
   }
   return finished;
 }
@@ -195,13 +215,11 @@ FinishedMap finish_map(MapRun& run, OutputFolder& out, MapOutput& output) {
 /// is not null and has one.
 void add_page(const OutputFolder& out, const FinishedMap& finished, const MapOutput& output,
               const MapInput& input, const SequenceReader* recording) {
-  std::vector<std::string> warnings = output.warnings;
-  if (!input.losses().empty()) warnings.push_back("not mapped: " + input.losses());
   std::optional<RecordedTruth> truth;
   if (recording) truth.emplace(*recording);
   write_map_page(out.final_path(),
                  {input.name(), finished.map, output.sensor, output.sample.frames(), recording,
-                  truth ? &*truth : nullptr, warnings, finished.consistency, output.options,
+                  truth ? &*truth : nullptr, output.warnings, finished.consistency, output.options,
                   output.options_yaml},
                  output.arguments.common.quiet);
   if (truth) print_remarks(*truth);
@@ -295,14 +313,11 @@ void resume(MapRun& run, SequenceReader& recording, const std::filesystem::path&
   }
 }
 
-void print_end(const RoomMap& map, const MapInput& input, const OutputFolder& out) {
+void print_how_to_resume(const RoomMap& map, const OutputFolder& out) {
   const bool can_be_resumed =
       map.interrupted && std::filesystem::exists(out.final_path() / run_state_file);
   if (can_be_resumed) {
     std::printf("interrupted; --resume continues from %s\n", out.final_path().c_str());
-  }
-  if (!input.losses().empty()) {
-    std::printf("not mapped: %s; see report.json\n", input.losses().c_str());
   }
 }
 
@@ -330,15 +345,16 @@ int run_map(const MapArguments& arguments) {
   FinishedMap finished;
   accompany(view.get(), [&] {
     map_frames(run, input, output.sample, quiet, view.get());
-    output.warnings = input.warnings(run.errors().camera);
+    output.survey = input.survey();
     input.close();
+    output.losses = input.losses();
     output.acquisition = input.acquisition();
     if (run.is_interrupted() && input.is_recording()) {
       output.state = run_state(run, *input.recording(), options.pipeline);
     }
     finished = finish_map(run, out, output);
   });
-  if (!quiet) print_end(finished.map, input, out);
+  if (!quiet) print_how_to_resume(finished.map, out);
   const int status = add_reports(out, finished, output, input);
   if (view && status == exit_status::done) view->show_result(finished.map);
   if (!input.silence().empty()) throw InputError(input.silence());

@@ -111,10 +111,11 @@ int run_record(const RecordArguments& arguments) {
                      "; nothing was written. Are device.layout, device.depth, device.first and the "
                      "frequencies right for the device?");
   }
+  const std::vector<std::string> warnings = warnings_about(input->survey());
   const nlohmann::ordered_json report = {{"frames", written},
                                          {"interrupted", is_interrupted()},
                                          {"left_out", frames.left_out},
-                                         {"warnings", input->warnings()},
+                                         {"warnings", warnings},
                                          {"acquisition", input->report()}};
   out.write_text("report.json", json_text(report));
   out.write_text("options.yaml", table.to_yaml(false));
@@ -129,7 +130,7 @@ int run_record(const RecordArguments& arguments) {
                 counted(static_cast<std::size_t>(written), "frame").c_str(), arguments.uri.c_str(),
                 out.final_path().c_str());
     if (!losses.empty()) std::printf("not recorded: %s; see report.json\n", losses.c_str());
-    print_warnings(input->warnings());
+    print_warnings(warnings);
   }
   const std::string silence = input->silence();
   input.reset();  // ends the .oni file

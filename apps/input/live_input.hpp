@@ -39,10 +39,8 @@ class LiveInput {
   /// URI, losses and the reason for the end, for report.json.
   nlohmann::ordered_json report();
 
-  /// The warnings of WatchedSource about the frames so far. `camera` may be null.
-  std::vector<std::string> warnings(const CameraErrors* camera = nullptr) {
-    return watched_.warnings(camera);
-  }
+  /// The survey of the frames so far.
+  SourceSurvey survey() { return watched_.survey(); }
 
   /// A message if the device stopped sending images, else empty.
   std::string silence() const;

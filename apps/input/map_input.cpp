@@ -21,8 +21,8 @@ FrameSource& MapInput::frames() {
   return recording_ ? static_cast<FrameSource&>(*recording_) : live_->frames();
 }
 
-std::vector<std::string> MapInput::warnings(const CameraErrors& camera) {
-  return recording_ ? warnings_about(*recording_, &camera) : live_->warnings(&camera);
+SourceSurvey MapInput::survey() {
+  return recording_ ? survey_source(*recording_) : live_->survey();
 }
 
 void MapInput::close() {

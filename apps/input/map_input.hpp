@@ -35,9 +35,8 @@ class MapInput {
   /// if there are none, and for a recording.
   std::string losses() const { return live_ ? live_->losses() : losses_; }
 
-  /// Warnings about the frames so far. `camera` holds the systematic errors that unwrapping has
-  /// estimated.
-  std::vector<std::string> warnings(const CameraErrors& camera);
+  /// The survey of the frames so far. A device must not be closed yet.
+  SourceSurvey survey();
 
   /// Closes a device and ends its thread. Its losses and report can still be read. Does nothing for
   /// a recording.

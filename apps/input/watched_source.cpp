@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -19,15 +20,13 @@ namespace {
 /// The number of frames at the start of a source that are examined.
 constexpr std::size_t enough = 12;
 
-FirstFrames judge_first(const std::vector<DualFrequencyFrame>& frames, const SensorModel& sensor) {
+/// The survey of the first frames of a source, without times.
+SourceSurvey survey_of(const std::vector<DualFrequencyFrame>& first, const SensorModel& sensor) {
   for (const auto& warning :
-       {frequency_pair_warning(sensor.modulation), axial_depth_warning(frames, sensor)}) {
-    if (warning) return {{*warning}, {}};
+       {frequency_pair_warning(sensor.modulation), axial_depth_warning(first, sensor)}) {
+    if (warning) return {.warnings = {*warning}, .residual = {}, .times_s = {}};
   }
-  const std::optional<ResidualSurvey> residual = survey_residual(frames, sensor);
-  const auto mixed_up = residual ? pairing_warning(*residual) : std::nullopt;
-  if (mixed_up) return {{*mixed_up}, {}};
-  return {{}, residual};
+  return {.warnings = {}, .residual = survey_residual(first, sensor), .times_s = {}};
 }
 
 /// The times between the frames at these times.
@@ -66,41 +65,28 @@ std::vector<std::string> time_warnings(const std::vector<double>& times_s) {
   return warnings;
 }
 
-/// All warnings about a source: about its first frames, the offset between the frequencies, and the
-/// times of the frames.
-std::vector<std::string> all_warnings(const FirstFrames& first, const CameraErrors* camera,
-                                      const std::vector<double>& times_s) {
-  std::vector<std::string> warnings = first.warnings;
-  const auto offset = first.residual ? offset_warning(*first.residual, camera) : std::nullopt;
-  if (offset) warnings.push_back(*offset);
-  std::ranges::move(time_warnings(times_s), std::back_inserter(warnings));
-  return warnings;
+/// A warning about how well the frequencies agree. Empty if there is no reason for one.
+std::optional<std::string> residual_warning(const ResidualSurvey& residual,
+                                            const CameraErrors* camera, bool map_agrees) {
+  auto mixed_up = pairing_warning(residual);
+  return mixed_up ? mixed_up : offset_warning(residual, camera, map_agrees);
 }
 
 }  // namespace
 
-std::optional<SourcedFrame> WatchedSource::next() {
-  std::optional<SourcedFrame> sourced = source_.next();
-  if (sourced && sourced->frame) times_s_.push_back(sourced->timestamp_s);
-  if (!judged_ && sourced && sourced->frame) {
-    first_.push_back(*sourced->frame);
-    if (first_.size() == enough) judge();
+std::vector<std::string> warnings_about(const SourceSurvey& survey, const CameraErrors* camera,
+                                        bool map_agrees) {
+  std::vector<std::string> warnings = survey.warnings;
+  if (survey.residual) {
+    if (auto warning = residual_warning(*survey.residual, camera, map_agrees)) {
+      warnings.push_back(*std::move(warning));
+    }
   }
-  return sourced;
+  std::ranges::move(time_warnings(survey.times_s), std::back_inserter(warnings));
+  return warnings;
 }
 
-void WatchedSource::judge() {
-  judged_ = judge_first(first_, sensor());
-  first_.clear();
-}
-
-std::vector<std::string> WatchedSource::warnings(const CameraErrors* camera) {
-  if (!judged_) judge();
-  return all_warnings(*judged_, camera, times_s_);
-}
-
-std::vector<std::string> warnings_about(const SequenceReader& recording,
-                                        const CameraErrors* camera) {
+SourceSurvey survey_source(const SequenceReader& recording) {
   std::vector<DualFrequencyFrame> first;
   std::vector<double> times_s;
   for (int i = 0; i < *recording.frame_count(); ++i) {
@@ -110,7 +96,31 @@ std::vector<std::string> warnings_about(const SequenceReader& recording,
     SourcedFrame sourced = recording.read(i);
     if (sourced.frame) first.push_back(*std::move(sourced.frame));
   }
-  return all_warnings(judge_first(first, recording.sensor()), camera, times_s);
+  SourceSurvey survey = survey_of(first, recording.sensor());
+  survey.times_s = std::move(times_s);
+  return survey;
+}
+
+std::optional<SourcedFrame> WatchedSource::next() {
+  std::optional<SourcedFrame> sourced = source_.next();
+  if (!sourced || !sourced->frame) return sourced;
+  times_s_.push_back(sourced->timestamp_s);
+  if (survey_) return sourced;
+  first_.push_back(*sourced->frame);
+  if (first_.size() == enough) survey_first();
+  return sourced;
+}
+
+void WatchedSource::survey_first() {
+  survey_ = survey_of(first_, sensor());
+  first_.clear();
+}
+
+SourceSurvey WatchedSource::survey() {
+  if (!survey_) survey_first();
+  SourceSurvey survey = *survey_;
+  survey.times_s = times_s_;
+  return survey;
 }
 
 }  // namespace tofmap::app

@@ -11,11 +11,23 @@
 
 namespace tofmap::app {
 
-/// Findings about the first frames of a source.
-struct FirstFrames {
-  std::vector<std::string> warnings;
+/// What the frames of a source tell about it.
+struct SourceSurvey {
+  std::vector<std::string> warnings;       ///< about the first frames
   std::optional<ResidualSurvey> residual;  ///< empty if there are warnings, or too few returns
+  std::vector<double> times_s;             ///< timestamps of all undamaged frames
 };
+
+/// Warnings about a source, with what is known from mapping it: `camera` holds the systematic
+/// errors that unwrapping has estimated, or is null, and `map_agrees` says whether the frames agree
+/// on a map (frames_agree() of tofmap/pipeline). If they do, a large offset between the frequencies
+/// is no reason for a warning.
+std::vector<std::string> warnings_about(const SourceSurvey& survey,
+                                        const CameraErrors* camera = nullptr,
+                                        bool map_agrees = false);
+
+/// Surveys a recording, of which only the first frames are read.
+SourceSurvey survey_source(const SequenceReader& recording);
 
 /// Passes on the frames of another source and checks them (docs/cameras.md). The first frames are
 /// checked for wrong frequencies, for swapped images and for depths along the optical axis in place
@@ -28,21 +40,16 @@ class WatchedSource final : public FrameSource {
   std::optional<SourcedFrame> next() override;
   std::optional<int> frame_count() const override { return source_.frame_count(); }
 
-  /// Warnings about the frames so far. `camera` holds the systematic errors that unwrapping has
-  /// estimated, or is null.
-  std::vector<std::string> warnings(const CameraErrors* camera = nullptr);
+  /// The survey of the frames so far.
+  SourceSurvey survey();
 
  private:
-  void judge();
+  void survey_first();
 
   FrameSource& source_;
   std::vector<DualFrequencyFrame> first_;
-  std::optional<FirstFrames> judged_;  ///< empty until enough frames were read
-  std::vector<double> times_s_;        ///< timestamps of all undamaged frames
+  std::optional<SourceSurvey> survey_;  ///< without times; empty until enough frames were read
+  std::vector<double> times_s_;         ///< SourceSurvey::times_s
 };
-
-/// The same warnings about a recording, of which only the first frames are read.
-std::vector<std::string> warnings_about(const SequenceReader& recording,
-                                        const CameraErrors* camera = nullptr);
 
 }  // namespace tofmap::app

@@ -18,4 +18,10 @@ nlohmann::ordered_json consistency_json(const Consistency& consistency) {
           {"curl_violations_per_frame", json_number(consistency.curl_violations_per_frame)}};
 }
 
+nlohmann::ordered_json judgement_json(const Judgement& judgement) {
+  return {{"verdict", name_of(judgement.verdict)},
+          {"reasons", judgement.reasons},
+          {"remarks", judgement.remarks}};
+}
+
 }  // namespace tofmap::app

@@ -3,21 +3,18 @@
 
 #include "reports/evaluation_page.hpp"
 
-#include "reports/consistency_report.hpp"
 #include "reports/error_curves.hpp"
 #include "reports/evaluation_report.hpp"
 #include "reports/map_section.hpp"
 #include "reports/report_sections.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <tofmap/core/text.hpp>
-#include <tofmap/diagnostics/recording_survey.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -87,29 +84,17 @@ std::string sentence_of(const EvaluationPageSubject& subject) {
   return text;
 }
 
-/// The warnings about the recording and about the map with unwrapping.
 std::vector<std::string> warnings_of(const EvaluationPageSubject& subject) {
-  std::vector<std::string> warnings = subject.warnings;
-  const MethodResult& with = with_unwrapping(subject);
-  if (with.map) {
-    if (const auto warning = repetition_warning(with.map->repeated())) warnings.push_back(*warning);
-    std::ranges::move(warnings_about(with.map->errors), std::back_inserter(warnings));
-  }
-  if (with.consistency) {
-    std::ranges::move(warnings_about(*with.consistency), std::back_inserter(warnings));
-  }
+  std::vector<std::string> warnings = all_warnings(subject.survey, with_unwrapping(subject));
+  std::ranges::copy(subject.warnings, std::back_inserter(warnings));
   return warnings;
 }
 
 Judgement judgement_of(const EvaluationPageSubject& subject) {
   const MethodResult& with = with_unwrapping(subject);
   if (with.map) {
-    PipelineOptions pipeline = subject.options.pipeline;
-    pipeline.unwrap.method = with.method;
-    MapEvidence evidence = evidence_of(*with.map, pipeline);
+    MapEvidence evidence = evidence_of(with, subject.options.pipeline, warnings_of(subject));
     if (with.scores.surface) evidence.accuracy_m = with.scores.surface->accuracy_m;
-    evidence.is_seen_twice = !std::isnan(with.consistency->contradicted_percent);
-    evidence.is_warned = !warnings_of(subject).empty();
     return judge(evidence);
   }
   const Verdict of_ranges = verdict_on_wraps(mean_score(scores_of(with)).wrong_wrap_percent);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "input/watched_source.hpp"
 #include "options/options.hpp"
 
 #include <filesystem>
@@ -21,7 +22,8 @@ struct EvaluationPageSubject {
   const Truth& truth;
   const std::vector<MethodResult>& results;  ///< not empty
   const nlohmann::ordered_json& report;      ///< of `results` (evaluation_report.hpp)
-  std::vector<std::string> warnings;
+  const SourceSurvey& survey;                ///< of the recording
+  std::vector<std::string> warnings;         ///< about the evaluation
   const ProgramOptions& options;
   std::string options_yaml;
 };

@@ -10,10 +10,14 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include <tofmap/diagnostics/recording_survey.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -117,14 +121,18 @@ constexpr std::array columns{
     Column{"trajectory", "rpe_rmse_m_per_m", "RPE", "m per m", 4},
     Column{"map", "accuracy_m", "map", "error m", 4},
     Column{"map", "completeness_percent", "map", "seen %", 1},
+    Column{"judgement", "verdict", "verdict", "w/o truth", 0},
     Column{"map", "milliseconds_per_frame", "all", "ms/frame", 1}};
 
 std::string cell(const Json& report, const Column& column, const std::string& method) {
   const auto group = report.find(column.group);
   if (group == report.end() || !group->contains(method)) return "-";
   const Json& values = (*group)[method];
-  if (!values.contains(column.metric) || !values[column.metric].is_number()) return "-";
-  return fmt::format("{:.{}f}", values[column.metric].get<double>(), column.decimals);
+  if (!values.contains(column.metric)) return "-";
+  const Json& value = values[column.metric];
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_number()) return "-";
+  return fmt::format("{:.{}f}", value.get<double>(), column.decimals);
 }
 
 /// Whether a column is not worth its place in the table.
@@ -148,6 +156,32 @@ void add_to_report(Json& report, const MethodResult& result) {
   report["filters"][result.name] = filters_json(result);
   report["trajectory"][result.name] = trajectory_json(result);
   report["map"][result.name] = map_json(result);
+}
+
+std::vector<std::string> all_warnings(const SourceSurvey& recording, const MethodResult& result) {
+  if (!result.map) return warnings_about(recording);
+  const Consistency& consistency = *result.consistency;
+  std::vector<std::string> warnings =
+      warnings_about(recording, &result.map->errors.camera, frames_agree(*result.map, consistency));
+  if (auto warning = repetition_warning(result.map->repeated())) {
+    warnings.push_back(*std::move(warning));
+  }
+  std::ranges::move(warnings_about(result.map->errors), std::back_inserter(warnings));
+  std::ranges::move(warnings_about(consistency), std::back_inserter(warnings));
+  return warnings;
+}
+
+MapEvidence evidence_of(const MethodResult& result, const PipelineOptions& options,
+                        const std::vector<std::string>& warnings) {
+  PipelineOptions of_method = options;
+  of_method.unwrap.method = result.method;
+  return evidence_of(*result.map, of_method, *result.consistency, warnings);
+}
+
+void add_judgement(Json& report, const MethodResult& result, const PipelineOptions& options,
+                   const std::vector<std::string>& warnings) {
+  if (!result.map) return;
+  report["judgement"][result.name] = judgement_json(judge(evidence_of(result, options, warnings)));
 }
 
 std::vector<std::vector<std::string>> table_of(const Json& report) {

@@ -225,10 +225,9 @@ void write_map_page(const std::filesystem::path& result, const MapPageSubject& s
 
   ReportPage page("Map of " + subject.source,
                   "tofmap " TOFMAP_VERSION ", method " + method_name(subject));
-  MapEvidence evidence = evidence_of(map, subject.options.pipeline);
+  MapEvidence evidence =
+      evidence_of(map, subject.options.pipeline, subject.consistency, subject.warnings);
   if (scores.surface) evidence.accuracy_m = scores.surface->accuracy_m;
-  evidence.is_seen_twice = !std::isnan(subject.consistency.contradicted_percent);
-  evidence.is_warned = !subject.warnings.empty();
   const Judgement judgement = judge(evidence);
   page.add_verdict(judgement.verdict,
                    sentence_of(subject, scores, sample.moved_percent) + told_reasons(judgement));

@@ -19,5 +19,13 @@ TEST(ConsistencyJson, TellsWhatIsNotKnown) {
   EXPECT_EQ(json["contradicted_percent"], 0);
 }
 
+TEST(JudgementJson, HasVerdictReasonsAndRemarks) {
+  const auto json = judgement_json(
+      {.verdict = Verdict::check, .reasons = {"the map is thin"}, .remarks = {"it rained"}});
+  EXPECT_EQ(json["verdict"], "check");
+  EXPECT_EQ(json["reasons"][0], "the map is thin");
+  EXPECT_EQ(json["remarks"][0], "it rained");
+}
+
 }  // namespace
 }  // namespace tofmap::app

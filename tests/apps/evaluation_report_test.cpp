@@ -40,5 +40,16 @@ TEST(EvaluationTable, HasNoColumnOfOtherMapsIfThereAreNone) {
   EXPECT_EQ(table[1].size(), table[2].size());
 }
 
+TEST(EvaluationTable, HasTheVerdictsOfTheMethods) {
+  nlohmann::ordered_json report = report_with(0);
+  report["judgement"]["joint"]["verdict"] = "check";
+  const std::vector<std::vector<std::string>> table = table_of(report);
+  const auto column = std::ranges::find(table[0], "verdict") - table[0].begin();
+  ASSERT_LT(column, std::ssize(table[0]));
+  const auto at = static_cast<std::size_t>(column);
+  EXPECT_EQ(table[2][at], "-");
+  EXPECT_EQ(table[3][at], "check");
+}
+
 }  // namespace
 }  // namespace tofmap::app

@@ -162,6 +162,9 @@ TEST(OffsetWarning, IsThereWhereUnwrappingDidNotFindTheSameSmallOffset) {
   const CameraErrors large = camera_of(0.15);
   EXPECT_THAT(offset_warning(residual_of(0.15), &large).value_or(""), HasSubstr("or 480 mm more"))
       << "an alias is nearly as likely";
+  constexpr bool map_agrees = true;
+  EXPECT_FALSE(offset_warning(residual_of(0.15), &large, map_agrees)) << "no alias makes a map";
+  EXPECT_TRUE(offset_warning(residual_of(0.06), &other, map_agrees)) << "estimates disagree";
 }
 
 TEST(FrequencyPairWarning, IsThereWhereOneWavelengthIsAllThatThePairTells) {

@@ -343,6 +343,9 @@ TEST_F(Commands, EvaluateComparesTheMethods) {
   }
   EXPECT_LT(report["unwrapping"]["jump"]["wrong_wrap_percent"],
             report["unwrapping"]["none"]["wrong_wrap_percent"]);
+  EXPECT_EQ(report["judgement"]["joint"]["verdict"], "good");
+  EXPECT_EQ(report["judgement"]["none"]["verdict"], "bad");
+  EXPECT_FALSE(report["judgement"]["none"]["reasons"].empty());
 }
 
 TEST_F(Commands, EvaluateComparesTheMethodsThatAreNamedAsFarAsAskedFor) {

@@ -68,8 +68,12 @@ TEST_F(CarriedCamera, GetsAMapOfEachRoomAndIsToBeChecked) {
   EXPECT_GT(separate[0]["map_points"], 1000);
   EXPECT_EQ(report["frames"][frames_before]["tracking"]["status"], "first");
   EXPECT_EQ(report["frames"][frames_before + 1]["tracking"]["status"], "tracked");
+  EXPECT_EQ(report["judgement"]["verdict"], "check");
+  const std::string reason = "1 other map with 20 frames could not be joined with this one";
+  EXPECT_THAT(report["judgement"]["reasons"][0].get<std::string>(), HasSubstr(reason));
+  EXPECT_THAT(run.out, HasSubstr("verdict: Check this result. Reasons: tracking was lost"));
   const std::string page = test::read_text(out_ / "report.html");
-  EXPECT_THAT(page, HasSubstr("1 other map with 20 frames could not be joined with this one"));
+  EXPECT_THAT(page, HasSubstr(reason));
   EXPECT_THAT(page, HasSubstr("map_2.ply"));
 }
 

@@ -323,6 +323,24 @@ TEST(MapRoom, ShowsEveryReadableFrameInOrder) {
   EXPECT_EQ(seen, (std::vector{0, 1, 3, 4, 5}));
 }
 
+TEST(FramesAgree, IfNearlyAllAreInOneMapWithoutContradictions) {
+  RoomMap map;
+  map.frames.resize(100);
+  map.trajectory.resize(95);
+  Consistency consistency = unknown_consistency();
+  EXPECT_FALSE(frames_agree(map, consistency)) << "no place was seen twice";
+  consistency.contradicted_percent = 1;
+  EXPECT_TRUE(frames_agree(map, consistency));
+  consistency.contradicted_percent = 5;
+  EXPECT_FALSE(frames_agree(map, consistency));
+  consistency.contradicted_percent = 1;
+  map.trajectory.resize(94);
+  EXPECT_FALSE(frames_agree(map, consistency)) << "too few are registered";
+  map.trajectory.resize(100);
+  map.separate_maps.resize(1);
+  EXPECT_FALSE(frames_agree(map, consistency)) << "in several maps";
+}
+
 TEST(MapRoom, OfARecordingWithoutReturnsIsEmpty) {
   class Darkness final : public FrameSource {
    public:

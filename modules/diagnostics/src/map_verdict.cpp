@@ -72,7 +72,7 @@ Judgement judge(const MapEvidence& evidence) {
   }
   if (!evidence.is_seen_twice) hold_against(Verdict::check, "no place was seen by two frames");
   if (evidence.is_interrupted) hold_against(Verdict::check, "the run was interrupted");
-  if (evidence.is_warned) hold_against(Verdict::check, "there are warnings, see below");
+  if (evidence.is_warned) hold_against(Verdict::check, "there are warnings");
   return judgement;
 }
 

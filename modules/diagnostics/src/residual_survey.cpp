@@ -238,7 +238,7 @@ std::optional<std::string> pairing_warning(const ResidualSurvey& residual) {
 }
 
 std::optional<std::string> offset_warning(const ResidualSurvey& residual,
-                                          const CameraErrors* camera) {
+                                          const CameraErrors* camera, bool map_agrees) {
   constexpr double least_m = 0.02;  // motion between the exposures causes some millimetres
   constexpr double same_m = 0.03;   // the two estimates use different pixels and frames
   const bool is_known = camera != nullptr && camera->frames > 0;
@@ -253,7 +253,7 @@ std::optional<std::string> offset_warning(const ResidualSurvey& residual,
   }
   // The next offsets that fit are about `ambiguity_m` away, and so at least three times as large.
   const bool is_smallest_by_far = std::abs(estimate_m) < residual.ambiguity_m / 4;
-  if (is_known && is_smallest_by_far) return std::nullopt;
+  if (is_known && (is_smallest_by_far || map_agrees)) return std::nullopt;
   return "A measures " + offset_text(residual) + remedy;
 }
 

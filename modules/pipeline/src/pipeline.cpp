@@ -7,6 +7,7 @@
 #include "tofmap/diagnostics/recording_survey.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <numeric>
 #include <optional>
@@ -150,7 +151,16 @@ int RoomMap::separate() const {
                          });
 }
 
-MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options) {
+bool frames_agree(const RoomMap& map, const Consistency& consistency) {
+  constexpr double nearly_all = 0.95;
+  const auto frames = static_cast<double>(map.frames.size());
+  return static_cast<double>(map.trajectory.size()) >= nearly_all * frames &&
+         map.separate_maps.empty() && !std::isnan(consistency.contradicted_percent) &&
+         warnings_about(consistency).empty();
+}
+
+MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options,
+                        const Consistency& consistency, const std::vector<std::string>& warnings) {
   return {.frames = static_cast<int>(map.frames.size()),
           .registered = static_cast<int>(map.trajectory.size()),
           .separate = map.separate(),
@@ -165,7 +175,9 @@ MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options) {
           .is_interrupted = map.interrupted,
           .is_unwrapped = options.unwrap.method != UnwrapMethod::none,
           .accuracy_m = std::nullopt,
-          .voxel_m = options.map.voxel_m};
+          .voxel_m = options.map.voxel_m,
+          .is_seen_twice = !std::isnan(consistency.contradicted_percent),
+          .is_warned = !warnings.empty()};
 }
 
 void refuse_mostly_damaged(int damaged, int total, const std::string& first_damage) {

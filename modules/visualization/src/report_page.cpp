@@ -67,24 +67,6 @@ std::string table_row(const std::vector<std::string>& cells, std::string_view na
   return out + "</tr>\n";
 }
 
-/// A verdict as a class of the style sheet and as words on the page.
-struct VerdictWords {
-  std::string_view css_class;
-  std::string_view text;
-};
-
-VerdictWords words_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::good:
-      return {"good", "Looks right."};
-    case Verdict::check:
-      return {"check", "Check this result."};
-    case Verdict::bad:
-      break;
-  }
-  return {"bad", "Do not trust this result."};
-}
-
 /// Radio buttons to choose one of several names. The first is selected.
 template <class Named>
 std::string choice(const std::string& group, const std::string& label,
@@ -109,9 +91,8 @@ ReportPage::ReportPage(std::string title, const std::string& subtitle) : title_(
 }
 
 void ReportPage::add_verdict(Verdict verdict, const std::string& sentence) {
-  const VerdictWords words = words_of(verdict);
-  body_ += "<div class=\"verdict " + std::string(words.css_class) + "\">" +
-           element("b", words.text) + escaped(sentence) + "</div>\n";
+  body_ += "<div class=\"verdict " + std::string(name_of(verdict)) + "\">" +
+           element("b", sentence_of(verdict)) + escaped(sentence) + "</div>\n";
 }
 
 void ReportPage::add_warnings(const std::vector<std::string>& warnings) {

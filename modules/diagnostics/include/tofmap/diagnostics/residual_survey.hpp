@@ -38,9 +38,11 @@ std::optional<std::string> pairing_warning(const ResidualSurvey& residual);
 /// A warning, with the remedy, if the offset between the frequencies is uncertain. It is uncertain
 /// if unwrapping estimated another offset (`camera`; null if unknown), or if it is so large that
 /// other offsets that fit the phases are nearly as likely. Empty if the offset is below 2 cm, or if
-/// both estimates agree on a small offset, which unwrapping compensates for.
+/// both estimates agree on a small offset, which unwrapping compensates for. They may also agree on
+/// a large one if the frames agree on a map (`map_agrees`): another offset means other wrap counts,
+/// with which frames contradict each other.
 std::optional<std::string> offset_warning(const ResidualSurvey& residual,
-                                          const CameraErrors* camera);
+                                          const CameraErrors* camera, bool map_agrees = false);
 
 /// A warning if the pair of frequencies cannot tell wrap counts apart. Otherwise empty.
 std::optional<std::string> frequency_pair_warning(const Modulation& modulation);

@@ -12,6 +12,7 @@
 #include <tofmap/cloud/cloud_file.hpp>
 #include <tofmap/cloud/surface_cloud.hpp>
 #include <tofmap/core/trajectory.hpp>
+#include <tofmap/diagnostics/consistency.hpp>
 #include <tofmap/diagnostics/error_survey.hpp>
 #include <tofmap/diagnostics/map_verdict.hpp>
 #include <tofmap/filters/filter_chain.hpp>
@@ -138,9 +139,14 @@ struct RoomMap {
   int unused_loops() const;  ///< number of loops that the poses of the keyframes do not follow
 };
 
-/// The evidence that the frames and the surface of a map give for its verdict. The accuracy is
-/// left empty, and the fields about overlap and warnings keep their defaults.
-MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options);
+/// Whether nearly all frames are registered in one map and do not contradict each other, as far as
+/// its consistency measures can tell. Then wrap counts are right, apart from few.
+bool frames_agree(const RoomMap& map, const Consistency& consistency);
+
+/// The evidence for the verdict on a map without ground truth. `warnings` are those about the
+/// recording and the map.
+MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options,
+                        const Consistency& consistency, const std::vector<std::string>& warnings);
 
 /// Throws InputError if more than half of the frames are damaged. The message quotes
 /// `first_damage`.
