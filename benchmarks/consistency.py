@@ -4,7 +4,7 @@
 """Measures how well consistency measures, which need no truth, predict wrong wraps and map errors,
 and how often the verdict, which builds on them, notices a wrong map.
 
-    benchmarks/consistency.py BUILD_DIR RUNS [--frames N] [--jobs N]
+    benchmarks/consistency.py BUILD_DIR RUNS [--frames N] [--jobs N] [--seed-offset N]
     benchmarks/consistency.py --table RUNS
 
 Several methods map simulated recordings of several rooms, with several noises, and with and without
@@ -131,7 +131,7 @@ def main():
     parser.add_argument("--table", action="store_true", help="only print the tables of RUNS")
     parser.add_argument("--frames", type=int, default=100)
     parser.add_argument("--jobs", type=int, default=1, help="recordings to work on side by side")
-    parser.add_argument("--seeds", type=int, default=0, metavar="N",
+    parser.add_argument("--seed-offset", type=int, default=0, metavar="N",
                         help="added to the seed of each scene, for recordings of other rooms")
     arguments = parser.parse_args()
     if arguments.table:
@@ -139,7 +139,7 @@ def main():
         return
     tofmap = arguments.build / "apps" / "tofmap"
     threads = max(1, (os.cpu_count() or 1) // arguments.jobs)
-    recordings = [((scene, seed + arguments.seeds), noise_m, offset_m)
+    recordings = [((scene, seed + arguments.seed_offset), noise_m, offset_m)
                   for (scene, seed), noise_m, offset_m
                   in itertools.product(SCENES, NOISES_M, OFFSETS_M)]
     with open(arguments.runs, "w", encoding="utf-8") as file, \
