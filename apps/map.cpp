@@ -20,11 +20,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <functional>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -171,26 +169,14 @@ void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput&
   }
 }
 
-/// The warnings about the recording or device, and about the map.
-std::vector<std::string> all_warnings(const MapOutput& output, const FinishedMap& finished) {
-  std::vector<std::string> warnings = warnings_about(
-      output.survey, &finished.map.errors.camera, frames_agree(finished.map, finished.consistency));
-  if (!output.losses.empty()) warnings.push_back("not mapped: " + output.losses);
-  if (auto warning = repetition_warning(finished.map.repeated())) {
-    warnings.push_back(*std::move(warning));
-  }
-  std::ranges::move(warnings_about(finished.map.errors), std::back_inserter(warnings));
-  std::ranges::move(warnings_about(finished.consistency), std::back_inserter(warnings));
-  return warnings;
-}
-
 /// Finishes the map, writes the result and moves it into place. Sets the warnings.
 FinishedMap finish_map(MapRun& run, OutputFolder& out, MapOutput& output) {
   FinishedMap finished{.map = run.finish(), .consistency = unknown_consistency()};
   check_result(finished.map);
   write_map_and_path(out, finished.map);
   add_what_follows(out, finished, output);
-  output.warnings = all_warnings(output, finished);
+  output.warnings = all_warnings(output.survey, finished.map, finished.consistency);
+  if (!output.losses.empty()) output.warnings.push_back("not mapped: " + output.losses);
   finished.judgement = judge(
       evidence_of(finished.map, output.options.pipeline, finished.consistency, output.warnings));
   keeping_map(out, [&] { write_report(out, finished, output); });

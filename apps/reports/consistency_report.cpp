@@ -5,7 +5,13 @@
 
 #include "output/frame_report.hpp"
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 #include <nlohmann/json.hpp>
+
+#include <tofmap/diagnostics/recording_survey.hpp>
 
 namespace tofmap::app {
 
@@ -22,6 +28,16 @@ nlohmann::ordered_json judgement_json(const Judgement& judgement) {
   return {{"verdict", name_of(judgement.verdict)},
           {"reasons", judgement.reasons},
           {"remarks", judgement.remarks}};
+}
+
+std::vector<std::string> all_warnings(const SourceSurvey& source, const RoomMap& map,
+                                      const Consistency& consistency) {
+  std::vector<std::string> warnings =
+      warnings_about(source, &map.errors.camera, frames_agree(map, consistency));
+  if (auto warning = repetition_warning(map.repeated())) warnings.push_back(*std::move(warning));
+  std::ranges::move(warnings_about(map.errors), std::back_inserter(warnings));
+  std::ranges::move(warnings_about(consistency), std::back_inserter(warnings));
+  return warnings;
 }
 
 }  // namespace tofmap::app

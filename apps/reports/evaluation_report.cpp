@@ -10,14 +10,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <iterator>
 #include <map>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include <tofmap/diagnostics/recording_survey.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -160,15 +157,7 @@ void add_to_report(Json& report, const MethodResult& result) {
 
 std::vector<std::string> all_warnings(const SourceSurvey& recording, const MethodResult& result) {
   if (!result.map) return warnings_about(recording);
-  const Consistency& consistency = *result.consistency;
-  std::vector<std::string> warnings =
-      warnings_about(recording, &result.map->errors.camera, frames_agree(*result.map, consistency));
-  if (auto warning = repetition_warning(result.map->repeated())) {
-    warnings.push_back(*std::move(warning));
-  }
-  std::ranges::move(warnings_about(result.map->errors), std::back_inserter(warnings));
-  std::ranges::move(warnings_about(consistency), std::back_inserter(warnings));
-  return warnings;
+  return all_warnings(recording, *result.map, *result.consistency);
 }
 
 MapEvidence evidence_of(const MethodResult& result, const PipelineOptions& options,
