@@ -11,13 +11,14 @@ cover about a third of the image, people on paths of their own, doors, or all to
 recording is mapped. The table has the share of pixels that see what moves (mean and largest), the
 trajectory error of all registered frames after the rigid alignment that fits best, the mean
 distance of map points from the surface that does not move, the share of map points that what moves
-has left in the map, and the verdict of the report. A map point counts as left by what moves if it
-is more than 5 cm from the surface and less than 10 cm from a place at which a frame saw something
-moving. That includes doors at rest; the column after it counts only points that the last frame that
-looked there saw through. Recordings and maps stay in OUT_DIR, and are used again. Needs Debian's
-python3-numpy, python3-scipy, python3-opencv and python3-yaml.
+has left in the map, and the verdict of report.json, which knows no truth. A map point counts as
+left by what moves if it is more than 5 cm from the surface and less than 10 cm from a place at
+which a frame saw something moving. That includes doors at rest; the column after it counts only
+points that the last frame that looked there saw through. Recordings and maps stay in OUT_DIR, and
+are used again. Needs Debian's python3-numpy, python3-scipy, python3-opencv and python3-yaml.
 """
 import argparse
+import json
 import pathlib
 import subprocess
 
@@ -43,7 +44,6 @@ CASES = {
 }
 OFF_SURFACE_M = 0.05
 NEAR_MOVING_M = 0.1
-VERDICTS = ("Looks right.", "Check this result.", "Do not trust this result.")
 
 
 def run(*command):
@@ -99,14 +99,9 @@ def are_gone(sequence, points):
     return gone
 
 
-def verdict(report):
-    text = report.read_text(encoding="utf-8")
-    found = [(text.index(word), word) for word in VERDICTS if word in text]
-    return min(found)[1] if found else "-"
-
-
 def score(sequence, folder, swept):
     """The columns of one map: registered frames, errors, moving points and verdict."""
+    report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
     poses = numpy.loadtxt(sequence / "groundtruth.txt", ndmin=2)
     truth = {f"{pose[0]:.4f}": pose[1:4] for pose in poses}
     found = numpy.loadtxt(folder / "trajectory.txt", ndmin=2)
@@ -124,7 +119,7 @@ def score(sequence, folder, swept):
     return (f"{len(found)} of {len(truth)}", f"{1000 * numpy.sqrt((errors_m ** 2).mean()):.1f}",
             f"{1000 * errors_m.max():.0f}", f"{1000 * numpy.minimum(off_m, 5).mean():.1f}",
             f"{len(points)}", f"{100 * moved.mean():.2f}", f"{100 * gone.mean():.2f}",
-            verdict(folder / "report.html"))
+            report["judgement"]["verdict"])
 
 
 def measure(arguments, scene, case, seed):

@@ -6,8 +6,8 @@
     benchmarks/verdict_rates.py BUILD_DIR OUT_DIR RECORDING... [--jobs N]
 
 The recordings have ground truth, such as those that alike_places.py, moving_things.py,
-violent_turns.py and `tofmap simulate` make. Each is mapped without its truth, which would change
-the verdict. A map is wrong if the positions of more than one frame in a hundred are off by more than
+violent_turns.py and `tofmap simulate` make. The verdict is that of report.json, which knows no
+truth. A map is wrong if the positions of more than one frame in a hundred are off by more than
 5 cm, in the map that the frames are in, after the rigid alignment that fits that map best. It is
 questioned if its verdict is not "Looks right." The rates come last; recordings without a map, since
 the program failed, are counted apart. Maps stay in OUT_DIR, under the names of the recordings, and
@@ -16,9 +16,8 @@ are used again. Needs Debian's python3-numpy and python3-scipy.
 import argparse
 import concurrent.futures
 import pathlib
-import shutil
 
-from places.recordings import run, without_truth
+from places.recordings import run
 from places.score import NOTICED_M, score
 
 HEADER = ("| recording | frames in each map | ATE, mm | error of 99 % / all, mm | verdict | |\n"
@@ -26,15 +25,11 @@ HEADER = ("| recording | frames in each map | ATE, mm | error of 99 % / all, mm 
 
 
 def map_of(tofmap, out, recorded):
-    """Maps a recording without its truth, if that was not done before."""
+    """Maps a recording, if that was not done before."""
     result = out / f"{recorded.name}_verdict"
     if not (result / "report.json").exists():
-        copy = without_truth(recorded)
-        try:
-            run(tofmap, "map", copy, "--out", result, "--set", "report.frames=0",
-                "pictures.frames=0")
-        finally:
-            shutil.rmtree(copy)
+        run(tofmap, "map", recorded, "--out", result, "--set", "report.frames=0",
+            "pictures.frames=0")
     return result
 
 
@@ -47,9 +42,9 @@ def measure(tofmap, out, recorded):
 
 
 def row_of(name, found):
-    is_wrong, is_questioned = found.most_m > NOTICED_M, found.verdict != "good"
+    is_wrong = found.most_m > NOTICED_M
     remark = {(True, False): "MISSED", (False, True): "for nothing"}.get(
-        (is_wrong, is_questioned), "")
+        (is_wrong, found.is_questioned), "")
     ate_mm = "; ".join(f"{1000 * ate_m:.1f}" for ate_m in found.ate_m)
     return (f"| {name} | {' + '.join(map(str, found.registered))} of {found.frames} | {ate_mm} | "
             f"{1000 * found.most_m:.0f} / {1000 * found.worst_m:.0f} | {found.verdict} | {remark} |")
@@ -84,7 +79,7 @@ def main():
                 without_map += 1
                 continue
             print(row_of(name, found), flush=True)
-            questioned[found.most_m > NOTICED_M].append(found.verdict != "good")
+            questioned[found.most_m > NOTICED_M].append(found.is_questioned)
     print(f"\n{rate(questioned[True], 'wrong')}; {rate(questioned[False], 'right')}; "
           f"{without_map} without a map")
 

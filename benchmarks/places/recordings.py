@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Recordings of walks through buildings whose places look alike, by `tofmap simulate`."""
-import os
 import shutil
 import subprocess
 import zlib
@@ -13,8 +12,6 @@ from places.walk import FRAME_RATE_HZ
 
 CARRIED_S = 4  # time without frames while the camera is carried
 LEAST_CLEARANCE_M = 0.3
-TRUTH = ("groundtruth.txt", "range_truth", "label_truth", "moving_truth", "scene.ply",
-         "options.yaml")
 
 
 def run(*command):
@@ -79,12 +76,3 @@ def make_recording(tofmap, out, kind, seed):
         drop_frames(unfinished / file, ends)
     unfinished.rename(folder)
     return folder
-
-
-def without_truth(recording):
-    """A copy of a recording without its truth, beside it. With it, the verdict would know more than
-    that on a real recording."""
-    copy = recording.with_suffix(".blind")
-    shutil.rmtree(copy, ignore_errors=True)
-    shutil.copytree(recording, copy, copy_function=os.link, ignore=lambda *_: TRUTH)
-    return copy

@@ -3,7 +3,6 @@
 """Scores of maps of places that look alike, against truth."""
 import dataclasses
 import json
-import re
 
 import numpy
 from scipy.spatial.transform import Rotation
@@ -83,7 +82,10 @@ class Score:
     wrong_joins: int
     joins_by_look: int
     verdict: str
-    is_warned: bool
+
+    @property
+    def is_questioned(self):
+        return self.verdict != "good"
 
     @property
     def outcome(self):
@@ -93,7 +95,7 @@ class Score:
         if 0 < self.wrong_joins <= self.joins_by_look:
             return "by look"
         if self.wrong_loops or self.wrong_joins or (
-                self.worst_m > NOTICED_M and not self.is_warned):
+                self.worst_m > NOTICED_M and not self.is_questioned):
             return "WRONG"
         is_whole = len(self.registered) == 1 and self.registered[0] >= 0.95 * self.frames
         return "right" if is_whole and self.ate_m[0] <= RIGHT_ATE_M else "unknown"
@@ -118,8 +120,6 @@ def score(recorded, result):
         for path in paths]
     loops = report["summary"]["loops"]
     used = [(loop["from"], loop["to"]) for loop in loops if loop["is_used"]]
-    page = (result / "report.html").read_text(encoding="utf-8")
-    verdict = re.search(r'class="verdict (\w+)"', page).group(1)
     return Score(
         frames=len(frames), registered=[len(path.indices) for path in paths],
         ate_m=[float(numpy.sqrt((errors ** 2).mean())) for errors in errors_m],
@@ -130,4 +130,4 @@ def score(recorded, result):
                         for one, other in used if one in path.row_of and other in path.row_of),
         wrong_joins=sum(wrong_joins(path, truth, frames) for path in paths),
         joins_by_look=report["summary"]["joins"]["by_look_alone"],
-        verdict=verdict, is_warned=verdict != "good" or bool(report["warnings"]))
+        verdict=report["judgement"]["verdict"])

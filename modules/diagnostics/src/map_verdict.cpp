@@ -12,9 +12,8 @@
 namespace tofmap {
 
 Judgement judge(const MapEvidence& evidence) {
-  constexpr double half_percent = 50;        // with fewer frames, most of the recording is missing
-  constexpr double nearly_all_percent = 95;  // every recording loses some frames
-  constexpr double much_m = 0.05;            // a wall that is off by more looks double
+  constexpr double half_percent = 50;  // with fewer frames, most of the recording is missing
+  constexpr double much_m = 0.05;      // a wall that is off by more looks double
   Judgement judgement;
   const auto hold_against = [&](Verdict verdict, const std::string& reason) {
     judgement.verdict = std::max(judgement.verdict, verdict);

@@ -152,9 +152,8 @@ int RoomMap::separate() const {
 }
 
 bool frames_agree(const RoomMap& map, const Consistency& consistency) {
-  constexpr double nearly_all = 0.95;
   const auto frames = static_cast<double>(map.frames.size());
-  return static_cast<double>(map.trajectory.size()) >= nearly_all * frames &&
+  return static_cast<double>(map.trajectory.size()) >= nearly_all_percent / 100 * frames &&
          map.separate_maps.empty() && !std::isnan(consistency.contradicted_percent) &&
          warnings_about(consistency).empty();
 }

@@ -10,6 +10,9 @@
 
 namespace tofmap {
 
+/// A map of fewer of its recording's frames than this is to be checked. Every recording loses some.
+inline constexpr double nearly_all_percent = 95;
+
 /// The facts by which a map is judged.
 struct MapEvidence {
   int frames = 0;            ///< frames of the recording, including damaged ones
