@@ -26,8 +26,20 @@ class LostCamera : public testing::Test {
     for (int i = 0; i < frames; ++i) {
       EXPECT_TRUE(add(room_.view(first + i)).tracking.registered()) << i;
     }
+    cover();
+  }
+
+  /// The camera is covered for a second.
+  void cover() {
     const auto nothing = std::make_shared<const SurfaceCloud>();
     for (int i = 0; i < 15; ++i) EXPECT_FALSE(add(nothing).tracking.registered());
+  }
+
+  /// A box that stands in the room, where only later frames of its second visit see it.
+  Eigen::AlignedBox3d box() const {
+    const Eigen::Vector3d middle_m = room_.pose(first + 45) * Eigen::Vector3d(-2.35, 0, 3.6);
+    const Eigen::Vector3d half_m = Eigen::Vector3d::Constant(0.25);
+    return {middle_m - half_m, middle_m + half_m};
   }
 
   AddedFrame add(const std::shared_ptr<const SurfaceCloud>& cloud) {
@@ -73,12 +85,9 @@ TEST_F(LostCamera, BeginsAMapThatIsJoinedWhereItRecognisesTheFirstOne) {
 
 TEST_F(LostCamera, IsTakenOutOfAMapThatLaterFramesDifferFrom) {
   // A room of the same plan, in which a box stands that only the later frames see.
-  const Eigen::Vector3d middle_m = room_.pose(first + 45) * Eigen::Vector3d(-2.35, 0, 3.6);
-  const Eigen::Vector3d half_m = Eigen::Vector3d::Constant(0.25);
-  const Eigen::AlignedBox3d box(middle_m - half_m, middle_m + half_m);
   bool was_joined = false;
   for (int i = 0; i < 50; ++i) {
-    const TrackingResult result = add(room_.view(first + 6 + i, box)).tracking;
+    const TrackingResult result = add(room_.view(first + 6 + i, box())).tracking;
     was_joined = was_joined || result.status == TrackingStatus::relocalised;
     EXPECT_TRUE(result.registered() || i < 2) << i;
   }
@@ -98,6 +107,24 @@ TEST_F(LostCamera, IsTakenOutOfAMapThatLaterFramesDifferFrom) {
   for (const PoseEdge& edge : mapper_.edges()) {
     EXPECT_EQ(mapper_.keyframes()[edge.from].map, mapper_.keyframes()[edge.to].map);
   }
+}
+
+TEST_F(LostCamera, KeepsAnEarlierJoinWhenALaterOneIsTakenBack) {
+  for (int i = 0; i < 20; ++i) add(room_.view(first + 6 + i));
+  ASSERT_EQ(mapper_.joins(), 1);
+  cover();
+  bool was_joined_again = false;
+  for (int i = 0; i < 50; ++i) {
+    add(room_.view(first + 6 + i, box()));
+    was_joined_again = was_joined_again || mapper_.joins() == 2;
+  }
+  mapper_.finish();
+  EXPECT_TRUE(was_joined_again);
+  EXPECT_EQ(mapper_.joins(), 1);
+  EXPECT_EQ(mapper_.joins_taken_back(), 1);
+  ASSERT_EQ(mapper_.maps(), (std::vector{0, 2}));
+  EXPECT_EQ(mapper_.trajectory(0).size(), frames + 20U);
+  EXPECT_EQ(mapper_.trajectory(2).size(), 50U);
 }
 
 TEST_F(LostCamera, KeepsTheMapOfAnotherBuildingApart) {
@@ -140,25 +167,35 @@ TEST_F(LostCamera, DropsWhatPassesInFrontOfIt) {
 }
 
 TEST_F(LostCamera, IsFoundAfterAnInterruptionAsWithoutOne) {
+  // Interrupted while frames are held, while there are two maps, and after these were joined.
   const auto there = [&](int i) { return first + 6 + i; };
-  add(room_.view(there(0)));
-  add(room_.view(there(1)));  // both are held
-  std::stringstream state;
-  mapper_.save(state);
-  RoomMapper resumed(room_.camera(), {}, {}, {}, {});
-  resumed.load(state);
-  for (int i = 2; i < 40; ++i) {
+  std::vector<std::unique_ptr<RoomMapper>> resumed;
+  std::vector<std::size_t> maps;
+  for (int i = 0; i < 40; ++i) {
+    if (i == 2 || i == 5 || i == 30) {
+      maps.push_back(mapper_.maps().size());
+      std::stringstream state;
+      mapper_.save(state);
+      resumed.push_back(std::make_unique<RoomMapper>(room_.camera(), OdometryOptions(),
+                                                     RegistrationOptions(), LoopOptions(),
+                                                     SurfaceMapOptions()));
+      resumed.back()->load(state);
+    }
     const auto view = room_.view(there(i));
-    resumed.add_frame({added_, added_ / 15.0, view});
+    for (const auto& mapper : resumed) mapper->add_frame({added_, added_ / 15.0, view});
     add(view);
   }
+  ASSERT_EQ(maps, (std::vector<std::size_t>{1, 2, 1}));
   mapper_.finish();
-  resumed.finish();
   const Trajectory expected = mapper_.trajectory(0);
-  const Trajectory found = resumed.trajectory(0);
-  ASSERT_EQ(found.size(), expected.size());
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    EXPECT_EQ(found[i].world_from_camera.matrix(), expected[i].world_from_camera.matrix()) << i;
+  for (const auto& mapper : resumed) {
+    mapper->finish();
+    EXPECT_EQ(mapper->joins(), 1);
+    const Trajectory found = mapper->trajectory(0);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].world_from_camera.matrix(), expected[i].world_from_camera.matrix()) << i;
+    }
   }
 }
 
