@@ -144,6 +144,34 @@ TEST(MapScore, MeasuresAMapThatIsTwoCentimetresOff) {
   EXPECT_DOUBLE_EQ(score.completeness_percent, 100);
 }
 
+// A floor 1.5 m below the camera: from 10 m on, its samples are more than 0.3 m apart.
+TEST(MapScore, DoesNotCountTheSpacingOfTheTruthAsError) {
+  const CameraModel camera{.width_px = 100,
+                           .height_px = 100,
+                           .fx_px = 80,
+                           .fy_px = 80,
+                           .cx_px = 49.5,
+                           .cy_px = 49.5,
+                           .distortion = {}};
+  constexpr float height_m = 1.5F;
+  const PixelRays rays = pixel_rays(camera);
+  ReferenceSurface reference;
+  reference.add((rays.y > 0.12F).select(height_m / rays.y, ImageF::Constant(100, 100, NAN)), rays,
+                Pose::Identity());
+  MapCloud map;
+  for (int i = 0; i < 200; ++i) {
+    MapPoint point;
+    point.getVector3fMap() = Eigen::Vector3f(0.01F * static_cast<float>(i % 20), height_m - 0.03F,
+                                             3 + 0.04F * static_cast<float>(i));
+    map.push_back(point);
+  }
+  const MapScore score = score_map(map, Pose::Identity(), reference);
+  EXPECT_NEAR(score.accuracy_m, 0.03, 1e-3);
+  EXPECT_GT(*std::ranges::max_element(reference.spacings_m()), 0.3F);
+  const std::vector<float> limited = map_errors_m(map, Pose::Identity(), reference, 0.1);
+  EXPECT_EQ(limited, score.errors_m);
+}
+
 TEST(MapScore, IsTheSameInANationalGrid) {
   const Vector3d at(5e6, -5e6, 300);
   const MapCloud map = plane_map(1.02, 0.03);

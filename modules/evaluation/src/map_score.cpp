@@ -35,13 +35,16 @@ std::int64_t voxel_key(const Eigen::Vector3d& point) {
   return key;
 }
 
-/// The normal of the plane through the neighbours of a point within 12 cm, at most 24 of them.
-Eigen::Vector3f plane_normal(const Cloud& cloud, const Tree& tree, int index) {
+/// The normal of the plane through the neighbours of a point within 12 cm, or within three
+/// spacings if that is more; at most 24 of them.
+Eigen::Vector3f plane_normal(const Cloud& cloud, const Tree& tree, int index, double spacing_m) {
   constexpr double radius_m = 0.12;
+  constexpr double spacings = 3;
   constexpr unsigned max_neighbours = 24;
   std::vector<int> neighbours;
   std::vector<float> squares;
-  tree.radiusSearch(cloud, index, radius_m, neighbours, squares, max_neighbours);
+  tree.radiusSearch(cloud, index, std::max(radius_m, spacings * spacing_m), neighbours, squares,
+                    max_neighbours);
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();
   for (const int i : neighbours) mean += cloud[i].getVector3fMap();
   mean /= static_cast<float>(neighbours.size());
@@ -77,11 +80,46 @@ Nearest nearest(const Tree& tree, const pcl::PointXYZ& point, double most_m) {
   return found > 0 ? Nearest{index[0], std::sqrt(square[0])} : Nearest{-1, most_m};
 }
 
+/// The points of a frame that become points of a reference surface, in the camera's frame.
+struct Samples {
+  static constexpr Eigen::Index stride = 2;  ///< between samples in both directions, pixels
+
+  const ImageF& range_m;
+  const PixelRays& rays;
+
+  bool is_seen(Eigen::Index v, Eigen::Index u) const {
+    return v >= 0 && u >= 0 && v < range_m.rows() && u < range_m.cols() &&
+           std::isfinite(range_m(v, u));
+  }
+
+  Eigen::Vector3d point_m(Eigen::Index v, Eigen::Index u) const {
+    return double{range_m(v, u)} * Eigen::Vector3d(rays.x(v, u), rays.y(v, u), rays.z(v, u));
+  }
+
+  /// Distance from the sample at (v + dv, u + du) or the opposite one, whichever is nearer: the
+  /// other one may lie on another surface. Zero if neither is seen.
+  double step_m(Eigen::Index v, Eigen::Index u, Eigen::Index dv, Eigen::Index du) const {
+    double least_m = anywhere_m;
+    for (const Eigen::Index sign : {-1, 1}) {
+      const Eigen::Index v_next = v + sign * dv;
+      const Eigen::Index u_next = u + sign * du;
+      if (!is_seen(v_next, u_next)) continue;
+      least_m = std::min(least_m, (point_m(v_next, u_next) - point_m(v, u)).norm());
+    }
+    return least_m < anywhere_m ? least_m : 0;
+  }
+
+  double spacing_m(Eigen::Index v, Eigen::Index u) const {
+    return std::max(step_m(v, u, stride, 0), step_m(v, u, 0, stride));
+  }
+};
+
 /// A map and the reference surface, both relative to the origin of the reference.
 struct Clouds {
   Clouds(const MapCloud& map, const Pose& truth_from_map, const ReferenceSurface& reference) {
     if (reference.points().empty()) throw UsageError("map score: the reference surface is empty");
     for (const Eigen::Vector3f& p : reference.points()) truth->push_back({p.x(), p.y(), p.z()});
+    spacings_m = reference.spacings_m();
     const Pose origin_from_map = Eigen::Translation3d(-reference.origin_m()) * truth_from_map;
     for (const MapPoint& point : map.points) {
       const Eigen::Vector3f p =
@@ -91,23 +129,27 @@ struct Clouds {
   }
 
   Cloud::Ptr truth = std::make_shared<Cloud>();
+  std::vector<float> spacings_m;  ///< of `truth`
   Cloud::Ptr registered = std::make_shared<Cloud>();
 };
 
 std::vector<float> errors_m(const Clouds& clouds, double most_m) {
   const Cloud& truth = *clouds.truth;
   const Tree truth_tree = make_tree(clouds.truth);
+  const double reach_m = std::max(most_m, double{std::ranges::max(clouds.spacings_m)});
   std::vector<float> errors(clouds.registered->size());
 #pragma omp parallel for schedule(dynamic, 256)
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const pcl::PointXYZ& point = (*clouds.registered)[i];
-    const Nearest found = nearest(truth_tree, point, most_m);
+    const Nearest found = nearest(truth_tree, point, reach_m);
     double gap_m = found.gap_m;
-    if (found.index >= 0 && gap_m < near_m) {
+    const double spacing_m =
+        found.index >= 0 ? clouds.spacings_m[static_cast<std::size_t>(found.index)] : 0;
+    if (found.index >= 0 && gap_m < std::max(near_m, spacing_m)) {
       const Eigen::Vector3f d = point.getVector3fMap() - truth[found.index].getVector3fMap();
-      gap_m = std::abs(d.dot(plane_normal(truth, truth_tree, found.index)));
+      gap_m = std::abs(d.dot(plane_normal(truth, truth_tree, found.index, spacing_m)));
     }
-    errors[i] = static_cast<float>(gap_m);
+    errors[i] = static_cast<float>(std::min(gap_m, most_m));
   }
   return errors;
 }
@@ -116,16 +158,15 @@ std::vector<float> errors_m(const Clouds& clouds, double most_m) {
 
 void ReferenceSurface::add(const ImageF& range_truth_m, const PixelRays& rays,
                            const Pose& world_from_camera) {
-  constexpr int stride = 2;
+  const Samples samples{range_truth_m, rays};
   const Pose origin_from_camera = Eigen::Translation3d(-origin_m_) * world_from_camera;
-  for (Eigen::Index v = 0; v < range_truth_m.rows(); v += stride) {
-    for (Eigen::Index u = 0; u < range_truth_m.cols(); u += stride) {
-      const double range = range_truth_m(v, u);
-      if (!std::isfinite(range)) continue;
-      const Eigen::Vector3d point =
-          origin_from_camera * (range * Eigen::Vector3d(rays.x(v, u), rays.y(v, u), rays.z(v, u)));
+  for (Eigen::Index v = 0; v < range_truth_m.rows(); v += Samples::stride) {
+    for (Eigen::Index u = 0; u < range_truth_m.cols(); u += Samples::stride) {
+      if (!samples.is_seen(v, u)) continue;
+      const Eigen::Vector3d point = origin_from_camera * samples.point_m(v, u);
       if (voxels_.emplace(voxel_key(point), points_.size()).second) {
         points_.push_back(point.cast<float>());
+        spacings_m_.push_back(static_cast<float>(samples.spacing_m(v, u)));
       }
     }
   }

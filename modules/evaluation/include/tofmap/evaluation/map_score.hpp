@@ -35,10 +35,15 @@ class ReferenceSurface {
   /// The points relative to the origin, metres.
   const std::vector<Eigen::Vector3f>& points() const { return points_; }
 
+  /// The distance of each point from the next points that its frame saw on the same surface,
+  /// metres. It is large where the surface was far away or seen at a grazing angle.
+  const std::vector<float>& spacings_m() const { return spacings_m_; }
+
  private:
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
   std::unordered_map<std::int64_t, std::size_t> voxels_;
   std::vector<Eigen::Vector3f> points_;
+  std::vector<float> spacings_m_;
 };
 
 /// An origin for ReferenceSurface near the positions of a trajectory: the median of each
@@ -59,10 +64,10 @@ struct MapScore {
 
 /// The distance of each map point from the true surface, metres. `truth_from_map` transforms the
 /// map into the world frame of the reference. Points closer than 0.1 m to their nearest reference
-/// point get their distance from the plane through its neighbours, so that the sampling of the
-/// reference does not count as error; other points get the distance from that point. Errors above
-/// `most_m` are set to `most_m`, which saves the search for far points. Throws UsageError if the
-/// reference is empty or `most_m` is not positive.
+/// point, or closer than the reference is spaced there, get their distance from the plane through
+/// its neighbours, so that the sampling of the reference does not count as error; other points get
+/// the distance from that point. Errors above `most_m` are set to `most_m`, which saves the search
+/// for far points. Throws UsageError if the reference is empty or `most_m` is not positive.
 std::vector<float> map_errors_m(const MapCloud& map, const Pose& truth_from_map,
                                 const ReferenceSurface& reference,
                                 double most_m = std::numeric_limits<double>::infinity());
