@@ -68,7 +68,7 @@ std::vector<std::string> time_warnings(const std::vector<double>& times_s) {
 /// A warning about how well the frequencies agree. Empty if there is no reason for one.
 std::optional<std::string> residual_warning(const ResidualSurvey& residual,
                                             const CameraErrors* camera, bool map_agrees) {
-  auto mixed_up = pairing_warning(residual);
+  auto mixed_up = pairing_warning(residual, map_agrees);
   return mixed_up ? mixed_up : offset_warning(residual, camera, map_agrees);
 }
 

@@ -20,8 +20,8 @@ struct SourceSurvey {
 
 /// Warnings about a source, with what is known from mapping it: `camera` holds the systematic
 /// errors that unwrapping has estimated, or is null, and `map_agrees` says whether the frames agree
-/// on a map (frames_agree() of tofmap/pipeline). If they do, a large offset between the frequencies
-/// is no reason for a warning.
+/// on a map (frames_agree() of tofmap/pipeline). If they do, noise or a large offset between the
+/// frequencies is no reason for a warning.
 std::vector<std::string> warnings_about(const SourceSurvey& survey,
                                         const CameraErrors* camera = nullptr,
                                         bool map_agrees = false);

@@ -146,6 +146,7 @@ Json summary_json(const RoomMap& map) {
           {"registered", map.trajectory.size()},
           {"keyframes", map.keyframes.size()},
           {"frames_with_degenerate_directions", map.degenerate()},
+          {"frames_registered_slowly", map.registered_slowly},
           {"loops", loops_json(map)},
           {"joins",
            {{"kept", map.joins},

@@ -78,6 +78,16 @@ TEST(Verdict, GoesByDirectionsThatNoSurfaceConstrained) {
             "surfaces seen on the way there did not constrain all directions of motion");
 }
 
+TEST(Verdict, GoesByFramesThatWereRegisteredSlowly) {
+  MapEvidence evidence = good_evidence();
+  evidence.registered_slowly = 5;
+  EXPECT_EQ(verdict_on(evidence), Verdict::good);
+  evidence.registered_slowly = 6;
+  EXPECT_EQ(reason_to_check(evidence),
+            "6 % of the frames took many iterations to register, since their surfaces, or noise, "
+            "left some directions of motion open");
+}
+
 TEST(Verdict, SaysToCheckAMapThatRecognisedPlacesContradict) {
   MapEvidence evidence = good_evidence();
   evidence.unused_loops = 1;

@@ -181,6 +181,7 @@ TEST(ErrorWarnings, BeginAtACentimetreOfPeriodicError) {
   EXPECT_THAT(warnings_about(survey), IsEmpty());
   survey.camera.periodic_rms_m = 0.011;
   EXPECT_THAT(warnings_about(survey), ElementsAre(HasSubstr("about 11 mm")));
+  EXPECT_THAT(warnings_about(survey, true), IsEmpty()) << "frames agree on a map";
   survey.camera.frames = 0;
   EXPECT_THAT(warnings_about(survey), IsEmpty()) << "nothing is known";
 }

@@ -74,6 +74,16 @@ TEST(MapRoom, PlacesEveryFrameOfAWholeRecording) {
   EXPECT_FALSE(map.keyframes.empty());
   EXPECT_FALSE(map.surface.empty());
   EXPECT_FALSE(map.interrupted);
+  EXPECT_EQ(map.registered_slowly, 0);
+}
+
+TEST(MapRoom, CountsFramesThatTookMostOfTheIterationsAllowed) {
+  Simulator room = small_room();
+  PipelineOptions options;
+  options.registration.max_iterations = 1;
+  const RoomMap map = map_room(room, options);
+  ASSERT_FALSE(map.trajectory.empty());
+  EXPECT_EQ(map.registered_slowly, map.trajectory.size() - 1) << "the first frame is the origin";
 }
 
 /// Along a corridor only its far end and a few edges say how far the camera went.
@@ -337,6 +347,11 @@ TEST(FramesAgree, IfNearlyAllAreInOneMapWithoutContradictions) {
   map.trajectory.resize(94);
   EXPECT_FALSE(frames_agree(map, consistency)) << "too few are registered";
   map.trajectory.resize(100);
+  map.registered_slowly = 5;
+  EXPECT_TRUE(frames_agree(map, consistency));
+  map.registered_slowly = 6;
+  EXPECT_FALSE(frames_agree(map, consistency)) << "some were found slowly";
+  map.registered_slowly = 0;
   map.separate_maps.resize(1);
   EXPECT_FALSE(frames_agree(map, consistency)) << "in several maps";
 }

@@ -42,6 +42,17 @@ TEST(Registration, FindsAKnownMotionWhereThreeWallsAreInView) {
   EXPECT_LT((result.world_from_camera.translation() - truth.translation()).norm(), 5e-4);
   EXPECT_LT(rotation_angle_rad(result.world_from_camera, truth), 2e-4);
   EXPECT_GT(result.inlier_ratio, 0.9);
+  EXPECT_FALSE(converged_slowly(result, {}));
+}
+
+TEST(Registration, IsSlowIfItTakesMostOfTheIterationsAllowed) {
+  RegistrationOptions options;
+  options.max_iterations = 10;
+  RegistrationResult result;
+  result.iterations = 6;
+  EXPECT_FALSE(converged_slowly(result, options));
+  result.iterations = 7;
+  EXPECT_TRUE(converged_slowly(result, options));
 }
 
 TEST(Registration, LeavesDirectionsThatABareWallDoesNotHoldToThePrior) {

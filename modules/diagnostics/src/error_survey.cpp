@@ -75,7 +75,7 @@ std::vector<std::string> remarks_about(const ErrorSurvey& survey) {
     if (periodic_m >= least_periodic_m) {
       remarks.push_back(fmt::format(
           "the ranges of A and B differ by a periodic error of {:.0f} mm (RMS); unwrapping "
-          "compensates for it",
+          "compensates for it, but ranges keep it: 'tofmap calibrate' finds and corrects it",
           millimetres(periodic_m)));
     }
     if (std::abs(per_decade_m) >= least_per_decade_m) {
@@ -109,9 +109,10 @@ std::vector<std::string> remarks_about(const ErrorSurvey& survey) {
   return remarks;
 }
 
-std::vector<std::string> warnings_about(const ErrorSurvey& survey) {
-  // A periodic error of 1 cm made trajectories ten times worse (docs/mapping.md).
-  constexpr double most_periodic_m = 0.01;
+std::vector<std::string> warnings_about(const ErrorSurvey& survey, bool map_agrees) {
+  // A periodic error of 1 cm made trajectories ten times worse (docs/mapping.md). If that did not
+  // make frames disagree, the map has the error itself, of which a wall may have twice as much.
+  const double most_periodic_m = map_agrees ? 0.025 : 0.01;
   const double periodic_m = survey.camera.periodic_rms_m;
   if (survey.camera.frames == 0 || periodic_m < most_periodic_m) return {};
   return {fmt::format(

@@ -47,6 +47,13 @@ Judgement judge(const MapEvidence& evidence) {
                              "all directions of motion",
                              evidence.least_certain_frame, evidence.position_sigma_m));
   }
+  const double slow_percent = percent_of_frames(evidence, evidence.registered_slowly);
+  if (slow_percent > most_slow_percent) {
+    hold_against(Verdict::check,
+                 fmt::format("{:.0f} % of the frames took many iterations to register, since their "
+                             "surfaces, or noise, left some directions of motion open",
+                             slow_percent));
+  }
   if (evidence.blind_joins > 0) {
     hold_against(
         Verdict::check,

@@ -216,7 +216,7 @@ std::optional<ResidualSurvey> survey_residual(const std::vector<DualFrequencyFra
   return survey;
 }
 
-std::optional<std::string> pairing_warning(const ResidualSurvey& residual) {
+std::optional<std::string> pairing_warning(const ResidualSurvey& residual, bool map_agrees) {
   constexpr double telling_ratio = 0.5;
   if (residual.swapped_spread_m < telling_ratio * residual.spread_m) {
     return fmt::format(
@@ -227,7 +227,7 @@ std::optional<std::string> pairing_warning(const ResidualSurvey& residual) {
   // Differences of unrelated phases have a spread of 0.37 times the ambiguity, or more if
   // max_range_m is small.
   constexpr double no_agreement = 0.3;
-  if (residual.spread_m > no_agreement * residual.ambiguity_m) {
+  if (!map_agrees && residual.spread_m > no_agreement * residual.ambiguity_m) {
     return fmt::format(
         "A and B agree only within {:.0f} mm, no better than images of different places; are "
         "their folders or files mixed up, is device.layout wrong for the device, or do the images "

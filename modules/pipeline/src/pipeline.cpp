@@ -154,8 +154,8 @@ int RoomMap::separate() const {
 bool frames_agree(const RoomMap& map, const Consistency& consistency) {
   const auto frames = static_cast<double>(map.frames.size());
   return static_cast<double>(map.trajectory.size()) >= nearly_all_percent / 100 * frames &&
-         map.separate_maps.empty() && !std::isnan(consistency.contradicted_percent) &&
-         warnings_about(consistency).empty();
+         map.registered_slowly <= most_slow_percent / 100 * frames && map.separate_maps.empty() &&
+         !std::isnan(consistency.contradicted_percent) && warnings_about(consistency).empty();
 }
 
 MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options,
@@ -170,6 +170,7 @@ MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options,
           .unused_loops = map.unused_loops(),
           .position_sigma_m = map.least_certain.spread.translation_sigma_m(),
           .least_certain_frame = map.least_certain.frame,
+          .registered_slowly = map.registered_slowly,
           .is_empty = map.surface.empty(),
           .is_interrupted = map.interrupted,
           .is_unwrapped = options.unwrap.method != UnwrapMethod::none,
@@ -324,6 +325,11 @@ RoomMap MapRun::finish() {
       map.separate_maps.push_back(std::move(one));
     }
   }
+  map.registered_slowly =
+      static_cast<int>(std::ranges::count_if(frames_, [&](const FrameRecord& record) {
+        return record.tracking.registered() &&
+               converged_slowly(record.tracking.registration, options_.registration);
+      }));
   map.loops = mapper_.loops();
   map.joins = mapper_.joins();
   map.blind_joins = mapper_.blind_joins();

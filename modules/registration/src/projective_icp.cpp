@@ -284,6 +284,13 @@ std::span<const NamedValue<RegistrationStatus>> named_values(RegistrationStatus)
   return statuses;
 }
 
+bool converged_slowly(const RegistrationResult& result, const RegistrationOptions& options) {
+  // With more than twelve of the twenty by default, most recordings in which more than a few frames
+  // were slow had wrong paths, and no others (docs/evaluation.md).
+  constexpr double slow_share = 0.6;
+  return result.iterations > slow_share * options.max_iterations;
+}
+
 RegistrationResult register_to_targets(const SurfaceCloud& source,
                                        std::span<const RegistrationTarget> targets,
                                        const CameraModel& camera, const MotionPrior& prior,

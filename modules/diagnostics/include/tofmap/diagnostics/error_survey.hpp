@@ -53,7 +53,8 @@ ErrorSurvey survey_errors(const std::vector<DualFrequencyFrame>& frames, const S
 std::vector<std::string> remarks_about(const ErrorSurvey& survey);
 
 /// Warnings, each with a remedy, about errors that make ranges and maps wrong although unwrapping
-/// compensates for them.
-std::vector<std::string> warnings_about(const ErrorSurvey& survey);
+/// compensates for them: a periodic error of at least 1 cm, or of 2.5 cm if the frames agree on a
+/// map (`map_agrees`).
+std::vector<std::string> warnings_about(const ErrorSurvey& survey, bool map_agrees = false);
 
 }  // namespace tofmap

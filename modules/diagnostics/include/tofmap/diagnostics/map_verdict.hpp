@@ -13,6 +13,9 @@ namespace tofmap {
 /// A map of fewer of its recording's frames than this is to be checked. Every recording loses some.
 inline constexpr double nearly_all_percent = 95;
 
+/// A map with more of its frames registered slowly than this is to be checked.
+inline constexpr double most_slow_percent = 5;
+
 /// The facts by which a map is judged.
 struct MapEvidence {
   int frames = 0;            ///< frames of the recording, including damaged ones
@@ -27,6 +30,7 @@ struct MapEvidence {
   /// surfaces constrain, and the frame at that position.
   double position_sigma_m = 0;
   int least_certain_frame = 0;
+  int registered_slowly = 0;         ///< frames whose registration converged_slowly()
   bool is_empty = false;             ///< the map has no points
   bool is_interrupted = false;       ///< the run was ended early
   bool is_unwrapped = true;          ///< false for method `none`

@@ -32,8 +32,8 @@ std::optional<ResidualSurvey> survey_residual(const std::vector<DualFrequencyFra
                                               const SensorModel& sensor);
 
 /// A warning, with the remedy, if the images of A and B seem not to belong together. Otherwise
-/// empty.
-std::optional<std::string> pairing_warning(const ResidualSurvey& residual);
+/// empty. Much noise looks the same, unless the frames agree on a map (`map_agrees`).
+std::optional<std::string> pairing_warning(const ResidualSurvey& residual, bool map_agrees = false);
 
 /// A warning, with the remedy, if the offset between the frequencies is uncertain. It is uncertain
 /// if unwrapping estimated another offset (`camera`; null if unknown), or if it is so large that

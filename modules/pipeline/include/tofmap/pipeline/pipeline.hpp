@@ -128,6 +128,7 @@ struct RoomMap {
   int blind_joins = 0;                     ///< RoomMapper::blind_joins()
   int joins_taken_back = 0;                ///< RoomMapper::joins_taken_back()
   PoseCertainty least_certain;             ///< RoomMapper::least_certain(); zero without keyframes
+  int registered_slowly = 0;               ///< number of frames that converged_slowly()
   std::vector<FrameRecord> frames;         ///< all frames, in order
   ErrorSurvey errors;                      ///< MapRun::errors at the end of the run
   bool interrupted = false;                ///< a hook ended the run early
@@ -139,8 +140,9 @@ struct RoomMap {
   int unused_loops() const;  ///< number of loops that the poses of the keyframes do not follow
 };
 
-/// Whether nearly all frames are registered in one map and do not contradict each other, as far as
-/// its consistency measures can tell. Then wrap counts are right, apart from few.
+/// Whether nearly all frames are registered in one map, few of them slowly, and do not contradict
+/// each other, as far as its consistency measures can tell. Then wrap counts are right, apart from
+/// few.
 bool frames_agree(const RoomMap& map, const Consistency& consistency);
 
 /// The evidence for the verdict on a map without ground truth. `warnings` are those about the

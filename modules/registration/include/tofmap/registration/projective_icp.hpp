@@ -115,6 +115,11 @@ struct RegistrationResult {
   Eigen::Matrix<double, 6, 1> direction_shares = Eigen::Matrix<double, 6, 1>::Zero();
 };
 
+/// Whether a registration took more than 60 % of the iterations that the options allow. Then its
+/// surfaces hardly constrain some direction of motion: correspondences slide along it with the
+/// source, and the error of the pose may be larger than its covariance says.
+bool converged_slowly(const RegistrationResult& result, const RegistrationOptions& options);
+
 /// Finds the pose of an organised cloud by projecting its points into clouds of known pose and
 /// minimising the distances from the points to the planes that they fall on (Chen and Medioni 1991,
 /// with the projective search of Blais and Levine 1995). `camera` is the camera that took the
