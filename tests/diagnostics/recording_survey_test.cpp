@@ -164,7 +164,9 @@ TEST(OffsetWarning, IsThereWhereUnwrappingDidNotFindTheSameSmallOffset) {
       << "an alias is nearly as likely";
   constexpr bool map_agrees = true;
   EXPECT_FALSE(offset_warning(residual_of(0.15), &large, map_agrees)) << "no alias makes a map";
-  EXPECT_TRUE(offset_warning(residual_of(0.06), &other, map_agrees)) << "estimates disagree";
+  EXPECT_FALSE(offset_warning(residual_of(0.1), &small, map_agrees)) << "noise makes as much";
+  EXPECT_TRUE(offset_warning(residual_of(0.1), &small)) << "estimates disagree";
+  EXPECT_TRUE(offset_warning(residual_of(0.06), &other, map_agrees)) << "even then";
 }
 
 TEST(FrequencyPairWarning, IsThereWhereOneWavelengthIsAllThatThePairTells) {

@@ -347,9 +347,9 @@ TEST(FramesAgree, IfNearlyAllAreInOneMapWithoutContradictions) {
   map.trajectory.resize(94);
   EXPECT_FALSE(frames_agree(map, consistency)) << "too few are registered";
   map.trajectory.resize(100);
-  map.registered_slowly = 5;
+  map.registered_slowly = 4;
   EXPECT_TRUE(frames_agree(map, consistency));
-  map.registered_slowly = 6;
+  map.registered_slowly = 5;
   EXPECT_FALSE(frames_agree(map, consistency)) << "some were found slowly";
   map.registered_slowly = 0;
   map.separate_maps.resize(1);

@@ -240,7 +240,9 @@ std::optional<std::string> pairing_warning(const ResidualSurvey& residual, bool 
 std::optional<std::string> offset_warning(const ResidualSurvey& residual,
                                           const CameraErrors* camera, bool map_agrees) {
   constexpr double least_m = 0.02;  // motion between the exposures causes some millimetres
-  constexpr double same_m = 0.03;   // the two estimates use different pixels and frames
+  // The two estimates use different pixels and frames. If the frames agree on a map, both are of
+  // the same wrap counts, and noise alone makes them differ.
+  const double same_m = map_agrees ? residual.ambiguity_m / 4 : 0.03;
   const bool is_known = camera != nullptr && camera->frames > 0;
   const double estimate_m = is_known ? camera->offset_m() : residual.offset_m;
   const bool agree = std::abs(estimate_m - residual.offset_m) < same_m;

@@ -14,7 +14,7 @@ namespace tofmap {
 inline constexpr double nearly_all_percent = 95;
 
 /// A map with more of its frames registered slowly than this is to be checked.
-inline constexpr double most_slow_percent = 5;
+inline constexpr double most_slow_percent = 4;
 
 /// The facts by which a map is judged.
 struct MapEvidence {

@@ -39,8 +39,8 @@ std::optional<std::string> pairing_warning(const ResidualSurvey& residual, bool 
 /// if unwrapping estimated another offset (`camera`; null if unknown), or if it is so large that
 /// other offsets that fit the phases are nearly as likely. Empty if the offset is below 2 cm, or if
 /// both estimates agree on a small offset, which unwrapping compensates for. They may also agree on
-/// a large one if the frames agree on a map (`map_agrees`): another offset means other wrap counts,
-/// with which frames contradict each other.
+/// a large one, or differ as noise makes them, if the frames agree on a map (`map_agrees`): another
+/// offset means other wrap counts, with which frames contradict each other.
 std::optional<std::string> offset_warning(const ResidualSurvey& residual,
                                           const CameraErrors* camera, bool map_agrees = false);
 
