@@ -173,6 +173,23 @@ TEST(MapScore, DoesNotCountTheSpacingOfTheTruthAsError) {
   EXPECT_EQ(limited, score.errors_m);
 }
 
+// A pole of one sample's width, 1.5 m before a wall: what is beside it is not on its surface.
+TEST(MapScore, DoesNotTakeOtherSurfacesForTheSpacingOfTheTruth) {
+  const CameraModel camera{.width_px = 40,
+                           .height_px = 40,
+                           .fx_px = 200,
+                           .fy_px = 200,
+                           .cx_px = 19.5,
+                           .cy_px = 19.5,
+                           .distortion = {}};
+  const PixelRays rays = pixel_rays(camera);
+  ImageF range_m = 3 / rays.z;
+  range_m.middleCols(20, 2) = 1.5F / rays.z.middleCols(20, 2);
+  ReferenceSurface reference;
+  reference.add(range_m, rays, Pose::Identity());
+  EXPECT_LT(*std::ranges::max_element(reference.spacings_m()), 0.05F);
+}
+
 TEST(MapScore, IsTheSameInANationalGrid) {
   const Vector3d at(5e6, -5e6, 300);
   const MapCloud map = plane_map(1.02, 0.03);

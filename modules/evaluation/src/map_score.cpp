@@ -96,17 +96,19 @@ struct Samples {
     return double{range_m(v, u)} * Eigen::Vector3d(rays.x(v, u), rays.y(v, u), rays.z(v, u));
   }
 
-  /// Distance from the sample at (v + dv, u + du) or the opposite one, whichever is nearer: the
-  /// other one may lie on another surface. Zero if neither is seen.
+  /// Distance from the sample at (v + dv, u + du) or the opposite one, whichever is nearer. Zero if
+  /// neither lies on the same surface.
   double step_m(Eigen::Index v, Eigen::Index u, Eigen::Index dv, Eigen::Index du) const {
-    double least_m = anywhere_m;
+    constexpr double most_of_range = 0.25;  // a floor 15 m away, from 1.5 m above it
+    double least_m = most_of_range * double{range_m(v, u)};
+    const double most_m = least_m;
     for (const Eigen::Index sign : {-1, 1}) {
       const Eigen::Index v_next = v + sign * dv;
       const Eigen::Index u_next = u + sign * du;
       if (!is_seen(v_next, u_next)) continue;
       least_m = std::min(least_m, (point_m(v_next, u_next) - point_m(v, u)).norm());
     }
-    return least_m < anywhere_m ? least_m : 0;
+    return least_m < most_m ? least_m : 0;
   }
 
   double spacing_m(Eigen::Index v, Eigen::Index u) const {

@@ -285,8 +285,8 @@ std::span<const NamedValue<RegistrationStatus>> named_values(RegistrationStatus)
 }
 
 bool converged_slowly(const RegistrationResult& result, const RegistrationOptions& options) {
-  // With more than twelve of the twenty by default, most recordings in which more than a few frames
-  // were slow had wrong paths, and no others (docs/evaluation.md).
+  // Twelve iterations of the twenty by default. Chosen so that frames above it are frequent in
+  // recordings with a wrong path, and rare in others (docs/evaluation.md).
   constexpr double slow_share = 0.6;
   return result.iterations > slow_share * options.max_iterations;
 }
