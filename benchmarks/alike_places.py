@@ -10,13 +10,14 @@ seed changes dimensions, furniture and path; with an even seed one small object 
 places. A map is
 - right: one map of all frames, with an ATE of at most 3 cm,
 - WRONG: a loop was used, or maps were joined, between different places (an error of more than 0.2 m
-  or 10 degrees between the two frames), or a position has an error of more than 5 cm and the verdict
-  is "Looks right.",
+  or 10 degrees between the two frames), or a position has an error of more than 5 cm and the
+  verdict is "Looks right.",
 - by look: maps were joined that do not belong together, after the camera was not tracked for more
   than two seconds, and the verdict says that this was by look alone,
 - unknown: anything else, so several maps that are right, or one that is to be checked.
 Each map is aligned with the truth by itself. The verdict is that of report.json, which knows no
-truth. Recordings and maps stay in OUT_DIR; recordings that are there are used again. Needs Debian's python3-numpy, python3-scipy and python3-yaml.
+truth. Recordings and maps stay in OUT_DIR; recordings that are there are used again. Needs Debian's
+python3-numpy, python3-scipy and python3-yaml.
 """
 import argparse
 import concurrent.futures

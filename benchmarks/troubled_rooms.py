@@ -7,7 +7,8 @@
         [--frames N] [--jobs N]
 
 The seed changes the room, its furniture, the path and the noise. Recordings that are in OUT_DIR are
-not made again. verdict_rates.py maps them and counts how often the verdict is right.
+not made again. verdict_rates.py maps them and counts how often the verdict is right. Needs Debian's
+python3-numpy.
 """
 import argparse
 import concurrent.futures

@@ -183,7 +183,10 @@ TEST(ErrorWarnings, BeginAtACentimetreOfPeriodicError) {
   EXPECT_THAT(warnings_about(survey), IsEmpty());
   survey.camera.periodic_rms_m = 0.011;
   EXPECT_THAT(warnings_about(survey), ElementsAre(HasSubstr("about 11 mm")));
-  EXPECT_THAT(warnings_about(survey, true), IsEmpty()) << "frames agree on a map";
+  constexpr bool map_agrees = true;
+  EXPECT_THAT(warnings_about(survey, map_agrees), IsEmpty());
+  survey.camera.periodic_rms_m = 0.026;
+  EXPECT_THAT(warnings_about(survey, map_agrees), ElementsAre(HasSubstr("about 26 mm")));
   survey.camera.frames = 0;
   EXPECT_THAT(warnings_about(survey), IsEmpty()) << "nothing is known";
 }

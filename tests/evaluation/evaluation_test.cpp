@@ -122,16 +122,18 @@ MapCloud plane_map(double z, double step_m) {
   return map;
 }
 
+/// The rays of a camera with a square image.
+PixelRays square_rays(int size_px, double focal_px) {
+  CameraModel camera;
+  camera.width_px = camera.height_px = size_px;
+  camera.fx_px = camera.fy_px = focal_px;
+  camera.cx_px = camera.cy_px = (size_px - 1) / 2.0;
+  return pixel_rays(camera);
+}
+
 /// Seen from `at`.
 ReferenceSurface plane_reference(const Vector3d& at = Vector3d::Zero()) {
-  CameraModel camera{.width_px = 200,
-                     .height_px = 200,
-                     .fx_px = 200,
-                     .fy_px = 200,
-                     .cx_px = 99.5,
-                     .cy_px = 99.5,
-                     .distortion = {}};
-  const PixelRays rays = pixel_rays(camera);
+  const PixelRays rays = square_rays(200, 200);
   const Pose pose(Eigen::Translation3d{at});
   ReferenceSurface reference(origin_near({{0, pose}}));
   reference.add(ImageF(1.0F / rays.z), rays, pose);
@@ -147,15 +149,8 @@ TEST(MapScore, MeasuresAMapThatIsTwoCentimetresOff) {
 
 // A floor 1.5 m below the camera: from 10 m on, its samples are more than 0.3 m apart.
 TEST(MapScore, DoesNotCountTheSpacingOfTheTruthAsError) {
-  const CameraModel camera{.width_px = 100,
-                           .height_px = 100,
-                           .fx_px = 80,
-                           .fy_px = 80,
-                           .cx_px = 49.5,
-                           .cy_px = 49.5,
-                           .distortion = {}};
   constexpr float height_m = 1.5F;
-  const PixelRays rays = pixel_rays(camera);
+  const PixelRays rays = square_rays(100, 80);
   ReferenceSurface reference;
   reference.add((rays.y > 0.12F).select(height_m / rays.y, ImageF::Constant(100, 100, NAN)), rays,
                 Pose::Identity());
@@ -175,14 +170,7 @@ TEST(MapScore, DoesNotCountTheSpacingOfTheTruthAsError) {
 
 // A pole of one sample's width, 1.5 m before a wall: what is beside it is not on its surface.
 TEST(MapScore, DoesNotTakeOtherSurfacesForTheSpacingOfTheTruth) {
-  const CameraModel camera{.width_px = 40,
-                           .height_px = 40,
-                           .fx_px = 200,
-                           .fy_px = 200,
-                           .cx_px = 19.5,
-                           .cy_px = 19.5,
-                           .distortion = {}};
-  const PixelRays rays = pixel_rays(camera);
+  const PixelRays rays = square_rays(40, 200);
   ImageF range_m = 3 / rays.z;
   range_m.middleCols(20, 2) = 1.5F / rays.z.middleCols(20, 2);
   ReferenceSurface reference;

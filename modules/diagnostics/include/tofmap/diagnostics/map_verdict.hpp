@@ -13,7 +13,8 @@ namespace tofmap {
 /// A map of fewer of its recording's frames than this is to be checked. Every recording loses some.
 inline constexpr double nearly_all_percent = 95;
 
-/// A map with more of its frames registered slowly than this is to be checked.
+/// A map with more of its frames registered slowly than this is to be checked: few maps with a
+/// right path have as many (docs/evaluation.md).
 inline constexpr double most_slow_percent = 4;
 
 /// The facts by which a map is judged.
