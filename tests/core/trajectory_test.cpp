@@ -135,6 +135,19 @@ TEST(PoseFromTwist, IsItsFirstOrderModelForSmallTwists) {
   EXPECT_NEAR((pose_from_twist(twist) * p - model).norm(), 0, 1e-8);
 }
 
+TEST(TwistBetween, TakesOnePoseToTheOther) {
+  Pose from = Pose::Identity();
+  from.linear() = Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  from.translation() << 1, 2, 3;
+  Eigen::Matrix<double, 6, 1> twist;
+  twist << 0.3, -0.2, 0.1, 4, 5, 6;
+  Pose to = from;
+  to.linear() = pose_from_twist(twist).linear() * from.linear();
+  to.translation() += twist.tail<3>();
+  EXPECT_LT((twist_between(from, to) - twist).norm(), 1e-12);
+  EXPECT_TRUE(twist_between(from, from).isZero(1e-12));
+}
+
 TEST(Interpolation, EndsAtBothPosesAndHalvesTheWay) {
   const Pose a = pose(0.2, {0, 1, 0}, {0, 0, 0});
   const Pose b = pose(0.8, {0, 1, 0}, {2, 4, 6});

@@ -168,7 +168,7 @@ class Turning : public testing::Test {
 
   static CameraModel wide_camera() {
     CameraModel camera = small_camera();
-    camera.fx_px = camera.fy_px = 32;
+    camera.fx_px = camera.fy_px = 26;  // 102 degrees wide
     return camera;
   }
 

@@ -90,19 +90,43 @@ TEST(MotionUncertainty, RestartsFromAPlaceThatIsItselfUncertain) {
   EXPECT_NEAR(moving.of_pose()(3, 3), 0.01 + translation_sigma * translation_sigma, 1e-12);
 }
 
+/// A change of the motion by these values along each axis.
+MotionUncertainty::Twist change_by(double rotation_rad, double translation_m) {
+  MotionUncertainty::Twist change;
+  change << Eigen::Vector3d::Constant(rotation_rad), Eigen::Vector3d::Constant(translation_m);
+  return change;
+}
+
 TEST(MotionUncertainty, IsSmallerOnceTheMotionProvesSteady) {
+  const Covariance exact = Covariance::Zero();
   MotionUncertainty steady(rotation_sigma, translation_sigma);
   // Changes of 3 mm and 2 mrad per axis, over two frames each.
-  for (int i = 0; i < 300; ++i) {
-    steady.note_change(2 * 0.002 * std::sqrt(3), 2 * 0.003 * std::sqrt(3), 2);
-  }
+  for (int i = 0; i < 300; ++i) steady.note_change(2 * change_by(0.002, 0.003), exact, 2);
   const MotionUncertainty blind = after_blind(1, steady);
   EXPECT_NEAR(std::sqrt(blind.of_pose()(0, 0)), 2 * 0.002, 1e-5);
   EXPECT_NEAR(std::sqrt(blind.of_pose()(3, 3)), 2 * 0.003, 1e-5);
-  for (int i = 0; i < 300; ++i) steady.note_change(0, 0, 1);
+  EXPECT_NEAR(steady.change_sigmas()[2], 2 * 0.002, 1e-5);
+  EXPECT_NEAR(steady.change_sigmas()[5], 2 * 0.003, 1e-5);
+  for (int i = 0; i < 300; ++i) steady.note_change(change_by(0, 0), exact, 1);
   EXPECT_NEAR(std::sqrt(after_blind(1, steady).of_pose()(3, 3)), 0.1 * translation_sigma, 1e-5);
-  for (int i = 0; i < 300; ++i) steady.note_change(1, 1, 1);
+  for (int i = 0; i < 300; ++i) steady.note_change(change_by(1, 1), exact, 1);
   EXPECT_NEAR(std::sqrt(after_blind(1, steady).of_pose()(3, 3)), translation_sigma, 1e-5);
+}
+
+TEST(MotionUncertainty, LearnsNothingFromDirectionsThatTheSurfacesLeaveOpen) {
+  const Eigen::Vector3d open = Eigen::Vector3d(0.6, 0, 0.8);
+  Covariance covariance = Covariance::Zero();
+  covariance.bottomRightCorner<3, 3>() =
+      std::pow(0.11 * translation_sigma, 2) * open * open.transpose();
+  MotionUncertainty::Twist change = change_by(0, 0);
+  change.tail<3>() = 0.02 * open + 0.003 * Eigen::Vector3d(0.8, 0, -0.6);
+  MotionUncertainty steady(rotation_sigma, translation_sigma);
+  for (int i = 0; i < 300; ++i) steady.note_change(change, covariance, 1);
+  // Half of the two directions that are known has a change, that of 3 mm.
+  EXPECT_NEAR(steady.change_sigmas()[3], 2 * 0.003 / std::sqrt(2), 1e-5);
+  MotionUncertainty unknown(rotation_sigma, translation_sigma);
+  unknown.note_change(change_by(0, 0), Covariance::Identity(), 1);
+  EXPECT_EQ(unknown.change_sigmas(), change_by(rotation_sigma, translation_sigma));
 }
 
 TEST(MotionUncertainty, RotatesWithTheWorld) {

@@ -17,6 +17,7 @@ Correspondence pair_at(const Vector3d& point_m, const Vector3d& normal) {
   Correspondence pair;
   pair.point_m = point_m;
   pair.normal = normal;
+  pair.source_normal = normal;
   pair.variance_m2 = 1e-4;
   return pair;
 }
@@ -113,7 +114,7 @@ TEST(Observability, IsTheShareOfEveryDirection) {
     double sum = 0;
     double weights = 0;
     for (const Correspondence& pair : cube(1.5)) {
-      sum += std::pow(residual_jacobian(pair).dot(twist), 2);
+      sum += std::pow(residual_jacobian(pair.point_m, pair.normal).dot(twist), 2);
       weights += 1;
     }
     const double share = (seen.directions.transpose() * direction).cwiseAbs2().dot(seen.shares);
@@ -128,68 +129,116 @@ TEST(DegenerateDirections, AreThoseThatThePriorKnowsBetter) {
   // 441 points of 1 cm: towards the wall, the mean is known within half a millimetre.
   EXPECT_EQ(degenerate_directions(seen, equations, Vector6d::Constant(1e-6)).size(), 6U);
   NormalEquations of_noise = equations;
-  of_noise.noise_induced = 0.6 * equations.information;
+  of_noise.noise_induced = equations.information;
   EXPECT_EQ(degenerate_directions(seen, of_noise, Vector6d::Constant(0.1)).size(), 6U)
-      << "twice the noise-induced information is more than there is";
+      << "all information is noise-induced";
 }
 
-TEST(SurfaceInformation, IsAllOfItWithoutNoiseOfNormals) {
+TEST(SurfaceShares, AreOneWithoutNoiseOfNormals) {
   const NormalEquations equations = build_equations(cube(2), 3);
-  const Matrix6d information = surface_information(observability(equations, 2), equations);
-  EXPECT_LT((information - equations.information).norm(), 1e-9 * equations.information.norm());
+  EXPECT_EQ(surface_shares(observability(equations, 2), equations), Vector6d::Ones());
 }
 
-TEST(SurfaceInformation, IsThatOfASolutionWhoseGradientIsNoisier) {
+TEST(SurfaceShares, AreZeroWhereThereIsNoInformation) {
+  const NormalEquations equations = build_equations(wall(3), 3);
+  const Vector6d shares = surface_shares(observability(equations, 3), equations);
+  EXPECT_EQ(shares.tail(3), Eigen::Vector3d::Ones());
+  EXPECT_EQ(surface_shares(observability({}, 3), {}), Vector6d::Zero());
+}
+
+TEST(KeepShares, GivesTheSolutionWithoutBiasAndItsVariance) {
   NormalEquations equations = build_equations(cube(2), 3);
-  constexpr double share = 0.3;
-  equations.noise_induced = share * equations.information;
-  const Matrix6d information = surface_information(observability(equations, 2), equations);
-  // H / (H - 2 N)² is the variance.
-  const double expected = (1 - 2 * share) * (1 - 2 * share);
-  EXPECT_LT((information - expected * equations.information).norm(),
-            1e-9 * equations.information.norm());
-  equations.noise_induced = 0.6 * equations.information;
-  EXPECT_TRUE(surface_information(observability(equations, 2), equations).isZero(0));
+  equations.gradient << 1, 2, 3, 4, 5, 6;
+  constexpr double noise_induced = 0.3;
+  equations.noise_induced = noise_induced * equations.information;
+  const Observability seen = observability(equations, 2);
+  NormalEquations kept = equations;
+  keep_shares(kept, seen, surface_shares(seen, equations));
+  // Without noise, the information would be H - N. The variance is H / (H - 1.25 N)².
+  const Matrix6d without_noise = (1 - noise_induced) * equations.information;
+  const Vector6d solution = without_noise.ldlt().solve(equations.gradient);
+  EXPECT_LT((kept.information.ldlt().solve(kept.gradient) - solution).norm(),
+            1e-9 * solution.norm());
+  const Matrix6d expected = std::pow(1 - 1.25 * noise_induced, 2) * equations.information;
+  EXPECT_LT((kept.information - expected).norm(), 1e-9 * expected.norm());
 }
 
-TEST(RemoveInformation, LeavesNothingAlongADirectionAndTheOthersAsTheyAre) {
+TEST(KeepShares, LeavesNothingAlongADirectionAndTheOthersAsTheyAre) {
   NormalEquations equations = build_equations(cube(2), 3);
   equations.gradient << 1, 2, 3, 4, 5, 6;
   const NormalEquations before = equations;
   const Observability seen = observability(equations, 2);
-  remove_information(equations, seen, std::vector<int>{1, 4});
+  Vector6d shares = Vector6d::Ones();
+  shares[1] = shares[4] = 0;
+  keep_shares(equations, seen, shares);
   for (int i = 0; i < 6; ++i) {
     const Vector6d twist = seen.scale.cwiseProduct(seen.directions.col(i));
-    const bool is_removed = i == 1 || i == 4;
     const double information = twist.dot(before.information * twist);
-    EXPECT_NEAR(twist.dot(equations.information * twist), is_removed ? 0 : information,
+    EXPECT_NEAR(twist.dot(equations.information * twist), shares[i] * information,
                 1e-9 * information);
-    EXPECT_NEAR(twist.dot(equations.gradient), is_removed ? 0 : twist.dot(before.gradient), 1e-9);
+    EXPECT_NEAR(twist.dot(equations.gradient), shares[i] * twist.dot(before.gradient), 1e-9);
   }
 }
 
-TEST(NoiseInducedInformation, IsWhatTiltedNormalsAddOnAverage) {
-  constexpr double sigma_rad = 0.05;
-  Correspondence pair = pair_at({0.7, -0.4, 2.1}, Vector3d(0.3, 0.5, -0.8).normalized());
-  pair.normal_sigma_rad = sigma_rad;
-  const NormalEquations predicted = build_equations(std::vector{pair}, 3);
-  std::mt19937 random(6);
-  std::normal_distribution<double> tilt(0, sigma_rad);
-  Matrix6d added = Matrix6d::Zero();
-  constexpr int draws = 200000;
-  for (int i = 0; i < draws; ++i) {
-    Vector3d noise(tilt(random), tilt(random), tilt(random));
-    noise -= pair.normal.dot(noise) * pair.normal;
-    for (const double sign : {-1.0, 1.0}) {  // so that tilts of first order cancel
-      Correspondence tilted = pair;
-      tilted.normal = pair.normal + sign * noise;
-      const Vector6d jacobian = residual_jacobian(tilted);
-      added += jacobian * jacobian.transpose() / pair.variance_m2 / (2 * draws);
-    }
+/// Tilts a normal by a random angle about each axis along its plane.
+class RandomTilt {
+ public:
+  explicit RandomTilt(double sigma_rad) : tilt_(0, sigma_rad) {}
+  Vector3d operator()(const Vector3d& normal) {
+    const Vector3d noise(tilt_(random_), tilt_(random_), tilt_(random_));
+    return (normal + noise - normal.dot(noise) * normal).normalized();
   }
-  added -= predicted.information;
-  // The mean of so many squares of normal numbers is known within √(2 / draws), 0.3 %.
-  EXPECT_LT((added - predicted.noise_induced).norm(), 0.015 * predicted.noise_induced.norm());
+
+ private:
+  std::mt19937 random_{6};
+  std::normal_distribution<double> tilt_;
+};
+
+TEST(NoiseInducedInformation, IsWhatNoiseOfNormalsAdds) {
+  const NormalEquations without_noise = build_equations(cube(2), 3);
+  constexpr double sigma_rad = 0.1;
+  RandomTilt tilted(sigma_rad);
+  Matrix6d information = Matrix6d::Zero();
+  Matrix6d noise_induced = Matrix6d::Zero();
+  constexpr int draws = 300;
+  for (int i = 0; i < draws; ++i) {
+    std::vector<Correspondence> pairs = cube(2);
+    for (Correspondence& pair : pairs) {
+      pair.normal = tilted(pair.normal);
+      pair.source_normal = tilted(pair.source_normal);
+    }
+    const NormalEquations equations = build_equations(pairs, 3);
+    information += equations.information / draws;
+    noise_induced += equations.noise_induced / draws;
+  }
+  // The mean of both normals has half the variance of one, 0.005 of the squared Jacobians. What it
+  // takes from the length along the true normal is of the same order, and as large in the products
+  // of the Jacobians, from which it is not told apart.
+  const Matrix6d rest = information - noise_induced;
+  constexpr double shortened = 4 * sigma_rad * sigma_rad;
+  EXPECT_LT((rest - without_noise.information).norm(),
+            shortened * without_noise.information.norm());
+  EXPECT_GT(noise_induced.trace(), 0.3 * sigma_rad * sigma_rad * information.trace());
+}
+
+TEST(NoiseInducedInformation, IsAllThatAWallHasAlongItself) {
+  constexpr double sigma_rad = 0.1;
+  RandomTilt tilted(sigma_rad);
+  std::vector<Correspondence> pairs = wall(3);
+  for (Correspondence& pair : pairs) {
+    pair.normal = tilted(pair.normal);
+    pair.source_normal = tilted(pair.source_normal);
+  }
+  const NormalEquations equations = build_equations(pairs, 3);
+  Vector6d sideways = Vector6d::Zero();
+  sideways[3] = 1;
+  const double all = sideways.dot(equations.information * sideways);
+  // Both normals' mean has the variance σ² / 2. N squares of normal numbers have a relative
+  // standard deviation of √(2 / N), 7 %.
+  const double expected = sigma_rad * sigma_rad / 2 * equations.weight_sum;
+  EXPECT_NEAR(all, expected, 4 * 0.07 * expected);
+  const double noise_induced = sideways.dot(equations.noise_induced * sideways);
+  EXPECT_NEAR(noise_induced, expected, 4 * 0.07 * expected);
 }
 
 }  // namespace

@@ -183,17 +183,16 @@ TEST(Registration, RefusesAPriorWithoutWidth) {
 }
 
 TEST(ResidualJacobian, IsTheNumericDerivative) {
-  Correspondence pair;
-  pair.point_m = Vector3d(0.7, -0.4, 2.1);
-  pair.normal = Vector3d(0.3, 0.5, -0.8).normalized();
-  const Vector6d jacobian = residual_jacobian(pair);
+  const Vector3d point_m(0.7, -0.4, 2.1);
+  const Vector3d normal = Vector3d(0.3, 0.5, -0.8).normalized();
+  const Vector6d jacobian = residual_jacobian(point_m, normal);
   constexpr double step = 1e-6;
   for (int i = 0; i < 6; ++i) {
     Vector6d twist = Vector6d::Zero();
     twist[i] = step;
-    const double forward = pair.normal.dot(pose_from_twist(twist) * pair.point_m);
+    const double forward = normal.dot(pose_from_twist(twist) * point_m);
     twist[i] = -step;
-    const double backward = pair.normal.dot(pose_from_twist(twist) * pair.point_m);
+    const double backward = normal.dot(pose_from_twist(twist) * point_m);
     EXPECT_NEAR(jacobian[i], (forward - backward) / (2 * step), 1e-8) << "component " << i;
   }
 }

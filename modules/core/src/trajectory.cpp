@@ -27,6 +27,13 @@ Pose pose_from_twist(const Eigen::Matrix<double, 6, 1>& twist) {
   return pose;
 }
 
+Eigen::Matrix<double, 6, 1> twist_between(const Pose& from, const Pose& to) {
+  const Eigen::AngleAxisd rotation(to.linear() * from.linear().transpose());
+  Eigen::Matrix<double, 6, 1> twist;
+  twist << rotation.angle() * rotation.axis(), to.translation() - from.translation();
+  return twist;
+}
+
 Pose interpolate(const Pose& a, const Pose& b, double share) {
   const Eigen::Quaterniond qa(a.linear());
   const Eigen::AngleAxisd step(qa.conjugate() * Eigen::Quaterniond(b.linear()));

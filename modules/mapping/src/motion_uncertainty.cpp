@@ -4,6 +4,7 @@
 #include "tofmap/mapping/motion_uncertainty.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 namespace tofmap {
@@ -24,24 +25,38 @@ MotionUncertainty::MotionUncertainty(double rotation_sigma_rad, double translati
   mean_squares_ = largest_sigmas_.cwiseAbs2();
 }
 
-void MotionUncertainty::note_change(double rotation_rad, double translation_m, int frames) {
+void MotionUncertainty::note_change(const Twist& change, const Covariance& of_change, int frames) {
   constexpr double share_of_newest = 0.05;
-  constexpr double axes = 3;
-  Eigen::Matrix<double, 6, 1> squares;
-  squares << Eigen::Vector3d::Constant(rotation_rad * rotation_rad / axes),
-      Eigen::Vector3d::Constant(translation_m * translation_m / axes);
-  squares /= static_cast<double>(frames) * frames;
-  mean_squares_ += share_of_newest * (squares - mean_squares_);
+  constexpr int axes = 3;
+  for (const int first : {0, axes}) {
+    const double certain = least_share * largest_sigmas_[first];
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(
+        of_change.block<axes, axes>(first, first));
+    double sum = 0;
+    int count = 0;
+    for (int i = 0; i < axes; ++i) {
+      if (spread.eigenvalues()[i] > certain * certain) continue;
+      const double along = spread.eigenvectors().col(i).dot(change.segment<axes>(first)) / frames;
+      sum += along * along;
+      ++count;
+    }
+    if (count == 0) continue;
+    auto squares = mean_squares_.segment<axes>(first).array();
+    squares += share_of_newest * (sum / count - squares);
+  }
+}
+
+MotionUncertainty::Twist MotionUncertainty::change_sigmas() const {
+  return (margin * mean_squares_.cwiseSqrt())
+      .cwiseMax(least_share * largest_sigmas_)
+      .cwiseMin(largest_sigmas_);
 }
 
 void MotionUncertainty::learn(int frames, const Covariance& information) {
   Joint step = Joint::Identity();
   step.topRightCorner<6, 6>().diagonal().setConstant(frames);
   // A change of the motion between frames changes pose and velocity by the same twist.
-  const Eigen::Matrix<double, 6, 1> sigmas = (margin * mean_squares_.cwiseSqrt())
-                                                 .cwiseMax(least_share * largest_sigmas_)
-                                                 .cwiseMin(largest_sigmas_);
-  const Covariance change = (frames * sigmas).cwiseAbs2().asDiagonal();
+  const Covariance change = (frames * change_sigmas()).cwiseAbs2().asDiagonal();
   const Joint expected = step * joint_ * step.transpose() + change.replicate<2, 2>();
   const Covariance of_pose = expected.topLeftCorner<6, 6>();
   const Covariance known = (of_pose.inverse() + information).inverse();

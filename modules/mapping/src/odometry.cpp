@@ -76,9 +76,12 @@ std::vector<OptionField<OdometryOptions>> OdometryOptions::fields() {
       {"min_target_overlap", &O::min_target_overlap, 0, 1, "",
        "smallest share of a frame's points that a keyframe must see to be registered with"},
       {"prior_rotation_sigma_rad", &O::prior_rotation_sigma_rad, 1e-4, 3.2, "rad",
-       "standard deviation of the change in frame-to-frame rotation, per axis and frame"},
+       "standard deviation of the change in frame-to-frame rotation, per axis and frame; less "
+       "while "
+       "the motion is steady"},
       {"prior_translation_sigma_m", &O::prior_translation_sigma_m, 1e-4, 10, "m",
-       "standard deviation of the change in frame-to-frame translation, per axis and frame"},
+       "standard deviation of the change in frame-to-frame translation, per axis and frame; less "
+       "while the motion is steady"},
       {"max_prior_sigmas", &O::max_prior_sigmas, 1, 1000, "",
        "largest difference from the predicted pose, in standard deviations; a pose that differs "
        "more is rejected"},
@@ -146,9 +149,7 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
   result.registration = attempt.registration;
   if (result.status != TrackingStatus::tracked) return result;
   result.world_from_camera = result.registration.world_from_camera;
-  if (result.registration.degenerate_directions == 0) {
-    note_change(timestamp_s, result.world_from_camera);
-  }
+  note_change(timestamp_s, result.registration);
   learn_covariances(periods, attempt, result);
   constexpr double share_of_newest = 0.1;
   usual_support_ += share_of_newest * (support(result.registration) - usual_support_);
@@ -173,11 +174,34 @@ Odometry::Attempt Odometry::register_from(const MotionPrior& prior, const Surfac
   return attempt;
 }
 
+/// Registers a frame as if its motion were as steady as that of recent frames, which keeps the pose
+/// where the surfaces hardly do. Empty if registration fails or the motion has changed.
+std::optional<Odometry::Attempt> Odometry::register_as_steady(
+    const MotionPrior& prior, double timestamp_s, const SurfaceCloud& cloud,
+    std::span<const Keyframe* const> around) const {
+  // A prior that changes of the motion exceed would hold the pose back.
+  constexpr double changed_sigmas = 3;
+  const double periods = std::max(1.0, periods_since_registered(timestamp_s));
+  const MotionUncertainty::Twist sigmas = periods * uncertainty_.change_sigmas();
+  const MotionPrior steady{prior.world_from_camera, sigmas[0], sigmas[3]};
+  Attempt attempt = register_from(steady, cloud, around);
+  const RegistrationResult& found = attempt.registration;
+  if (!succeeded(found.status) ||
+      prior_deviation_sigmas(steady, found.world_from_camera) > changed_sigmas) {
+    return std::nullopt;
+  }
+  attempt.prior = prior;
+  return attempt;
+}
+
 /// Registers a frame from the pose that constant velocity predicts, and after a gap from the last
 /// pose as well, since the camera may have stood still instead.
 Odometry::Attempt Odometry::register_as_predicted(double timestamp_s, const SurfaceCloud& cloud,
                                                   std::span<const Keyframe* const> around) const {
   const MotionPrior prior = predict(timestamp_s);
+  if (!is_after_gap(timestamp_s)) {
+    if (const auto steady = register_as_steady(prior, timestamp_s, cloud, around)) return *steady;
+  }
   Attempt moving = register_from(prior, cloud, around);
   MotionPrior standing = prior;
   standing.world_from_camera = last_->world_from_camera;
@@ -317,11 +341,11 @@ MotionPrior Odometry::predict(double timestamp_s) const {
 }
 
 /// Learns by how much the pose of a frame differs from the predicted one.
-void Odometry::note_change(double timestamp_s, const Pose& found) {
-  const Pose change = predict(timestamp_s).world_from_camera.inverse() * found;
+void Odometry::note_change(double timestamp_s, const RegistrationResult& found) {
+  const MotionUncertainty::Twist change =
+      twist_between(predict(timestamp_s).world_from_camera, found.world_from_camera);
   const long frames = std::max(1L, std::lround(periods_since_registered(timestamp_s)));
-  uncertainty_.note_change(rotation_angle_rad(Pose::Identity(), change),
-                           change.translation().norm(), static_cast<int>(frames));
+  uncertainty_.note_change(change, found.covariance, static_cast<int>(frames));
 }
 
 /// Finds the covariances of the pose relative to each target, and the spread relative to all of

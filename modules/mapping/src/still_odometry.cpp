@@ -22,11 +22,7 @@ constexpr int frames_until_trusted = 15;
 bool contradicts(const RegistrationResult& one, const RegistrationResult& other) {
   constexpr double least_m = 0.005;
   constexpr double least_sigmas = 6;
-  const Pose& a = one.world_from_camera;
-  const Pose& b = other.world_from_camera;
-  const Eigen::AngleAxisd rotation(a.linear() * b.linear().transpose());
-  Eigen::Matrix<double, 6, 1> twist;
-  twist << rotation.angle() * rotation.axis(), a.translation() - b.translation();
+  const auto twist = twist_between(other.world_from_camera, one.world_from_camera);
   double squared_sigmas = 0;
   for (const auto& information : one.target_information) {
     squared_sigmas += twist.dot(information * twist);

@@ -58,16 +58,15 @@ std::optional<Correspondence> correspondence(const SurfacePoint& source,
   if (gap.squaredNorm() > gates.max_distance_m * gates.max_distance_m) return std::nullopt;
 
   const Eigen::Vector3d normal = found->getNormalVector3fMap().cast<double>();
-  const Eigen::Vector3d source_normal = source.getNormalVector3fMap().cast<double>();
-  if (normal.dot(target_from_source.linear() * source_normal) < gates.min_normal_cos) {
-    return std::nullopt;
-  }
+  const Eigen::Vector3d source_normal =
+      target_from_source.linear() * source.getNormalVector3fMap().cast<double>();
+  if (normal.dot(source_normal) < gates.min_normal_cos) return std::nullopt;
   Correspondence pair;
   pair.point_m = point;
   pair.normal = normal;
+  pair.source_normal = source_normal;
   pair.residual_m = normal.dot(gap);
   pair.confidence = double{source.confidence} * double{found->confidence};
-  pair.normal_sigma_rad = found->normal_sigma_rad;
   const Eigen::Vector3d normal_in_source = target_from_source.linear().transpose() * normal;
   pair.variance_m2 = variance_along(*found, normal) + variance_along(source, normal_in_source) +
                      gates.systematic_variance_m2;
@@ -111,6 +110,7 @@ Correspondences find_correspondences(const std::vector<const SurfacePoint*>& poi
     const Pose& world_from_target = targets[t].world_from_camera;
     pair->point_m = world_from_target * pair->point_m - origin;
     pair->normal = world_from_target.linear() * pair->normal;
+    pair->source_normal = world_from_target.linear() * pair->source_normal;
     found[i] = pair;
   }
   Correspondences out;

@@ -12,12 +12,12 @@ namespace tofmap {
 /// A source point and the plane of the target point that it projects onto, along the world's axes
 /// about the centre of the source's camera.
 struct Correspondence {
-  Eigen::Vector3d point_m;      ///< source point, relative to the centre of the source's camera
-  Eigen::Vector3d normal;       ///< unit normal of the target's plane
-  double residual_m = 0;        ///< signed distance from the plane to the point
-  double variance_m2 = 0;       ///< predicted variance of the residual
-  double confidence = 1;        ///< probability that the wrap counts of both points are right
-  double normal_sigma_rad = 0;  ///< standard deviation of the tilt of the plane
+  Eigen::Vector3d point_m;        ///< source point, relative to the centre of the source's camera
+  Eigen::Vector3d normal;         ///< unit normal of the target's plane
+  Eigen::Vector3d source_normal;  ///< unit normal of the source point
+  double residual_m = 0;          ///< signed distance from the plane to the point
+  double variance_m2 = 0;         ///< predicted variance of the residual
+  double confidence = 1;          ///< probability that the wrap counts of both points are right
 };
 
 /// The source points used for registration: every n-th pixel in both axes, where n is `stride_px`,

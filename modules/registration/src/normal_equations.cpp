@@ -12,9 +12,9 @@
 
 namespace tofmap {
 
-Vector6d residual_jacobian(const Correspondence& pair) {
+Vector6d residual_jacobian(const Eigen::Vector3d& point_m, const Eigen::Vector3d& normal) {
   Vector6d jacobian;
-  jacobian << pair.point_m.cross(pair.normal), pair.normal;
+  jacobian << point_m.cross(normal), normal;
   return jacobian;
 }
 
@@ -40,11 +40,11 @@ double weight_of(const Correspondence& pair, double kernel_width) {
   return geman_mcclure_weight(normalised, kernel_width) * pair.confidence / pair.variance_m2;
 }
 
-/// cross_matrix(a) b = a × b.
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& vector) {
-  Eigen::Matrix3d matrix;
-  matrix << 0, -vector.z(), vector.y(), vector.z(), 0, -vector.x(), -vector.y(), vector.x(), 0;
-  return matrix;
+/// The part of a share of the information that is relied on. The noise-induced rest is estimated
+/// from few normals where a direction is weak, so a quarter more of it is left out.
+double relied_on(double share) {
+  constexpr double margin = 1.25;
+  return std::max(0.0, 1 - margin * (1 - share));
 }
 
 void fill_upper(Matrix6d& lower) {
@@ -52,53 +52,23 @@ void fill_upper(Matrix6d& lower) {
       lower.transpose().triangularView<Eigen::StrictlyUpper>();
 }
 
-/// Sums the information about a twist that is expected from random tilts of the normals alone. A
-/// tilt is perpendicular to the normal. If A v is the Jacobian of a residual along a direction v,
-/// A Aᵀ is the information of all three directions, from which the part along the normal is
-/// subtracted. Thus only the moments of the points need to be summed, besides the Jacobians.
-class TiltInformation {
- public:
-  void add(const Correspondence& pair, double weight, const Vector6d& jacobian) {
-    const double of_tilt = weight * pair.normal_sigma_rad * pair.normal_sigma_rad;
-    weight_ += of_tilt;
-    first_ += of_tilt * pair.point_m;
-    second_ += of_tilt * pair.point_m * pair.point_m.transpose();
-    along_normals_.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, of_tilt);
-  }
-
-  Matrix6d sum() const {
-    Matrix6d all;
-    all.topLeftCorner<3, 3>() = second_.trace() * Eigen::Matrix3d::Identity() - second_;
-    all.topRightCorner<3, 3>() = cross_matrix(first_);
-    all.bottomLeftCorner<3, 3>() = all.topRightCorner<3, 3>().transpose();
-    all.bottomRightCorner<3, 3>() = weight_ * Eigen::Matrix3d::Identity();
-    Matrix6d own = along_normals_;
-    fill_upper(own);
-    return all - own;
-  }
-
- private:
-  double weight_ = 0;
-  Eigen::Vector3d first_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d second_ = Eigen::Matrix3d::Zero();
-  Matrix6d along_normals_ = Matrix6d::Zero();  ///< lower triangle only
-};
-
 }  // namespace
 
 NormalEquations build_equations(std::span<const Correspondence> pairs, double kernel_width) {
   NormalEquations equations;
-  TiltInformation tilts;
   for (const Correspondence& pair : pairs) {
     const double weight = weight_of(pair, kernel_width);
-    const Vector6d jacobian = residual_jacobian(pair);
-    equations.information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
-    equations.gradient += weight * pair.residual_m * jacobian;
+    const Vector6d of_target = residual_jacobian(pair.point_m, pair.normal);
+    const Vector6d of_source = residual_jacobian(pair.point_m, pair.source_normal);
+    const Vector6d mean = (of_target + of_source) / 2;
+    const Vector6d half_difference = (of_target - of_source) / 2;
+    equations.information.selfadjointView<Eigen::Lower>().rankUpdate(mean, weight);
+    equations.noise_induced.selfadjointView<Eigen::Lower>().rankUpdate(half_difference, weight);
+    equations.gradient += weight * pair.residual_m * mean;
     equations.weight_sum += weight;
-    tilts.add(pair, weight, jacobian);
   }
   fill_upper(equations.information);
-  equations.noise_induced = tilts.sum();
+  fill_upper(equations.noise_induced);
   return equations;
 }
 
@@ -138,42 +108,45 @@ Observability observability(const NormalEquations& equations, double lever_m) {
   return seen;
 }
 
+Vector6d surface_shares(const Observability& seen, const NormalEquations& equations) {
+  Vector6d shares = Vector6d::Zero();
+  for (int i = 0; i < seen.directions.cols(); ++i) {
+    const Vector6d twist = seen.scale.cwiseProduct(seen.directions.col(i));
+    const double all = twist.dot(equations.information * twist);
+    if (!(all > 0)) continue;
+    shares[i] = std::clamp(1 - twist.dot(equations.noise_induced * twist) / all, 0.0, 1.0);
+  }
+  return shares;
+}
+
+void keep_shares(NormalEquations& equations, const Observability& seen, const Vector6d& shares) {
+  const Vector6d of_information = shares.unaryExpr(&relied_on);
+  const Vector6d of_gradient = shares.unaryExpr([](double share) {
+    const double relied = relied_on(share);
+    return relied > 0 ? relied * relied / share : 0.0;
+  });
+  // The directions are orthogonal only in scaled coordinates.
+  const auto along_directions = [&](const Vector6d& factors) -> Matrix6d {
+    const Matrix6d scaled = seen.directions * factors.asDiagonal() * seen.directions.transpose();
+    return seen.scale.asDiagonal() * scaled * seen.scale.cwiseInverse().asDiagonal();
+  };
+  const Matrix6d keep = along_directions(of_information);
+  equations.information = keep.transpose() * equations.information * keep;
+  equations.gradient = along_directions(of_gradient).transpose() * equations.gradient;
+}
+
 std::vector<int> degenerate_directions(const Observability& seen, const NormalEquations& equations,
                                        const Vector6d& prior_sigmas) {
+  const Vector6d shares = surface_shares(seen, equations);
   std::vector<int> degenerate;
   for (int i = 0; i < seen.directions.cols(); ++i) {
     const Vector6d twist = seen.scale.cwiseProduct(seen.directions.col(i));
     const double of_prior = twist.cwiseQuotient(prior_sigmas).squaredNorm();
-    const double of_surfaces =
-        twist.dot((equations.information - 2 * equations.noise_induced) * twist);
+    const double relied = relied_on(shares[i]);
+    const double of_surfaces = relied * relied * twist.dot(equations.information * twist);
     if (of_surfaces < of_prior) degenerate.push_back(i);
   }
   return degenerate;
-}
-
-Matrix6d surface_information(const Observability& seen, const NormalEquations& equations) {
-  Matrix6d information = Matrix6d::Zero();
-  for (int i = 0; i < seen.directions.cols(); ++i) {
-    const Vector6d twist = seen.scale.cwiseProduct(seen.directions.col(i));
-    const double all = twist.dot(equations.information * twist);
-    const double of_surfaces = all - 2 * twist.dot(equations.noise_induced * twist);
-    if (of_surfaces <= 0) continue;
-    const Vector6d direction = seen.directions.col(i).cwiseQuotient(seen.scale);
-    information += of_surfaces * of_surfaces / all * direction * direction.transpose();
-  }
-  return information;
-}
-
-void remove_information(NormalEquations& equations, const Observability& seen,
-                        std::span<const int> directions) {
-  Matrix6d kept = Matrix6d::Identity();
-  for (const int i : directions) {
-    kept -= seen.directions.col(i) * seen.directions.col(i).transpose();
-  }
-  // The directions are orthogonal only in scaled coordinates.
-  const Matrix6d keep = seen.scale.asDiagonal() * kept * seen.scale.cwiseInverse().asDiagonal();
-  equations.information = keep.transpose() * equations.information * keep;
-  equations.gradient = keep.transpose() * equations.gradient;
 }
 
 }  // namespace tofmap

@@ -36,21 +36,13 @@ bool is_below_tolerance(const Vector6d& twist, double tolerances) {
 }
 
 /// The pose after a rotation about the camera's centre and a translation, both along the world's
-/// axes.
+/// axes: the inverse of twist_between().
 Pose moved(const Pose& world_from_camera, const Vector6d& twist) {
   const Pose step = pose_from_twist(twist);
   Pose pose = world_from_camera;
   pose.linear() = step.linear() * world_from_camera.linear();
   pose.translation() += step.translation();
   return pose;
-}
-
-/// The twist with which moved() takes `from` to `to`.
-Vector6d twist_between(const Pose& from, const Pose& to) {
-  const Eigen::AngleAxisd rotation(to.linear() * from.linear().transpose());
-  Vector6d twist;
-  twist << rotation.angle() * rotation.axis(), to.translation() - from.translation();
-  return twist;
 }
 
 double median_range_m(const std::vector<const SurfacePoint*>& points) {
@@ -99,23 +91,32 @@ System build_system(const std::vector<Correspondence>& pairs, const Pose& pose, 
   system.seen = observability(system.equations, lever_m);
   const Vector6d sigmas = prior_sigmas(prior);
   system.degenerate = degenerate_directions(system.seen, system.equations, sigmas);
-  remove_information(system.equations, system.seen, system.degenerate);
+  keep_shares(system.equations, system.seen, surface_shares(system.seen, system.equations));
   add_prior(system.equations, twist_between(pose, prior.world_from_camera), sigmas);
   return system;
+}
+
+/// The information that surfaces give, without the noise-induced part.
+Matrix6d surface_information(NormalEquations equations, double lever_m) {
+  const Observability seen = observability(equations, lever_m);
+  keep_shares(equations, seen, surface_shares(seen, equations));
+  return equations.information;
 }
 
 /// The information about the pose relative to each target, from the correspondences with that
 /// target alone. There is none along directions that are degenerate with all of them.
 std::vector<Matrix6d> information_by_target(const Correspondences& found, const System& system,
                                             double lever_m) {
+  Vector6d not_degenerate = Vector6d::Ones();
+  for (const int i : system.degenerate) not_degenerate[i] = 0;
   std::vector<Matrix6d> information;
   std::span<const Correspondence> pairs = found.pairs;
   for (const std::size_t count : found.of_target) {
     NormalEquations equations = build_equations(pairs.first(count), system.kernel_width);
     pairs = pairs.subspan(count);
     count_independent(equations, system.independent);
-    remove_information(equations, system.seen, system.degenerate);
-    information.push_back(surface_information(observability(equations, lever_m), equations));
+    keep_shares(equations, system.seen, not_degenerate);
+    information.push_back(surface_information(equations, lever_m));
   }
   return information;
 }
@@ -328,8 +329,7 @@ TargetPreview preview_target(const SurfaceCloud& source, const Pose& world_from_
   NormalEquations equations = build_equations(found.pairs, options.kernel_width);
   const double points_each = std::pow(sparse_stride_px / double(options.source_stride_px), 2);
   count_independent(equations, points_each / options.correlated_observations);
-  preview.information =
-      surface_information(observability(equations, median_range_m(points)), equations);
+  preview.information = surface_information(equations, median_range_m(points));
   return preview;
 }
 

@@ -32,6 +32,10 @@ double rotation_angle_rad(const Pose& a, const Pose& b);
 /// is the translation itself.
 Pose pose_from_twist(const Eigen::Matrix<double, 6, 1>& twist);
 
+/// The twist from one pose to another, along the axes of the world: the rotation vector of the turn
+/// between their orientations, and the difference of their translations.
+Eigen::Matrix<double, 6, 1> twist_between(const Pose& from, const Pose& to);
+
 /// Interpolates between two poses: linearly in translation, spherically in rotation. `share` 0
 /// gives `a`, 1 gives `b`; values outside 0 … 1 extrapolate.
 Pose interpolate(const Pose& a, const Pose& b, double share);

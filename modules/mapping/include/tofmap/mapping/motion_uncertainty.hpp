@@ -18,6 +18,7 @@ namespace tofmap {
 /// metres, both along the world's axes.
 class MotionUncertainty {
  public:
+  using Twist = Eigen::Matrix<double, 6, 1>;
   using Covariance = Eigen::Matrix<double, 6, 6>;
 
   /// The arguments are the largest standard deviations, per axis, of the change in frame-to-frame
@@ -26,9 +27,14 @@ class MotionUncertainty {
 
   /// Learns how steady the motion is from the change of the motion to a frame: the difference, over
   /// `frames` ≥ 1 frames, of the pose that was found from that which constant velocity predicts.
-  /// The standard deviations become twice the root mean square of recent changes, but at least a
-  /// tenth of the largest ones and at most these.
-  void note_change(double rotation_rad, double translation_m, int frames);
+  /// `of_change` is its covariance. What counts is the change along directions in which it is known
+  /// to a tenth of the largest standard deviations; without any, nothing is learned.
+  void note_change(const Twist& change, const Covariance& of_change, int frames);
+
+  /// Standard deviations of the change of the motion from one frame to the next: twice the root
+  /// mean square of recent changes, but at least a tenth of the largest ones and at most these.
+  /// Three equal values for rotation, then three for translation.
+  Twist change_sigmas() const;
 
   /// Predicts over `frames` ≥ 1 frames, then updates with the information about the pose that the
   /// surfaces of the last of these frames give.
@@ -59,9 +65,9 @@ class MotionUncertainty {
 
   using Joint = Eigen::Matrix<double, 12, 12>;
 
-  Eigen::Matrix<double, 6, 1> largest_sigmas_;
-  Eigen::Matrix<double, 6, 1> mean_squares_;  ///< of recent changes
-  Joint joint_ = Joint::Zero();               ///< pose first, then velocity in twists per frame
+  Twist largest_sigmas_;
+  Twist mean_squares_;           ///< of recent changes
+  Joint joint_ = Joint::Zero();  ///< pose first, then velocity in twists per frame
 };
 
 }  // namespace tofmap

@@ -42,10 +42,10 @@ struct OdometryOptions {
   /// previous frame belongs to may see less.
   double min_target_overlap = 0.15;
   /// Standard deviation, per axis, of the change in frame-to-frame rotation from one frame to the
-  /// next, 0.0001 … 3.2 rad.
+  /// next, 0.0001 … 3.2 rad. It is less while the motion is steady; see MotionUncertainty.
   double prior_rotation_sigma_rad = 0.03;
   /// Standard deviation, per axis, of the change in frame-to-frame translation from one frame to
-  /// the next, 0.0001 … 10 m.
+  /// the next, 0.0001 … 10 m. It is less while the motion is steady.
   double prior_translation_sigma_m = 0.03;
   /// Largest difference between the registered and the predicted pose, in standard deviations of
   /// the prior, 1 … 1000. A pose that differs more is rejected.
@@ -97,10 +97,12 @@ struct TrackingResult {
 
 /// Tracks the camera: registers each frame with those keyframes around it that overlap it most,
 /// from the pose that constant velocity predicts. The last of them is replaced by a keyframe that
-/// constrains a direction which the others do not. After a gap in time, the last known pose is
-/// tried as well, and registration may take three times as many iterations. The first frame with a
-/// surface gets the identity as its pose. A frame that cannot be registered only increases the time
-/// since the last registered frame.
+/// constrains a direction which the others do not. The prior is as narrow as recent motion was
+/// steady. If the result differs from it by more than three standard deviations, the motion has
+/// changed, and the frame is registered again with the prior that the options give. After a gap in
+/// time, the last known pose is tried as well, and registration may take three times as many
+/// iterations. The first frame with a surface gets the identity as its pose. A frame that cannot be
+/// registered only increases the time since the last registered frame.
 ///
 /// The camera may move faster than the prior allows. With `check_poses`, if registration fails,
 /// ends far from the predicted pose, or fits the surfaces clearly worse than the frames before, the
@@ -162,6 +164,9 @@ class Odometry {
   double periods_since_registered(double timestamp_s) const;
   Attempt register_from(const MotionPrior& prior, const SurfaceCloud& cloud,
                         std::span<const Keyframe* const> around) const;
+  std::optional<Attempt> register_as_steady(const MotionPrior& prior, double timestamp_s,
+                                            const SurfaceCloud& cloud,
+                                            std::span<const Keyframe* const> around) const;
   Attempt register_as_predicted(double timestamp_s, const SurfaceCloud& cloud,
                                 std::span<const Keyframe* const> around) const;
   std::optional<Attempt> register_turned(double periods, const SurfaceCloud& cloud,
@@ -171,7 +176,7 @@ class Odometry {
   bool contradicts_targets(const Attempt& attempt, const SurfaceCloud& cloud) const;
   TrackingStatus judge(const Attempt& attempt, double timestamp_s) const;
   MotionPrior predict(double timestamp_s) const;
-  void note_change(double timestamp_s, const Pose& found);
+  void note_change(double timestamp_s, const RegistrationResult& found);
   void learn_covariances(double periods, const Attempt& attempt, TrackingResult& result);
   void accept(const StampedPose& pose);
 

@@ -106,8 +106,8 @@ struct RegistrationResult {
   std::vector<Eigen::Matrix<double, 6, 6>> target_information;
 
   /// Number of degenerate directions of motion, of six: those in which the surfaces give less
-  /// information than the prior, after noise-induced information was subtracted. The pose follows
-  /// the prior along these.
+  /// information than the prior, without what is noise-induced. Along these, the pose depends on
+  /// the prior more than on the surfaces.
   int degenerate_directions = 0;
   /// Share of the observations that constrain each direction of motion, in ascending order, from 0
   /// (unconstrained) to 1. Rotations are measured as the motion of points at the median range of
@@ -130,9 +130,8 @@ bool converged_slowly(const RegistrationResult& result, const RegistrationOption
 /// its predicted variance (noise of both points along the normal, plus the square of
 /// `systematic_sigma_m`), by the confidence of both points, and by a Geman-McClure kernel whose
 /// width is `kernel_width` times the robust scale of the residuals. The prior contributes to every
-/// direction of motion by its standard deviations. In degenerate directions, where the surfaces
-/// give less information than the prior, it alone determines the pose. The result is the same for
-/// any number of threads.
+/// direction of motion by its standard deviations, and the surfaces by their information without
+/// what comes from the noise of normals alone. The result is the same for any number of threads.
 ///
 /// With the methods `pcl_icp` and `pcl_gicp`, PCL finds the pose from the same points and the same
 /// initial pose, for comparison. The status is `converged` if PCL reports convergence, which
