@@ -77,8 +77,7 @@ std::vector<OptionField<OdometryOptions>> OdometryOptions::fields() {
        "smallest share of a frame's points that a keyframe must see to be registered with"},
       {"prior_rotation_sigma_rad", &O::prior_rotation_sigma_rad, 1e-4, 3.2, "rad",
        "standard deviation of the change in frame-to-frame rotation, per axis and frame; less "
-       "while "
-       "the motion is steady"},
+       "while the motion is steady"},
       {"prior_translation_sigma_m", &O::prior_translation_sigma_m, 1e-4, 10, "m",
        "standard deviation of the change in frame-to-frame translation, per axis and frame; less "
        "while the motion is steady"},
@@ -175,15 +174,20 @@ Odometry::Attempt Odometry::register_from(const MotionPrior& prior, const Surfac
 }
 
 /// Registers a frame as if its motion were as steady as that of recent frames, which keeps the pose
-/// where the surfaces hardly do. Empty if registration fails or the motion has changed.
+/// where the surfaces hardly do. Empty if that is no steadier than `prior` allows anyway, if
+/// registration fails, or if the motion has changed.
 std::optional<Odometry::Attempt> Odometry::register_as_steady(
     const MotionPrior& prior, double timestamp_s, const SurfaceCloud& cloud,
     std::span<const Keyframe* const> around) const {
   // A prior that changes of the motion exceed would hold the pose back.
   constexpr double changed_sigmas = 3;
-  const double periods = std::max(1.0, periods_since_registered(timestamp_s));
-  const MotionUncertainty::Twist sigmas = periods * uncertainty_.change_sigmas();
+  const MotionUncertainty::Twist sigmas =
+      periods_since_registered(timestamp_s) * uncertainty_.change_sigmas();
   const MotionPrior steady{prior.world_from_camera, sigmas[0], sigmas[3]};
+  if (steady.rotation_sigma_rad >= prior.rotation_sigma_rad &&
+      steady.translation_sigma_m >= prior.translation_sigma_m) {
+    return std::nullopt;
+  }
   Attempt attempt = register_from(steady, cloud, around);
   const RegistrationResult& found = attempt.registration;
   if (!succeeded(found.status) ||

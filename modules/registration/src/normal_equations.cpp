@@ -135,16 +135,13 @@ void keep_shares(NormalEquations& equations, const Observability& seen, const Ve
   equations.gradient = along_directions(of_gradient).transpose() * equations.gradient;
 }
 
-std::vector<int> degenerate_directions(const Observability& seen, const NormalEquations& equations,
+std::vector<int> degenerate_directions(const Observability& seen, const Matrix6d& information,
                                        const Vector6d& prior_sigmas) {
-  const Vector6d shares = surface_shares(seen, equations);
   std::vector<int> degenerate;
   for (int i = 0; i < seen.directions.cols(); ++i) {
     const Vector6d twist = seen.scale.cwiseProduct(seen.directions.col(i));
     const double of_prior = twist.cwiseQuotient(prior_sigmas).squaredNorm();
-    const double relied = relied_on(shares[i]);
-    const double of_surfaces = relied * relied * twist.dot(equations.information * twist);
-    if (of_surfaces < of_prior) degenerate.push_back(i);
+    if (twist.dot(information * twist) < of_prior) degenerate.push_back(i);
   }
   return degenerate;
 }

@@ -83,13 +83,14 @@ Vector6d surface_shares(const Observability& seen, const NormalEquations& equati
 /// solution. A direction with the share 0 is removed from the system.
 void keep_shares(NormalEquations& equations, const Observability& seen, const Vector6d& shares);
 
-/// The degenerate directions, as columns of `seen.directions`: those about which keep_shares()
-/// leaves less information than a prior with these standard deviations has.
+/// The degenerate directions, as columns of `seen.directions`: those about which the surfaces give
+/// less information than a prior with these standard deviations. `information` is what
+/// keep_shares() leaves.
 ///
 /// As in Zhang, Kaess and Singh (ICRA 2016, "On degeneracy of optimization-based state estimation
 /// problems"), eigenvectors of the information are tested one by one, and the degenerate ones are
 /// left out of the solution. There the limit is an eigenvalue to be chosen; here it is the prior.
-std::vector<int> degenerate_directions(const Observability& seen, const NormalEquations& equations,
+std::vector<int> degenerate_directions(const Observability& seen, const Matrix6d& information,
                                        const Vector6d& prior_sigmas);
 
 }  // namespace tofmap

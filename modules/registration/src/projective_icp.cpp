@@ -90,8 +90,8 @@ System build_system(const std::vector<Correspondence>& pairs, const Pose& pose, 
   count_independent(system.equations, system.independent);
   system.seen = observability(system.equations, lever_m);
   const Vector6d sigmas = prior_sigmas(prior);
-  system.degenerate = degenerate_directions(system.seen, system.equations, sigmas);
   keep_shares(system.equations, system.seen, surface_shares(system.seen, system.equations));
+  system.degenerate = degenerate_directions(system.seen, system.equations.information, sigmas);
   add_prior(system.equations, twist_between(pose, prior.world_from_camera), sigmas);
   return system;
 }
