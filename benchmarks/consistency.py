@@ -33,7 +33,8 @@ NOISES_M = (0.02, 0.06, 0.12)
 OFFSETS_M = (0, 0.2)  # of frequency B's ranges
 METHODS = ("pixel", "jump", "joint")
 MEASURES = ("contradicted_percent", "residual_misfit_percent", "residual_rms_cycles",
-            "ambiguous_percent", "plane_thickness_m", "curl_violations_per_frame")
+            "ambiguous_percent", "plane_thickness_m", "view_disagreement_m",
+            "curl_violations_per_frame")
 WRONG_MAP_M = 0.05
 
 

@@ -9,9 +9,10 @@ The recordings have ground truth, such as those that alike_places.py, moving_thi
 violent_turns.py and `tofmap simulate` make. The verdict is that of report.json, which knows no
 truth. A map is wrong if the positions of more than one frame in a hundred are off by more than
 5 cm, in the map that the frames are in, after the rigid alignment that fits that map best. It is
-questioned if its verdict is not "Looks right." The rates come last; recordings without a map, since
-the program failed, are counted apart. Maps stay in OUT_DIR, under the names of the recordings, and
-are used again. Needs Debian's python3-numpy and python3-scipy.
+questioned if its verdict is not "Looks right." The rates come last, also those for maps that are
+wrong by their trajectory error (ATE, RMSE); recordings without a map, since the program failed, are
+counted apart. Maps stay in OUT_DIR, under the names of the recordings, and are used again. Needs
+Debian's python3-numpy and python3-scipy.
 """
 import argparse
 import concurrent.futures
@@ -50,11 +51,19 @@ def row_of(name, found):
             f"{1000 * found.most_m:.0f} / {1000 * found.worst_m:.0f} | {found.verdict} | {remark} |")
 
 
-def rate(questioned, what):
-    if not questioned:
+def rate(scores, what):
+    if not scores:
         return f"no {what} maps"
-    return (f"{sum(questioned)} of {len(questioned)} {what} maps are questioned "
-            f"({100 * sum(questioned) / len(questioned):.0f} %)")
+    questioned = sum(found.is_questioned for found in scores)
+    return (f"{questioned} of {len(scores)} {what} maps are questioned "
+            f"({100 * questioned / len(scores):.0f} %)")
+
+
+def rates(scores, error_m):
+    """How often maps are questioned that are wrong, and right, by a function of their scores."""
+    wrong = [found for found in scores if error_m(found) > NOTICED_M]
+    right = [found for found in scores if error_m(found) <= NOTICED_M]
+    return f"{rate(wrong, 'wrong')}; {rate(right, 'right')}"
 
 
 def main():
@@ -68,7 +77,7 @@ def main():
         parser.error("recordings must have different names")
     arguments.out.mkdir(parents=True, exist_ok=True)
     tofmap = arguments.build / "apps" / "tofmap"
-    questioned = {True: [], False: []}
+    scores = []
     without_map = 0
     print(HEADER, flush=True)
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
@@ -79,9 +88,9 @@ def main():
                 without_map += 1
                 continue
             print(row_of(name, found), flush=True)
-            questioned[found.most_m > NOTICED_M].append(found.is_questioned)
-    print(f"\n{rate(questioned[True], 'wrong')}; {rate(questioned[False], 'right')}; "
-          f"{without_map} without a map")
+            scores.append(found)
+    print(f"\nby the error of 99 %: {rates(scores, lambda found: found.most_m)}\n"
+          f"by ATE: {rates(scores, lambda found: max(found.ate_m))}\n{without_map} without a map")
 
 
 if __name__ == "__main__":

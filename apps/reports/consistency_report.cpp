@@ -21,6 +21,7 @@ nlohmann::ordered_json consistency_json(const Consistency& consistency) {
           {"ambiguous_percent", json_number(consistency.ambiguous_percent)},
           {"contradicted_percent", json_number(consistency.contradicted_percent)},
           {"plane_thickness_m", json_number(consistency.plane_thickness_m)},
+          {"view_disagreement_m", json_number(consistency.view_disagreement_m)},
           {"curl_violations_per_frame", json_number(consistency.curl_violations_per_frame)}};
 }
 

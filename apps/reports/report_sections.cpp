@@ -78,6 +78,8 @@ void add_consistency(ReportPage& page, const std::vector<std::string>& names,
   add_row("ambiguous pixels, %", 2, &Consistency::ambiguous_percent);
   add_row("thickness of planar surfaces in the map, m (median)", 4,
           &Consistency::plane_thickness_m);
+  add_row("disagreement of views about surfaces beyond noise, m (RMS)", 4,
+          &Consistency::view_disagreement_m);
   add_row("curl violations per frame (jump, paper, single)", 1,
           &Consistency::curl_violations_per_frame);
   page.add_heading("Consistency, without ground truth");

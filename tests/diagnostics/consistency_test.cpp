@@ -232,16 +232,20 @@ TEST(ConsistencyWarnings, BeginBeyondTheirLimits) {
   Consistency consistency;
   consistency.contradicted_percent = 3;
   consistency.residual_misfit_percent = 10;
+  consistency.view_disagreement_m = 0.006;
   EXPECT_THAT(warnings_about(consistency), IsEmpty());
   consistency.contradicted_percent = 3.1;
   EXPECT_THAT(warnings_about(consistency),
               ElementsAre(HasSubstr("contradict each other in 3.1 %")));
   consistency.residual_misfit_percent = 11;
   EXPECT_THAT(warnings_about(consistency), ElementsAre(HasSubstr("contradict"), HasSubstr("11 %")));
+  consistency = {};
+  consistency.view_disagreement_m = 0.0074;
+  EXPECT_THAT(warnings_about(consistency), ElementsAre(HasSubstr("disagree by 7 mm")));
 }
 
 TEST(ConsistencyWarnings, AreNoneAboutWhatIsNotKnown) {
-  EXPECT_THAT(warnings_about({NAN, NAN, NAN, NAN, NAN, NAN}), IsEmpty());
+  EXPECT_THAT(warnings_about(unknown_consistency()), IsEmpty());
 }
 
 TEST(ConsistencyFrames, AreFewerOfLargeImagesButNotTooFew) {

@@ -3,6 +3,8 @@
 
 #include "tofmap/diagnostics/consistency.hpp"
 
+#include "tofmap/diagnostics/view_disagreement.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -243,7 +245,7 @@ double plane_thickness_m(const MapCloud& map) {
   return thicknesses.empty() ? nan : median(thicknesses);
 }
 
-Consistency unknown_consistency() { return {nan, nan, nan, nan, nan, nan}; }
+Consistency unknown_consistency() { return {nan, nan, nan, nan, nan, nan, nan}; }
 
 int consistency_frames(const CameraModel& camera) {
   constexpr double most_pixels = 6e6;
@@ -259,6 +261,7 @@ Consistency consistency_of(const std::vector<RangedFrame>& unwrapped,
           .ambiguous_percent = ambiguous_percent(unwrapped),
           .contradicted_percent = contradicted_percent(filtered, sensor.camera),
           .plane_thickness_m = plane_thickness_m(map),
+          .view_disagreement_m = view_disagreement_m(filtered, sensor.camera),
           .curl_violations_per_frame = nan};
 }
 
@@ -266,6 +269,7 @@ std::vector<std::string> warnings_about(const Consistency& consistency) {
   // docs/evaluation.md has the measurements behind these limits. NaN exceeds no limit.
   constexpr double most_contradicted_percent = 3;
   constexpr double most_misfit_percent = 10;
+  constexpr double most_disagreement_m = 0.006;
   std::vector<std::string> warnings;
   if (consistency.contradicted_percent > most_contradicted_percent) {
     warnings.push_back(fmt::format(
@@ -278,6 +282,13 @@ std::vector<std::string> warnings_about(const Consistency& consistency) {
                     "frequencies better with another wrap count: wrap counts are wrong, or there "
                     "is an offset between the frequencies (see 'tofmap info')",
                     consistency.residual_misfit_percent));
+  }
+  if (consistency.view_disagreement_m > most_disagreement_m) {
+    warnings.push_back(
+        fmt::format("frames disagree by {:.0f} mm about where the surfaces are that they see, not "
+                    "counting noise: ranges have systematic errors, such as by stray light, or "
+                    "poses are wrong ('tofmap calibrate' finds errors of the camera)",
+                    1000 * consistency.view_disagreement_m));
   }
   return warnings;
 }

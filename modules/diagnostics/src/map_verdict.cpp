@@ -13,7 +13,8 @@ namespace tofmap {
 
 Judgement judge(const MapEvidence& evidence) {
   constexpr double half_percent = 50;  // with fewer frames, most of the recording is missing
-  constexpr double much_m = 0.05;      // a wall that is off by more looks double
+  // A wall that is off by 5 cm looks double: that must be two standard deviations away.
+  constexpr double most_sigma_m = 0.025;
   Judgement judgement;
   const auto hold_against = [&](Verdict verdict, const std::string& reason) {
     judgement.verdict = std::max(judgement.verdict, verdict);
@@ -40,7 +41,7 @@ Judgement judge(const MapEvidence& evidence) {
   if (of_surface != Verdict::good) {
     hold_against(of_surface, "the error of its surface is larger than a voxel");
   }
-  if (evidence.position_sigma_m > much_m) {
+  if (evidence.position_sigma_m > most_sigma_m) {
     hold_against(Verdict::check,
                  fmt::format("the position at frame {} is uncertain by {:.2f} m (one standard "
                              "deviation), since surfaces seen on the way there did not constrain "

@@ -168,18 +168,27 @@ Trajectory RoomMapper::keyframe_trajectory(int map) const {
 }
 
 PoseCertainty RoomMapper::least_certain(int map) const {
-  const auto is_of_map = [&](const Keyframe& keyframe) { return keyframe.map == map; };
-  const Keyframe& first = *std::ranges::find_if(keyframes_.all(), is_of_map);
-  const auto spreads = keyframes_.spreads_from(first.id);
-  PoseCertainty least{first.frame_index, {}};
+  std::vector<const Keyframe*> keyframes;
+  std::vector<Pose> poses;
+  std::vector<int> index_of(static_cast<std::size_t>(keyframes_.size()), -1);
   for (const Keyframe& keyframe : keyframes_.all()) {
-    const std::optional<PoseSpread>& spread = spreads[static_cast<std::size_t>(keyframe.id)];
-    if (!is_of_map(keyframe) || !spread) continue;
-    if (spread->translation_m2 > least.spread.translation_m2) {
-      least = {keyframe.frame_index, *spread};
-    }
+    if (keyframe.map != map) continue;
+    index_of[static_cast<std::size_t>(keyframe.id)] = static_cast<int>(poses.size());
+    keyframes.push_back(&keyframe);
+    poses.push_back(keyframe.world_from_camera);
   }
-  return least;
+  std::vector<PoseEdge> edges;
+  auto loop = loops_.begin();
+  for (const PoseEdge& edge : edges_) {
+    const bool is_used = !edge.may_be_wrong || loop++->is_used;
+    if (!is_used || keyframes_[edge.from].map != map || keyframes_[edge.to].map != map) continue;
+    edges.push_back(edge);
+    edges.back().from = index_of[static_cast<std::size_t>(edge.from)];
+    edges.back().to = index_of[static_cast<std::size_t>(edge.to)];
+  }
+  const std::vector<ExpectedError> errors = expected_errors(poses, edges);
+  const auto least = std::ranges::max_element(errors, {}, &ExpectedError::position_m);
+  return {keyframes[static_cast<std::size_t>(least - errors.begin())]->frame_index, *least};
 }
 
 std::size_t RoomMapper::voxel_count() const {

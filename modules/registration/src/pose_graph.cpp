@@ -78,18 +78,6 @@ class GemanMcClureLoss : public ceres::LossFunction {
   double inverse_square_;
 };
 
-void check_edges(std::span<const PoseEdge> edges, std::size_t poses) {
-  for (const PoseEdge& edge : edges) {
-    const auto is_there = [&](int pose) {
-      return pose >= 0 && static_cast<std::size_t>(pose) < poses;
-    };
-    if (!is_there(edge.from) || !is_there(edge.to) || edge.from == edge.to) {
-      throw UsageError("pose graph of " + std::to_string(poses) + " poses: an edge from " +
-                       std::to_string(edge.from) + " to " + std::to_string(edge.to));
-    }
-  }
-}
-
 Node node_of(const Pose& pose) {
   return {Eigen::Quaterniond(pose.linear()).normalized(), pose.translation()};
 }
@@ -130,6 +118,18 @@ ceres::Solver::Summary solve(std::span<const PoseEdge> edges, double kernel_widt
 }
 
 }  // namespace
+
+void check_edges(std::span<const PoseEdge> edges, std::size_t poses) {
+  for (const PoseEdge& edge : edges) {
+    const auto is_there = [&](int pose) {
+      return pose >= 0 && static_cast<std::size_t>(pose) < poses;
+    };
+    if (!is_there(edge.from) || !is_there(edge.to) || edge.from == edge.to) {
+      throw UsageError("pose graph of " + std::to_string(poses) + " poses: an edge from " +
+                       std::to_string(edge.from) + " to " + std::to_string(edge.to));
+    }
+  }
+}
 
 double mahalanobis_distance(const PoseEdge& edge, const std::vector<Pose>& poses) {
   const Node from = node_of(poses[static_cast<std::size_t>(edge.from)]);

@@ -2,27 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <tofmap/cloud/cloud_file.hpp>
 #include <tofmap/core/camera.hpp>
-#include <tofmap/core/frame.hpp>
-#include <tofmap/core/range_image.hpp>
-#include <tofmap/core/trajectory.hpp>
+#include <tofmap/diagnostics/ranged_frame.hpp>
 
 /// Measures that tell without ground truth whether unwrapping was right. docs/evaluation.md states
 /// how reliable each of them is.
 namespace tofmap {
-
-/// A frame together with the ranges that were found for it. Frame and image have the same size and
-/// must outlive this struct.
-struct RangedFrame {
-  const DualFrequencyFrame* frame = nullptr;  ///< may be null if no phases are used
-  const RangeImage* image = nullptr;          ///< not null
-  std::optional<Pose> world_from_camera;      ///< empty if the frame was not registered
-};
 
 /// How well the wrap counts agree with both frequencies. NaN if no pixel has both phases.
 struct ResidualAgreement {
@@ -65,6 +54,7 @@ struct Consistency {
   double ambiguous_percent = 0;        ///< ambiguous_percent()
   double contradicted_percent = 0;     ///< contradicted_percent()
   double plane_thickness_m = 0;        ///< plane_thickness_m()
+  double view_disagreement_m = 0;      ///< view_disagreement_m()
   /// Mean number of violations of the zero-curl constraint per frame, for methods that estimate
   /// phase jumps.
   double curl_violations_per_frame = 0;

@@ -12,6 +12,7 @@
 #include <tofmap/mapping/loop_closure.hpp>
 #include <tofmap/mapping/still_odometry.hpp>
 #include <tofmap/mapping/surface_map.hpp>
+#include <tofmap/registration/path_uncertainty.hpp>
 
 namespace boost::serialization {
 class access;
@@ -30,8 +31,8 @@ struct Loop {
 
 /// How certain the pose of a keyframe is.
 struct PoseCertainty {
-  int frame = 0;      ///< index of the frame of the keyframe
-  PoseSpread spread;  ///< relative to the first keyframe of the map
+  int frame = 0;        ///< index of the frame of the keyframe
+  ExpectedError error;  ///< after the best rigid alignment of all keyframes of the map
 };
 
 /// Input of RoomMapper::add_frame().
@@ -115,8 +116,8 @@ class RoomMapper {
   int joins() const { return static_cast<int>(joins_.size()); }
   /// Number of joins that were taken back.
   int joins_taken_back() const { return joins_taken_back_; }
-  /// The keyframe of a map whose position relative to the first one is least certain, by the
-  /// spreads of registrations (KeyframeGraph::spreads_from()). The map must have a keyframe.
+  /// The keyframe of a map whose position is least certain, by the covariances of the edges of
+  /// odometry and of the loops that are used (expected_errors()). The map must have a keyframe.
   PoseCertainty least_certain(int map) const;
   /// The surface of a map: all of its submaps in its world frame, without free-space violations if
   /// the options say so.

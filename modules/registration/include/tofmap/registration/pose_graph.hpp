@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,10 @@ struct PoseEdge {
 /// covariance of an edge.
 void widen(PoseEdge& edge, double rotation_sigma_rad, double translation_sigma_m);
 
+/// Throws UsageError if an edge refers to a pose that does not exist, or connects a pose with
+/// itself. `poses` is their number.
+void check_edges(std::span<const PoseEdge> edges, std::size_t poses);
+
 /// Optimised poses and how well the edges fit them.
 struct PoseGraphResult {
   std::vector<Pose> poses;  ///< in the order of the initial poses
@@ -43,8 +48,7 @@ struct PoseGraphResult {
 /// 5(2), 2020). Thus correct loops are not rejected because of the drift that they correct, and
 /// wrong ones are down-weighted. The result does not depend on the number of threads.
 ///
-/// Throws UsageError if an edge refers to a pose that does not exist, or connects a pose with
-/// itself.
+/// Throws UsageError as check_edges() does.
 PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const PoseEdge> edges,
                                     double kernel_width);
 
