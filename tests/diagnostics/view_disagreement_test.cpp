@@ -25,8 +25,8 @@ class Views {
   explicit Views(const Change& change = {}) {
     for (int i = 0; i < 12; ++i) {
       const Pose pose = test::moved_by({0, 0.08 * i - 0.4, 0.02 * i}, {0.1 * i - 0.6, 0, 0});
-      RangeImage& image = images_.emplace_back(
-          test::box_ranges(camera_, {-2, -1.5, -2}, {2.5, 1.5, 4}, pose));
+      RangeImage& image =
+          images_.emplace_back(test::box_ranges(camera_, {-2, -1.5, -2}, {2.5, 1.5, 4}, pose));
       if (change) change(i, image);
       frames_.push_back({nullptr, &image, pose});
     }
@@ -42,9 +42,7 @@ class Views {
   std::vector<RangedFrame> frames_;
 };
 
-TEST(ViewDisagreement, IsNothingForExactRanges) {
-  EXPECT_LT(Views().disagreement_m(), 1e-4);
-}
+TEST(ViewDisagreement, IsNothingForExactRanges) { EXPECT_LT(Views().disagreement_m(), 1e-4); }
 
 TEST(ViewDisagreement, IsFreeOfNoise) {
   std::mt19937 random(1);

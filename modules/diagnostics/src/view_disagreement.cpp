@@ -23,8 +23,8 @@ struct Patch {
 /// The patches of an image, by row and column.
 using Patches = Eigen::Array<Patch, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// A frame as planes. Distances between planes and points of another frame are stored in an image of
-/// the size of its patches.
+/// A frame as planes. Distances between planes and points of another frame are stored in an image
+/// of the size of its patches.
 struct PlanarFrame {
   Patches patches;
   Pose world_from_camera;
@@ -39,9 +39,9 @@ int patch_size_px(const CameraModel& camera) {
 /// Fits a plane to a square of pixels: in inverse depth, it is linear in the tangents of the rays.
 Patch fit_patch(const RangeImage& image, const PixelRays& rays, Eigen::Index row, Eigen::Index col,
                 int size_px) {
-  constexpr double least_share = 0.75;       // of the pixels must be valid
-  constexpr double least_cosine = 0.35;      // of the angle of incidence: 70 degrees
-  constexpr double least_scatter_m = 0.02;   // that of a surface with some relief
+  constexpr double least_share = 0.75;      // of the pixels must be valid
+  constexpr double least_cosine = 0.35;     // of the angle of incidence: 70 degrees
+  constexpr double least_scatter_m = 0.02;  // that of a surface with some relief
   constexpr double times_noise = 2;
   Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right_side = Eigen::Vector3d::Zero();

@@ -128,7 +128,7 @@ void SurfaceMap::serialize(Archive& archive, unsigned) {
 
 template <class Archive>
 void RoomMapper::RegisteredFrame::serialize(Archive& archive, unsigned) {
-  archive& timestamp_s& keyframe& keyframe_from_camera& index;
+  archive& timestamp_s& keyframe& keyframe_from_camera& index& sigma_m;
 }
 
 template <class Archive>

@@ -37,8 +37,9 @@ void RoomMapper::close_loops() {
                 loop_options_, registration_);
   if (candidate.edge) {
     const Pose& found = candidate.registration.world_from_camera;
-    add_loop(*candidate.edge,
-             (found.translation() - keyframe.world_from_camera.translation()).norm());
+    const double error_m = (found.translation() - keyframe.world_from_camera.translation()).norm();
+    add_loop(*candidate.edge, error_m);
+    if (error_m > KeyframeGraph::well_connected_sigma_m) loop_awaits_others_ = true;
   }
   if (unfitted_loops_ > 0 &&
       (loop_awaits_others_ || keyframe.id - last_fit_ >= keyframes_between_fits)) {

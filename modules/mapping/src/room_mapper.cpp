@@ -6,6 +6,7 @@
 #include "tofmap/mapping/free_space.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -26,6 +27,9 @@ constexpr int frames_until_given_up = 15;
 /// taken at twice the distance there.
 constexpr int recent_keyframes = 15;
 constexpr double steps_on_earlier_visits = 2;
+
+/// Share of the distance at which keyframes are taken while a loop awaits others.
+constexpr double share_for_loops = 0.5;
 
 /// Keyframes within this many keyframe spacings of an anchor share its submap, since their relative
 /// poses hardly change any more.
@@ -103,7 +107,7 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
   }
   frames_.push_back({frame.timestamp_s, current_,
                      keyframes_[current_].world_from_camera.inverse() * result.world_from_camera,
-                     frame.index});
+                     frame.index, result.spread.translation_sigma_m()});
   result.target_covariances.clear();
   result.registration.target_information.clear();
   return result;
@@ -168,13 +172,11 @@ Trajectory RoomMapper::keyframe_trajectory(int map) const {
 }
 
 PoseCertainty RoomMapper::least_certain(int map) const {
-  std::vector<const Keyframe*> keyframes;
   std::vector<Pose> poses;
   std::vector<int> index_of(static_cast<std::size_t>(keyframes_.size()), -1);
   for (const Keyframe& keyframe : keyframes_.all()) {
     if (keyframe.map != map) continue;
     index_of[static_cast<std::size_t>(keyframe.id)] = static_cast<int>(poses.size());
-    keyframes.push_back(&keyframe);
     poses.push_back(keyframe.world_from_camera);
   }
   std::vector<PoseEdge> edges;
@@ -187,8 +189,15 @@ PoseCertainty RoomMapper::least_certain(int map) const {
     edges.back().to = index_of[static_cast<std::size_t>(edge.to)];
   }
   const std::vector<ExpectedError> errors = expected_errors(poses, edges);
-  const auto least = std::ranges::max_element(errors, {}, &ExpectedError::position_m);
-  return {keyframes[static_cast<std::size_t>(least - errors.begin())]->frame_index, *least};
+  PoseCertainty least{.frame = -1, .error = {}};
+  for (const RegisteredFrame& frame : frames_) {
+    if (keyframes_[frame.keyframe].map != map) continue;
+    const int index = index_of[static_cast<std::size_t>(frame.keyframe)];
+    ExpectedError error = errors[static_cast<std::size_t>(index)];
+    error.position_m = std::hypot(error.position_m, frame.sigma_m);
+    if (least.frame < 0 || error.position_m > least.error.position_m) least = {frame.index, error};
+  }
+  return least;
 }
 
 std::size_t RoomMapper::voxel_count() const {
@@ -214,13 +223,17 @@ MapCloud RoomMapper::surface(int map) const {
 bool RoomMapper::wants_keyframe(const TrackingResult& result,
                                 std::span<const Keyframe* const> around) const {
   const Pose& pose = result.world_from_camera;
-  if (result.spread.translation_sigma_m() > odometry_options_.keyframe_translation_m / 2) {
+  // Between keyframes that see more, the path is corrected only at keyframes.
+  constexpr double most_share = 0.2;
+  if (result.spread.translation_sigma_m() > most_share * odometry_options_.keyframe_translation_m) {
     return true;
   }
+  // Loops of keyframes that follow soon show whether the path, or the loop, is wrong.
+  const double share = loop_awaits_others_ ? share_for_loops : 1;
   return std::ranges::none_of(own(around), [&](const Keyframe* keyframe) {
     const bool is_of_earlier_visit = keyframe->id + recent_keyframes < keyframes_.size();
     return keyframe_spacing().between(keyframe->world_from_camera, pose) <
-           (is_of_earlier_visit ? steps_on_earlier_visits : 1);
+           share * (is_of_earlier_visit ? steps_on_earlier_visits : 1);
   });
 }
 

@@ -37,7 +37,9 @@ Matrix6d information_of(const PoseEdge& edge, const Eigen::Matrix3d& world_from_
 void add_block(const Matrix6d& block, int row, int col,
                std::vector<Eigen::Triplet<double>>& entries) {
   for (int i = 0; i < dofs; ++i) {
-    for (int k = 0; k < dofs; ++k) entries.emplace_back(dofs * row + i, dofs * col + k, block(i, k));
+    for (int k = 0; k < dofs; ++k) {
+      entries.emplace_back(dofs * row + i, dofs * col + k, block(i, k));
+    }
   }
 }
 
@@ -65,8 +67,8 @@ Sparse information_of(std::span<const Pose> poses, std::span<const PoseEdge> edg
   return matrix;
 }
 
-/// Takes the part out of the errors of a path that is a rigid motion: the one that fits the errors of
-/// the positions best.
+/// Takes the part out of the errors of a path that is a rigid motion: the one that fits the errors
+/// of the positions best.
 class Alignment {
  public:
   explicit Alignment(std::span<const Pose> poses) {

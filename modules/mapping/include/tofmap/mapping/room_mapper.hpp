@@ -29,9 +29,9 @@ struct Loop {
   bool is_used = false;  ///< whether the last fit accepted it; false before the first fit
 };
 
-/// How certain the pose of a keyframe is.
+/// How certain the pose of a frame is.
 struct PoseCertainty {
-  int frame = 0;        ///< index of the frame of the keyframe
+  int frame = 0;        ///< index of the frame
   ExpectedError error;  ///< after the best rigid alignment of all keyframes of the map
 };
 
@@ -116,8 +116,9 @@ class RoomMapper {
   int joins() const { return static_cast<int>(joins_.size()); }
   /// Number of joins that were taken back.
   int joins_taken_back() const { return joins_taken_back_; }
-  /// The keyframe of a map whose position is least certain, by the covariances of the edges of
-  /// odometry and of the loops that are used (expected_errors()). The map must have a keyframe.
+  /// The frame of a map whose position is least certain: that of its keyframe is as certain as the
+  /// covariances of the edges of odometry and of the loops that are used say (expected_errors()),
+  /// and that relative to the keyframe as when it was registered. The map must have a frame.
   PoseCertainty least_certain(int map) const;
   /// The surface of a map: all of its submaps in its world frame, without free-space violations if
   /// the options say so.
@@ -148,6 +149,8 @@ class RoomMapper {
     int keyframe = 0;  ///< id of the keyframe that the frame belongs to
     Pose keyframe_from_camera = Pose::Identity();
     int index = 0;  ///< NewFrame::index
+    /// Standard deviation of the position relative to the keyframes that it was registered with.
+    double sigma_m = 0;
 
     template <class Archive>
     void serialize(Archive& archive, unsigned version);
@@ -221,7 +224,7 @@ class RoomMapper {
   std::vector<PoseEdge> edges_;
   std::vector<Loop> loops_;  ///< in the order of their edges
   int unfitted_loops_ = 0;
-  bool loop_awaits_others_ = false;  ///< whether the last fit left out a recent loop
+  bool loop_awaits_others_ = false;  ///< whether a recent loop would move the path, but is alone
   int last_fit_ = 0;                 ///< id of the newest keyframe in the last fit
   int current_ = 0;                  ///< id of the keyframe that the latest frame belongs to
   int map_ = 0;                      ///< the map that frames are added to

@@ -15,9 +15,10 @@ struct ExpectedError {
   double position_m = 0;    ///< root mean square distance
 };
 
-/// The errors that are to be expected of the poses of a graph, by the covariances of its edges, when
-/// the path is aligned with the truth as a whole: by the rigid motion that fits the positions best.
-/// Errors add up along the path, and rotations move all that comes after them; loops reduce both.
+/// The errors that are to be expected of the poses of a graph, by the covariances of its edges,
+/// when the path is aligned with the truth as a whole: by the rigid motion that fits the positions
+/// best. Errors add up along the path, and rotations move all that comes after them; loops reduce
+/// both.
 ///
 /// The poses are those at which the graph was optimised, and all edges count, so that edges which
 /// are not relied on must be left out. Poses that no edges connect may be anywhere within a hundred
