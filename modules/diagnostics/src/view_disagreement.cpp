@@ -23,8 +23,7 @@ struct Patch {
 /// The patches of an image, by row and column.
 using Patches = Eigen::Array<Patch, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// A frame as planes. Distances between planes and points of another frame are stored in an image
-/// of the size of its patches.
+/// A frame as planes.
 struct PlanarFrame {
   Patches patches;
   Pose world_from_camera;

@@ -218,10 +218,7 @@ PoseEdge edge_of(const Keyframe& from, int to, const Pose& world_from_camera,
   edge.from_from_to = from.world_from_camera.inverse() * world_from_camera;
   // The covariance of a registration is along the world's axes, that of an edge along those of
   // `from`.
-  Eigen::Matrix<double, 6, 6> rotation = Eigen::Matrix<double, 6, 6>::Zero();
-  rotation.topLeftCorner<3, 3>() = from.world_from_camera.linear().transpose();
-  rotation.bottomRightCorner<3, 3>() = rotation.topLeftCorner<3, 3>();
-  edge.covariance = rotation * covariance * rotation.transpose();
+  edge.covariance = rotated(covariance, from.world_from_camera.linear().transpose());
   widen(edge, shared_sigma_rad, shared_sigma_m);
   return edge;
 }

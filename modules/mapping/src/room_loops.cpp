@@ -35,19 +35,20 @@ void RoomMapper::close_loops() {
   const LoopCandidate candidate =
       find_loop(keyframe, keyframes_.all(), keyframes_.spreads_from(keyframe.id), camera_,
                 loop_options_, registration_);
-  if (candidate.edge) {
-    const Pose& found = candidate.registration.world_from_camera;
-    const double error_m = (found.translation() - keyframe.world_from_camera.translation()).norm();
-    add_loop(*candidate.edge, error_m);
-    if (error_m > KeyframeGraph::well_connected_sigma_m) loop_awaits_others_ = true;
-  }
+  if (candidate.edge) add_loop(*candidate.edge);
   if (unfitted_loops_ > 0 &&
       (loop_awaits_others_ || keyframe.id - last_fit_ >= keyframes_between_fits)) {
     fit();
   }
 }
 
-void RoomMapper::add_loop(const PoseEdge& edge, double error_m) {
+/// Adds a loop to those that the next fit decides on. One that would move the path waits for
+/// others.
+void RoomMapper::add_loop(const PoseEdge& edge) {
+  const Pose found = keyframes_[edge.from].world_from_camera * edge.from_from_to;
+  const Pose& believed = keyframes_[edge.to].world_from_camera;
+  const double error_m = (found.translation() - believed.translation()).norm();
+  if (error_m > KeyframeGraph::well_connected_sigma_m) loop_awaits_others_ = true;
   edges_.push_back(edge);
   loops_.push_back({.from_frame = keyframes_[edge.from].frame_index,
                     .to_frame = keyframes_[edge.to].frame_index,

@@ -28,11 +28,8 @@ constexpr double longest_blink_s = 2;
 
 /// Moves what a frame was registered with to another place of the world, and the frame with it.
 void move(TrackingResult& result, const Pose& new_from_old_world) {
-  Eigen::Matrix<double, 6, 6> rotation = Eigen::Matrix<double, 6, 6>::Zero();
-  rotation.topLeftCorner<3, 3>() = new_from_old_world.linear();
-  rotation.bottomRightCorner<3, 3>() = new_from_old_world.linear();
   const auto rotate = [&](Eigen::Matrix<double, 6, 6>& along_the_axes_of_the_world) {
-    along_the_axes_of_the_world = rotation * along_the_axes_of_the_world * rotation.transpose();
+    along_the_axes_of_the_world = rotated(along_the_axes_of_the_world, new_from_old_world.linear());
   };
   result.world_from_camera = new_from_old_world * result.world_from_camera;
   result.registration.world_from_camera =
@@ -158,11 +155,7 @@ void RoomMapper::join_maps(std::span<const Stretch> travelled) {
   keyframes_.join(join->map, join->into, join->into_from_map);
   odometry_.move(join->into_from_map);
   map_ = join->into;
-  for (const PoseEdge& edge : join->edges) {
-    const Pose found = keyframes_[edge.from].world_from_camera * edge.from_from_to;
-    const Pose& believed = keyframes_[edge.to].world_from_camera;
-    add_loop(edge, (found.translation() - believed.translation()).norm());
-  }
+  for (const PoseEdge& edge : join->edges) add_loop(edge);
   std::erase_if(recognitions_, [&](const PoseEdge& edge) {
     return keyframes_[edge.from].map == keyframes_[edge.to].map;
   });

@@ -26,14 +26,6 @@ Eigen::Matrix3d cross_product_matrix(const Eigen::Vector3d& vector) {
   return matrix;
 }
 
-/// The information of an edge along the world's axes.
-Matrix6d information_of(const PoseEdge& edge, const Eigen::Matrix3d& world_from_from) {
-  Matrix6d axes = Matrix6d::Zero();
-  axes.topLeftCorner<3, 3>() = world_from_from;
-  axes.bottomRightCorner<3, 3>() = world_from_from;
-  return axes * edge.covariance.inverse() * axes.transpose();
-}
-
 void add_block(const Matrix6d& block, int row, int col,
                std::vector<Eigen::Triplet<double>>& entries) {
   for (int i = 0; i < dofs; ++i) {
@@ -56,7 +48,7 @@ Sparse information_of(std::span<const Pose> poses, std::span<const PoseEdge> edg
     // An error of `from` moves `to` with it, and its rotation swings `to` around it.
     Matrix6d by_from = -Matrix6d::Identity();
     by_from.bottomLeftCorner<3, 3>() = cross_product_matrix(to.translation() - from.translation());
-    const Matrix6d information = information_of(edge, from.linear());
+    const Matrix6d information = rotated(edge.covariance.inverse(), from.linear());
     add_block(by_from.transpose() * information * by_from, edge.from, edge.from, entries);
     add_block(by_from.transpose() * information, edge.from, edge.to, entries);
     add_block(information * by_from, edge.to, edge.from, entries);

@@ -146,6 +146,14 @@ void widen(PoseEdge& edge, double rotation_sigma_rad, double translation_sigma_m
   edge.covariance.diagonal().tail<3>().array() += translation_sigma_m * translation_sigma_m;
 }
 
+Eigen::Matrix<double, 6, 6> rotated(const Eigen::Matrix<double, 6, 6>& matrix,
+                                    const Eigen::Matrix3d& new_from_old) {
+  Matrix6d rotation = Matrix6d::Zero();
+  rotation.topLeftCorner<3, 3>() = new_from_old;
+  rotation.bottomRightCorner<3, 3>() = new_from_old;
+  return rotation * matrix * rotation.transpose();
+}
+
 PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const PoseEdge> edges,
                                     double kernel_width) {
   check_edges(edges, poses.size());

@@ -198,7 +198,7 @@ class RoomMapper {
   bool is_own(const Keyframe& keyframe) const { return keyframe.taken_in == newest_map(); }
   std::vector<const Keyframe*> own(std::span<const Keyframe* const> keyframes) const;
   const Keyframe* keyframe_near(const Pose& pose, int map) const;
-  void add_loop(const PoseEdge& edge, double error_m);
+  void add_loop(const PoseEdge& edge);
   KeyframeSpacing keyframe_spacing() const;
   Pose pose_of(const RegisteredFrame& frame) const;
   std::vector<const Keyframe*> keyframes_around() const;

@@ -27,6 +27,11 @@ struct PoseEdge {
 /// covariance of an edge.
 void widen(PoseEdge& edge, double rotation_sigma_rad, double translation_sigma_m);
 
+/// A covariance or information of a twist, along other axes. `new_from_old` rotates vectors along
+/// the axes of `matrix` into the new ones.
+Eigen::Matrix<double, 6, 6> rotated(const Eigen::Matrix<double, 6, 6>& matrix,
+                                    const Eigen::Matrix3d& new_from_old);
+
 /// Throws UsageError if an edge refers to a pose that does not exist, or connects a pose with
 /// itself. `poses` is their number.
 void check_edges(std::span<const PoseEdge> edges, std::size_t poses);
