@@ -88,11 +88,8 @@ PoseEdge chained(const PoseEdge& first, const PoseEdge& second) {
   Matrix6d of_first = Matrix6d::Identity();
   of_first.bottomLeftCorner<3, 3>() << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(),
       -arm.x(), 0;
-  Matrix6d of_second = Matrix6d::Zero();
-  of_second.topLeftCorner<3, 3>() = rotation;
-  of_second.bottomRightCorner<3, 3>() = rotation;
-  edge.covariance = of_first * first.covariance * of_first.transpose() +
-                    of_second * second.covariance * of_second.transpose();
+  edge.covariance =
+      of_first * first.covariance * of_first.transpose() + rotated(second.covariance, rotation);
   return edge;
 }
 

@@ -20,7 +20,7 @@ are used again. Needs Debian's python3-numpy, python3-scipy, python3-opencv and 
 import argparse
 import json
 import pathlib
-import subprocess
+import sys
 
 import cv2
 import numpy
@@ -46,17 +46,11 @@ OFF_SURFACE_M = 0.05
 NEAR_MOVING_M = 0.1
 
 
-def run(*command):
-    """Whether a command succeeds."""
-    return subprocess.run([str(word) for word in command], check=False, stdout=subprocess.DEVNULL,
-                          stderr=subprocess.DEVNULL).returncode == 0
-
-
 def record(tofmap, scene, case, seed, frames, folder):
     if (folder / "sequence.yaml").exists():
         return
-    run(tofmap, "simulate", scene, "--out", folder, "--seed", seed, "--frames", frames,
-        *(word for option in CASES[case] for word in ("--set", "simulator." + option)))
+    recording.run(tofmap, "simulate", scene, "--out", folder, "--seed", seed, "--frames", frames,
+                  *(word for option in CASES[case] for word in ("--set", "simulator." + option)))
 
 
 def moving_pixels(sequence):
@@ -132,7 +126,10 @@ def measure(arguments, scene, case, seed):
     row = [scene, case, str(seed), f"{100 * shares.mean():.1f}", f"{100 * shares.max():.1f}"]
     if not (folder / "report.html").exists():
         settings = [word for option in arguments.map for word in ("--set", option)]
-        run(tofmap, "map", sequence, "--out", folder, *settings)
+        try:
+            recording.run(tofmap, "map", sequence, "--out", folder, *settings)
+        except RuntimeError as error:  # the row says that there is no map
+            print(error, file=sys.stderr)
     has_map = (folder / "map.ply").exists()
     row += score(sequence, folder, swept) if has_map else ["no map"] + 7 * ["-"]
     print("| " + " | ".join(row) + " |", flush=True)

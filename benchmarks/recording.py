@@ -1,8 +1,18 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Functions of the benchmarks that read recordings and score trajectories."""
+"""Functions of the benchmarks that make and read recordings and score trajectories."""
+import subprocess
+
 import numpy
 import yaml
+
+
+def run(*command):
+    """Runs a command. Raises an error with its messages if it fails."""
+    done = subprocess.run([str(word) for word in command], check=False, capture_output=True,
+                          text=True)
+    if done.returncode != 0:
+        raise RuntimeError(f"{' '.join(map(str, command))}: {done.stderr}")
 
 
 def rays(sequence):

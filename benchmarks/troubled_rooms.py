@@ -16,7 +16,7 @@ import itertools
 import pathlib
 import shutil
 
-from places.recordings import run
+from recording import run
 
 TROUBLES = {
     "nothing": [],

@@ -18,8 +18,8 @@ import argparse
 import concurrent.futures
 import pathlib
 
-from places.recordings import run
 from places.score import NOTICED_M, score
+from recording import run
 
 HEADER = ("| recording | frames in each map | ATE, mm | error of 99 % / all, mm | verdict | |\n"
           "|---|---|---|---|---|---|")

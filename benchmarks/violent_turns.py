@@ -13,7 +13,6 @@ Debian's python3-numpy and python3-scipy.
 """
 import argparse
 import pathlib
-import subprocess
 
 import numpy
 from scipy.spatial.transform import Rotation, Slerp
@@ -25,15 +24,10 @@ FRAME_RATE_HZ = 15
 STEPS = numpy.array([1, 3 / 4, 1 / 2, 1 / 3])
 
 
-def run(*command):
-    subprocess.run([str(word) for word in command], check=True, stdout=subprocess.DEVNULL,
-                   stderr=subprocess.DEVNULL)
-
-
 def scene_path(tofmap, scene, folder):
     """Positions and rotations of the camera along the path of a scene, in 10 000 small steps."""
     if not (folder / "groundtruth.txt").exists():
-        run(tofmap, "simulate", scene, "--out", folder, "--set", "simulator.frames=10000",
+        recording.run(tofmap, "simulate", scene, "--out", folder, "--set", "simulator.frames=10000",
             "simulator.width_px=8", "simulator.height_px=8", "simulator.subpixels=1")
     rows = numpy.loadtxt(folder / "groundtruth.txt")
     return rows[:, 1:4], Rotation.from_quat(rows[:, 4:8])
@@ -77,9 +71,9 @@ def measure(tofmap, out, scene, seed, largest_turn_deg):
     along = numpy.column_stack([numpy.interp(at, steps, axis) for axis in positions.T])
     write_trajectory(out / f"{name}.txt", along, turned)
     if not (out / name / "sequence.yaml").exists():
-        run(tofmap, "simulate", scene, "--out", out / name, "--set",
+        recording.run(tofmap, "simulate", scene, "--out", out / name, "--set",
             f"simulator.trajectory_file={out / name}.txt")
-    run(tofmap, "map", out / name, "--out", out / f"{name}_map")
+    recording.run(tofmap, "map", out / name, "--out", out / f"{name}_map")
     found = numpy.loadtxt(out / f"{name}_map" / "trajectory.txt")
     errors_m = position_errors_m(numpy.loadtxt(out / name / "groundtruth.txt"), found)
     turns_deg = numpy.degrees((turned[:-1].inv() * turned[1:]).magnitude())

@@ -2,24 +2,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Recordings of walks through buildings whose places look alike, by `tofmap simulate`."""
 import shutil
-import subprocess
 import zlib
 
 import numpy
 
 from places.kinds import KINDS
 from places.walk import FRAME_RATE_HZ
+from recording import run
 
 CARRIED_S = 4  # time without frames while the camera is carried
 LEAST_CLEARANCE_M = 0.3
-
-
-def run(*command):
-    """Runs a command. Raises an error with its messages if it fails."""
-    done = subprocess.run([str(word) for word in command], check=False, capture_output=True,
-                          text=True)
-    if done.returncode != 0:
-        raise RuntimeError(f"{' '.join(map(str, command))}: {done.stderr}")
 
 
 def building_and_poses(kind, seed):

@@ -100,26 +100,26 @@ TEST(Verdict, SaysToCheckAMapThatWasFoundAgainByItsLookAlone) {
   evidence.joins = 1;
   evidence.blind_joins = 1;
   EXPECT_EQ(reason_to_check(evidence),
-            "1 time, the camera was not tracked for more than two seconds and was found again only "
-            "by the look of the place, and another place may look the same");
+            "after more than two seconds without tracking, the camera was found again only by the "
+            "look of the place (1 time), and another place may look the same");
 }
 
 TEST(Verdict, MentionsJoinsThatDoNotMakeItWorse) {
   MapEvidence evidence = good_evidence();
   evidence.joins = 2;
   EXPECT_EQ(verdict_on(evidence), Verdict::good);
-  EXPECT_EQ(
-      told_reasons(judge(evidence)),
-      " Also: tracking was lost 2 times, and the camera was found again at recognised places.");
+  EXPECT_EQ(told_reasons(judge(evidence)),
+            " Also: maps that began when tracking was lost were joined at recognised places "
+            "(2 times).");
 }
 
 TEST(Verdict, MentionsJoinsThatWereTakenBack) {
   MapEvidence evidence = good_evidence();
   evidence.joins_taken_back = 1;
   EXPECT_EQ(verdict_on(evidence), Verdict::good);
-  EXPECT_EQ(
-      told_reasons(judge(evidence)),
-      " Also: 1 time, a place looked like one seen before, but turned out to be another one.");
+  EXPECT_EQ(told_reasons(judge(evidence)),
+            " Also: 1 place looked like one seen before but proved to be another; the maps were "
+            "separated again.");
 }
 
 TEST(Verdict, IsTheWorstOfAllThatIsKnown) {

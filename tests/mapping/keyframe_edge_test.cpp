@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tofmap/mapping/loop_closure.hpp>
+#include <tofmap/mapping/keyframe_edge.hpp>
 
 namespace tofmap {
 namespace {

@@ -44,7 +44,7 @@ TEST(KeyframeGraph, ReachesNoFurtherThanATrustedChain) {
   EXPECT_EQ(ids(graph.around(20, at(0), 5, {1, 1})), (std::vector<int>{16, 17, 18, 19, 20}));
 }
 
-TEST(KeyframeGraph, TakesTheNearestOnceTheyAreTied) {
+TEST(KeyframeGraph, TakesTheNearestOnceTheyAreConnected) {
   KeyframeGraph graph = there_and_back();
   graph.connect(0, 20, small_spread);
   EXPECT_EQ(ids(graph.around(20, at(0), 5, {1, 1})), (std::vector<int>{0, 1, 18, 19, 20}));
@@ -59,13 +59,19 @@ KeyframeGraph past_a_bare_wall() {
   return graph;
 }
 
+std::vector<int> well_connected(const KeyframeGraph& graph, int id) {
+  std::vector<int> ids;
+  for (const auto& [other, spread] : graph.well_connected_to(id)) ids.push_back(other);
+  return ids;
+}
+
 TEST(KeyframeGraph, DoesNotConnectWellKeyframesWhoseRelativePoseIsUncertain) {
   KeyframeGraph graph = past_a_bare_wall();
-  EXPECT_TRUE(graph.well_connected_to(1).empty());
+  EXPECT_EQ(well_connected(graph, 1), std::vector{1});
   EXPECT_EQ(ids(graph.around(1, at(0), 5, {1, 1})), (std::vector<int>{1}));
   // Registered again, with more in view.
   graph.connect(2, 1, spread(0.01));
-  EXPECT_EQ(graph.well_connected_to(1), (std::vector<int>{2}));
+  EXPECT_EQ(well_connected(graph, 1), (std::vector{1, 2}));
 }
 
 TEST(KeyframeGraph, AddsUpTheUncertaintyOfRegistrations) {
@@ -74,6 +80,7 @@ TEST(KeyframeGraph, AddsUpTheUncertaintyOfRegistrations) {
   // Two registrations of 2 mm and one of 1 mm lead to number 4.
   const auto spreads = graph.spreads_from(1);
   EXPECT_NEAR(spreads[4]->translation_sigma_m(), 0.003, 1e-9);
+  EXPECT_NEAR(graph.well_connected_to(1).at(4).translation_sigma_m(), 0.003, 1e-9);
   EXPECT_NEAR(spreads[4]->rotation_sigma_rad(), 0.0003, 1e-9);
   EXPECT_EQ(spreads[1]->translation_m2, 0);
 }
@@ -95,16 +102,28 @@ TEST(KeyframeGraph, ReconnectsKeyframesThatALoopHasConnected) {
     graph.add({id, id, 0.1 * id, at(id), nullptr});
     if (id > 0) graph.connect(id - 1, id, id == 4 ? spread(0.3) : small_spread);
   }
-  const auto is_well_connected = [&] {
-    const std::vector<int> connected = graph.well_connected_to(3);
-    return std::ranges::find(connected, 4) != connected.end();
-  };
+  const auto is_well_connected = [&] { return graph.well_connected_to(3).contains(4); };
   graph.reconnect();
   EXPECT_FALSE(is_well_connected());
   graph.connect(0, 7, small_spread);
   EXPECT_FALSE(is_well_connected()) << "seven registrations lead there";
   graph.reconnect();
   EXPECT_TRUE(is_well_connected());
+}
+
+TEST(KeyframeGraph, ForgetsWhatLoopsHaveConnected) {
+  KeyframeGraph graph = past_a_bare_wall();
+  graph.connect_by_loop(0, 2, spread(0.01));
+  graph.connect_by_loop(1, 2, spread(0.001));
+  graph.reconnect();
+  EXPECT_EQ(well_connected(graph, 0), (std::vector{0, 1, 2}));
+  graph.forget_loops();
+  EXPECT_NEAR(graph.spreads_from(0)[2]->translation_sigma_m(), std::hypot(0.3, 0.04), 1e-9);
+  EXPECT_EQ(well_connected(graph, 0), std::vector{0});
+  // What is registered stays.
+  graph.connect(0, 2, spread(0.02));
+  graph.forget_loops();
+  EXPECT_EQ(well_connected(graph, 0), (std::vector{0, 2}));
 }
 
 TEST(KeyframeGraph, MeasuresRotationsAsWell) {
@@ -146,11 +165,11 @@ TEST(KeyframeGraph, SeparatesMapsThatWereJoined) {
     if (id > 0) graph.connect(id - 1, id, small_spread);
   }
   graph.assign_maps(std::vector{0, 1});
-  const std::vector<int> partner{1, 0, 3, 2};
   for (int id = 0; id < 4; ++id) {
     EXPECT_EQ(graph[id].map, id / 2);
     EXPECT_TRUE(graph[id].world_from_camera.isApprox(at(id))) << id;
-    EXPECT_EQ(graph.well_connected_to(id), std::vector{partner[static_cast<std::size_t>(id)]});
+    const int first_of_map = 2 * (id / 2);
+    EXPECT_EQ(well_connected(graph, id), (std::vector{first_of_map, first_of_map + 1}));
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <tofmap/mapping/loop_closure.hpp>
 #include <tofmap/mapping/room_mapper.hpp>
 
 namespace tofmap {
@@ -82,7 +83,6 @@ TEST_F(FindLoop, DoesNotPassOverKeyframesJustNowIfThePathSinceIsUncertain) {
 
 TEST_F(FindLoop, LooksAsFarAsThePathIsUncertain) {
   options_.radius_m = 0.1;
-  EXPECT_EQ(find().from, -1);
   spreads_[0] = PoseSpread{0.001, 0.01};
   EXPECT_TRUE(find().edge);
 }

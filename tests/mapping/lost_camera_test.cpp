@@ -83,6 +83,14 @@ TEST_F(LostCamera, BeginsAMapThatIsJoinedWhereItRecognisesTheFirstOne) {
   }
 }
 
+TEST_F(LostCamera, IsFoundByTheLookOfThePlaceAloneAfterThreeSeconds) {
+  added_ += 45;
+  for (int i = 0; i < 40; ++i) add(room_.view(first + 6 + i));
+  mapper_.finish();
+  EXPECT_EQ(mapper_.joins(), 1);
+  EXPECT_EQ(mapper_.blind_joins(), 1);
+}
+
 TEST_F(LostCamera, IsTakenOutOfAMapThatLaterFramesDifferFrom) {
   // A room of the same plan, in which a box stands that only the later frames see.
   bool was_joined = false;
@@ -107,6 +115,7 @@ TEST_F(LostCamera, IsTakenOutOfAMapThatLaterFramesDifferFrom) {
   for (const PoseEdge& edge : mapper_.edges()) {
     EXPECT_EQ(mapper_.keyframes()[edge.from].map, mapper_.keyframes()[edge.to].map);
   }
+  EXPECT_LT(mapper_.least_certain(1).error.position_m, 0.02) << "all its keyframes are connected";
 }
 
 TEST_F(LostCamera, KeepsAnEarlierJoinWhenALaterOneIsTakenBack) {

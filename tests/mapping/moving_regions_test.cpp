@@ -72,9 +72,10 @@ Left left_in(const SurfaceCloud& cloud, const View& view) {
 }
 
 Motion motion_between(const View& before, const View& now,
-                      const Pose& world_from_camera = Pose::Identity()) {
+                      const Pose& world_from_camera = Pose::Identity(),
+                      const PoseSpread& spread = {}) {
   const Keyframe keyframe = keyframe_of(before);
-  const std::array<const Keyframe*, 1> keyframes{&keyframe};
+  const std::array<ComparedKeyframe, 1> keyframes{{{&keyframe, spread}}};
   return MovingRegions(test::small_camera()).find(now.cloud, world_from_camera, keyframes);
 }
 
@@ -151,7 +152,7 @@ TEST(MovingRegions, ArePresumedToMoveOnForASecond) {
   EXPECT_LT(left_in(*regions.without_known(next.cloud, Pose::Identity()), next).of_person, 0.1);
   // From then on the person stands, and the keyframes that are left know no other room.
   const Keyframe keyframe = keyframe_of(next);
-  const std::array<const Keyframe*, 1> keyframes{&keyframe};
+  const std::array<ComparedKeyframe, 1> keyframes{{{&keyframe, {}}}};
   int frames = 0;
   for (; frames < 100; ++frames) {
     const Motion motion = regions.find(next.cloud, Pose::Identity(), keyframes);
@@ -169,13 +170,26 @@ TEST(MovingRegions, DoNotExplainAWrongPose) {
   EXPECT_TRUE(motion.contradicts_pose);
 }
 
+TEST(MovingRegions, AreNoWallsThatAnUncertainPoseDisplaces) {
+  // Off by 10 cm to the side: the walls at the sides seem to have moved, all others agree.
+  const View view = view_of({}, Pose::Identity());
+  const Pose displaced = test::moved_by({0, 0, 0}, {0.1, 0, 0});
+  const auto motion_with = [&](const PoseSpread& spread) {
+    return motion_between(view, view, displaced, spread);
+  };
+  EXPECT_FALSE(motion_with({}).is_empty());
+  EXPECT_FALSE(motion_with({.rotation_rad2 = 1e-6, .translation_m2 = 1e-6}).is_empty());
+  EXPECT_TRUE(motion_with({.rotation_rad2 = 0, .translation_m2 = 0.04 * 0.04}).is_empty());
+  EXPECT_TRUE(motion_with({.rotation_rad2 = 0.02 * 0.02, .translation_m2 = 0}).is_empty());
+}
+
 TEST(MovingRegions, MayCoverMostOfTheViewIfTheyAreKnown) {
   // People side by side, who come nearer until they cover three quarters of the image.
   const auto people_at = [](double z) {
     return Person(Vector3d(-0.6, -1.1, z - 0.15), Vector3d(0.6, room_max.y(), z + 0.15));
   };
   const Keyframe keyframe = keyframe_of(view_of({}, Pose::Identity()));
-  const std::array<const Keyframe*, 1> keyframes{&keyframe};
+  const std::array<ComparedKeyframe, 1> keyframes{{{&keyframe, {}}}};
   constexpr double nearest_m = 1.3;
   MovingRegions regions(test::small_camera());
   for (double z = 2.2; z > nearest_m; z -= 0.15) {

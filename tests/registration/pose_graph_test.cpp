@@ -107,6 +107,19 @@ TEST(PoseGraph, DoesNotDependOnWhereTheWorldIs) {
   }
 }
 
+TEST(PoseGraph, HoldsTheFirstPoseOfEachConnectedPart) {
+  // Poses 0, 2 and 4 are connected, and so are 1 and 3.
+  const std::vector<Pose> start{along_x(0), along_x(5), along_x(1), along_x(6), along_x(2)};
+  const std::vector<PoseEdge> edges{edge(0, 2, along_x(1.5)), edge(2, 4, along_x(1.5)),
+                                    edge(1, 3, along_x(2))};
+  const std::vector<Pose> poses = optimise_pose_graph(start, edges, kernel_width).poses;
+  const std::vector<double> expected_m{0, 5, 1.5, 7, 3};
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    EXPECT_NEAR(poses[i].translation().x(), expected_m[i], 1e-6) << i;
+  }
+  EXPECT_EQ(poses[1].translation().x(), 5);
+}
+
 TEST(PoseGraph, OfNothingIsNothing) {
   EXPECT_TRUE(optimise_pose_graph({}, {}, kernel_width).poses.empty());
   EXPECT_EQ(optimise_pose_graph({along_x(2)}, {}, kernel_width).poses.size(), 1U);

@@ -29,8 +29,8 @@ constexpr std::size_t least_points = 30;
 constexpr double least_share = 1e-3;
 constexpr double most_beyond_share = 5e-4;
 
-/// Least number of points at the limit over the number in the four bands before it. The outermost
-/// band of a real surface holds at most a quarter of those; this is eight times as many.
+/// Least number of points at the limit, in a band of twice `band`, over the number in the two such
+/// bands before it. Of a real surface, the outermost band holds at most half as many as those.
 constexpr double least_times_before = 2;
 
 /// Largest median deviation of the ranges, relative to that of planes in the same directions.
@@ -40,7 +40,7 @@ constexpr double most_of_planes = 0.1;
 /// stands a little before what it sees.
 constexpr double most_outside = 0.1;
 
-/// A sphere, and whether it still holds together.
+/// A sphere.
 struct Sphere {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double radius = 0;

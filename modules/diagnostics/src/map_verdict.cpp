@@ -4,6 +4,7 @@
 #include "tofmap/diagnostics/map_verdict.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -11,76 +12,125 @@
 
 namespace tofmap {
 
-Judgement judge(const MapEvidence& evidence) {
+namespace {
+
+std::string times(int count) { return counted(static_cast<std::size_t>(count), "time"); }
+
+std::string places(int count) { return counted(static_cast<std::size_t>(count), "place"); }
+
+/// Adds reasons and the verdicts that they lead to.
+class Judge {
+ public:
+  explicit Judge(const MapEvidence& evidence) : evidence_(evidence) {}
+
+  void judge_coverage();
+  void judge_accuracy();
+  void judge_certainty();
+  void judge_places();
+  Judgement judgement() && { return std::move(judgement_); }
+  void hold_against(Verdict verdict, std::string reason);
+
+ private:
+  const MapEvidence& evidence_;
+  Judgement judgement_;
+};
+
+void Judge::hold_against(Verdict verdict, std::string reason) {
+  judgement_.verdict = std::max(judgement_.verdict, verdict);
+  judgement_.reasons.push_back(std::move(reason));
+}
+
+/// Whether frames are missing from the map.
+void Judge::judge_coverage() {
   constexpr double half_percent = 50;  // with fewer frames, most of the recording is missing
-  // A wall that is off by 5 cm looks double: that must be two standard deviations away.
-  constexpr double most_sigma_m = 0.025;
-  Judgement judgement;
-  const auto hold_against = [&](Verdict verdict, const std::string& reason) {
-    judgement.verdict = std::max(judgement.verdict, verdict);
-    judgement.reasons.push_back(reason);
-  };
-  if (evidence.is_empty) hold_against(Verdict::bad, "the map is empty");
-  if (!evidence.is_unwrapped) hold_against(Verdict::bad, "nothing was unwrapped");
   const double registered_percent =
-      percent_of_frames(evidence, evidence.registered + evidence.separate);
+      percent_of_frames(evidence_, evidence_.registered + evidence_.separate);
   if (registered_percent < nearly_all_percent) {
     hold_against(
         registered_percent < half_percent ? Verdict::bad : Verdict::check,
         fmt::format("{:.0f} % of the frames could not be registered", 100 - registered_percent));
   }
-  if (evidence.separate_maps > 0) {
-    hold_against(Verdict::check,
-                 fmt::format("tracking was lost, and {} with {} could not be joined with this one",
-                             counted(static_cast<std::size_t>(evidence.separate_maps), "other map"),
-                             counted(static_cast<std::size_t>(evidence.separate), "frame")));
+  if (evidence_.separate_maps > 0) {
+    hold_against(
+        Verdict::check,
+        fmt::format("tracking was lost, and {} with {} could not be joined with this one",
+                    counted(static_cast<std::size_t>(evidence_.separate_maps), "other map"),
+                    counted(static_cast<std::size_t>(evidence_.separate), "frame")));
   }
-  const Verdict of_surface = evidence.accuracy_m
-                                 ? verdict_on_accuracy(*evidence.accuracy_m, evidence.voxel_m)
-                                 : Verdict::good;
-  if (of_surface != Verdict::good) {
-    hold_against(of_surface, "the error of its surface is larger than a voxel");
+}
+
+/// Whether the surface is where the ground truth has it.
+void Judge::judge_accuracy() {
+  if (!evidence_.accuracy_m) return;
+  const Verdict verdict = verdict_on_accuracy(*evidence_.accuracy_m, evidence_.voxel_m);
+  if (verdict != Verdict::good) {
+    hold_against(verdict, "the error of its surface is larger than a voxel");
   }
-  if (evidence.position_sigma_m > most_sigma_m) {
+}
+
+/// Whether the surfaces constrained the path.
+void Judge::judge_certainty() {
+  // A wall that is off by 5 cm looks double: that must be two standard deviations away.
+  constexpr double most_sigma_m = 0.025;
+  if (evidence_.position_sigma_m > most_sigma_m) {
     hold_against(Verdict::check,
                  fmt::format("the position at frame {} is uncertain by {:.2f} m (one standard "
                              "deviation), since surfaces seen on the way there did not constrain "
                              "all directions of motion",
-                             evidence.least_certain_frame, evidence.position_sigma_m));
+                             evidence_.least_certain_frame, evidence_.position_sigma_m));
   }
-  const double slow_percent = percent_of_frames(evidence, evidence.registered_slowly);
+  const double slow_percent = percent_of_frames(evidence_, evidence_.registered_slowly);
   if (slow_percent > most_slow_percent) {
     hold_against(Verdict::check,
                  fmt::format("{:.0f} % of the frames took many iterations to register, since their "
                              "surfaces, or noise, left some directions of motion open",
                              slow_percent));
   }
-  if (evidence.blind_joins > 0) {
+}
+
+/// Whether places were recognised that are others, or may be.
+void Judge::judge_places() {
+  if (evidence_.blind_joins > 0) {
     hold_against(
         Verdict::check,
-        fmt::format("{}, the camera was not tracked for more than two seconds and was found again "
-                    "only by the look of the place, and another place may look the same",
-                    counted(static_cast<std::size_t>(evidence.blind_joins), "time")));
+        fmt::format("after more than two seconds without tracking, the camera was found again only "
+                    "by the look of the place ({}), and another place may look the same",
+                    times(evidence_.blind_joins)));
   }
-  if (evidence.unused_loops > 0) {
+  if (evidence_.unused_loops > 0) {
     hold_against(Verdict::check,
                  "the map contradicts " +
-                     counted(static_cast<std::size_t>(evidence.unused_loops), "recognised place"));
+                     counted(static_cast<std::size_t>(evidence_.unused_loops), "recognised place"));
   }
-  if (evidence.joins > 0) {
-    judgement.remarks.push_back(
-        fmt::format("tracking was lost {}, and the camera was found again at recognised places",
-                    counted(static_cast<std::size_t>(evidence.joins), "time")));
+  if (evidence_.joins > 0) {
+    judgement_.remarks.push_back(
+        fmt::format("maps that began when tracking was lost were joined at recognised places ({})",
+                    times(evidence_.joins)));
   }
-  if (evidence.joins_taken_back > 0) {
-    judgement.remarks.push_back(
-        fmt::format("{}, a place looked like one seen before, but turned out to be another one",
-                    counted(static_cast<std::size_t>(evidence.joins_taken_back), "time")));
+  if (evidence_.joins_taken_back > 0) {
+    judgement_.remarks.push_back(
+        fmt::format("{} looked like one seen before but proved to be another; the maps were "
+                    "separated again",
+                    places(evidence_.joins_taken_back)));
   }
-  if (!evidence.is_seen_twice) hold_against(Verdict::check, "no place was seen by two frames");
-  if (evidence.is_interrupted) hold_against(Verdict::check, "the run was interrupted");
-  if (evidence.is_warned) hold_against(Verdict::check, "there are warnings");
-  return judgement;
+}
+
+}  // namespace
+
+Judgement judge(const MapEvidence& evidence) {
+  Judge judge(evidence);
+  if (evidence.is_empty) judge.hold_against(Verdict::bad, "the map is empty");
+  if (!evidence.is_unwrapped) judge.hold_against(Verdict::bad, "nothing was unwrapped");
+  judge.judge_coverage();
+  judge.judge_accuracy();
+  judge.judge_certainty();
+  judge.judge_places();
+  if (!evidence.is_seen_twice) {
+    judge.hold_against(Verdict::check, "no place was seen by two frames");
+  }
+  if (evidence.is_interrupted) judge.hold_against(Verdict::check, "the run was interrupted");
+  if (evidence.is_warned) judge.hold_against(Verdict::check, "there are warnings");
+  return std::move(judge).judgement();
 }
 
 std::string told_reasons(const Judgement& judgement) {

@@ -4,7 +4,7 @@
 #include "tofmap/mapping/keyframe_graph.hpp"
 
 #include <algorithm>
-#include <map>
+#include <limits>
 #include <queue>
 #include <utility>
 
@@ -29,14 +29,34 @@ void KeyframeGraph::add(Keyframe keyframe) {
 
 void KeyframeGraph::connect(int a, int b, const PoseSpread& spread) {
   for (const auto& [one, other] : {std::pair(a, b), std::pair(b, a)}) {
-    std::vector<Neighbour>& connected = neighbours_[static_cast<std::size_t>(one)];
-    const auto known = std::ranges::find(connected, other, &Neighbour::id);
-    if (known == connected.end()) {
-      connected.push_back({other, spread});
-    } else if (spread.translation_m2 < known->spread.translation_m2) {
-      known->spread = spread;
-    }
+    Neighbour& known = neighbour(one, other);
+    known.spread = smaller(known.spread, spread);
+    known.registered = known.registered ? smaller(*known.registered, spread) : spread;
   }
+}
+
+void KeyframeGraph::connect_by_loop(int a, int b, const PoseSpread& spread) {
+  for (const auto& [one, other] : {std::pair(a, b), std::pair(b, a)}) {
+    Neighbour& known = neighbour(one, other);
+    known.spread = smaller(known.spread, spread);
+  }
+}
+
+void KeyframeGraph::forget_loops() {
+  for (std::vector<Neighbour>& connected : neighbours_) {
+    std::erase_if(connected, [](const Neighbour& neighbour) { return !neighbour.registered; });
+    for (Neighbour& neighbour : connected) neighbour.spread = *neighbour.registered;
+  }
+}
+
+/// The entry of a keyframe among the neighbours of another one. If it is new, its spread is without
+/// limit.
+KeyframeGraph::Neighbour& KeyframeGraph::neighbour(int of, int id) {
+  std::vector<Neighbour>& connected = neighbours_[static_cast<std::size_t>(of)];
+  const auto known = std::ranges::find(connected, id, &Neighbour::id);
+  if (known != connected.end()) return *known;
+  constexpr double without_limit = std::numeric_limits<double>::infinity();
+  return connected.emplace_back(Neighbour{id, {without_limit, without_limit}, std::nullopt});
 }
 
 void KeyframeGraph::set_pose(int id, const Pose& world_from_camera) {
@@ -77,7 +97,10 @@ std::vector<const Keyframe*> KeyframeGraph::around(int id, const Pose& pose, int
   const auto steps_away = [&](int other) {
     return steps.between((*this)[other].world_from_camera, pose);
   };
-  std::vector<int> ids = well_connected_to(id);
+  std::vector<int> ids;
+  for (const auto& [other, spread] : well_connected_to(id)) {
+    if (other != id) ids.push_back(other);
+  }
   // Of keyframes at equal distance, the most recent ones are taken.
   std::ranges::sort(ids, std::ranges::greater());
   std::ranges::stable_sort(ids, std::ranges::less(), steps_away);
@@ -89,46 +112,45 @@ std::vector<const Keyframe*> KeyframeGraph::around(int id, const Pose& pose, int
   return keyframes;
 }
 
-std::vector<int> KeyframeGraph::well_connected_to(int id) const {
-  std::map<int, double> reached_m2{{id, 0.0}};  // the variance along the connections so far
-  std::map<int, double> border_m2 = reached_m2;
+std::map<int, PoseSpread> KeyframeGraph::well_connected_to(int id) const {
+  std::map<int, PoseSpread> reached{{id, {}}};
+  std::map<int, PoseSpread> border = reached;
   for (int hops = 0; hops < max_hops; ++hops) {
-    std::map<int, double> next_m2;
-    for (const auto& [from, variance_m2] : border_m2) {
+    std::map<int, PoseSpread> next;
+    for (const auto& [from, spread] : border) {
       for (const Neighbour& neighbour : neighbours_[static_cast<std::size_t>(from)]) {
-        const double sum_m2 = variance_m2 + neighbour.spread.translation_m2;
-        if (sum_m2 > well_connected_sigma_m * well_connected_sigma_m) continue;
-        const auto [known, is_new] = reached_m2.try_emplace(neighbour.id, sum_m2);
-        if (!is_new && known->second <= sum_m2) continue;
-        known->second = sum_m2;
-        next_m2[neighbour.id] = sum_m2;
+        const PoseSpread sum = spread + neighbour.spread;
+        if (sum.translation_m2 > well_connected_sigma_m * well_connected_sigma_m) continue;
+        const auto [known, is_new] = reached.try_emplace(neighbour.id, sum);
+        if (!is_new && known->second.translation_m2 <= sum.translation_m2) continue;
+        known->second = sum;
+        next[neighbour.id] = sum;
       }
     }
-    border_m2 = std::move(next_m2);
+    border = std::move(next);
   }
-  std::vector<int> found;
-  for (const auto& [other, variance_m2] : reached_m2) {
-    if (other != id) found.push_back(other);
-  }
-  return found;
+  return reached;
 }
 
-std::vector<std::optional<PoseSpread>> KeyframeGraph::spreads_from(int id) const {
+std::vector<std::optional<PoseSpread>> KeyframeGraph::spreads_from(int id,
+                                                                   double most_sigma_m) const {
+  using Reached = std::pair<int, PoseSpread>;  // id and spread
   std::vector<std::optional<PoseSpread>> spreads(keyframes_.size());
-  const auto is_farther = [](const Neighbour& one, const Neighbour& other) {
-    return one.spread.translation_m2 > other.spread.translation_m2;
+  const auto is_farther = [](const Reached& one, const Reached& other) {
+    return one.second.translation_m2 > other.second.translation_m2;
   };
-  std::priority_queue<Neighbour, std::vector<Neighbour>, decltype(is_farther)> open(is_farther);
-  open.push({id, {}});
+  std::priority_queue<Reached, std::vector<Reached>, decltype(is_farther)> open(is_farther);
+  open.emplace(id, PoseSpread{});
   while (!open.empty()) {
-    const Neighbour nearest = open.top();
+    const auto [nearest, spread] = open.top();
     open.pop();
-    std::optional<PoseSpread>& spread = spreads[static_cast<std::size_t>(nearest.id)];
-    if (spread) continue;
-    spread = nearest.spread;
-    for (const Neighbour& next : neighbours_[static_cast<std::size_t>(nearest.id)]) {
+    if (spread.translation_sigma_m() > most_sigma_m) break;
+    std::optional<PoseSpread>& known = spreads[static_cast<std::size_t>(nearest)];
+    if (known) continue;
+    known = spread;
+    for (const Neighbour& next : neighbours_[static_cast<std::size_t>(nearest)]) {
       if (!spreads[static_cast<std::size_t>(next.id)]) {
-        open.push({next.id, nearest.spread + next.spread});
+        open.emplace(next.id, spread + next.spread);
       }
     }
   }
@@ -143,10 +165,10 @@ void KeyframeGraph::reconnect() {
   for (int id = 0; id < size(); ++id) {
     const std::vector<Neighbour> neighbours = neighbours_[static_cast<std::size_t>(id)];
     if (std::ranges::none_of(neighbours, is_loose)) continue;
-    const auto spreads = spreads_from(id);
+    const auto spreads = spreads_from(id, well_connected_sigma_m);
     for (const Neighbour& neighbour : neighbours) {
       const std::optional<PoseSpread>& spread = spreads[static_cast<std::size_t>(neighbour.id)];
-      if (spread && spread->translation_m2 <= well_connected_m2) connect(id, neighbour.id, *spread);
+      if (spread) connect_by_loop(id, neighbour.id, *spread);
     }
   }
 }

@@ -11,11 +11,12 @@
 namespace tofmap {
 
 KeyframeView::KeyframeView(const RegistrationTarget& seen, const CameraModel& camera,
-                           double margin_m)
+                           double margin_m, const PoseSpread& spread)
     : camera_from_world_(seen.world_from_camera.inverse()),
       cloud_(*seen.cloud),
       camera_(camera),
-      margin_m_(margin_m) {
+      margin_m_(margin_m),
+      spread_(spread) {
   for (const SurfacePoint& point : cloud_.points) {
     if (point.has_position()) farthest_m_ = std::max(farthest_m_, point.z);
   }
@@ -36,8 +37,8 @@ Observation KeyframeView::judge(const Eigen::Vector3d& world_m) const {
   const Eigen::Vector3f at_m = point_m.cast<float>();
   const std::optional<float> before = share_before(row, col, at_m);
   if (!before) return Observation::nothing;
-  if (*before <=
-      1) {  // on the surface or occluded; a surface of unknown direction agrees with none
+  // On the surface or occluded. A surface of unknown direction agrees with none.
+  if (*before <= 1) {
     const bool agrees = *before >= -1 && cloud_.at(col, row).has_normal();
     return agrees ? Observation::agrees : Observation::nothing;
   }
@@ -66,20 +67,26 @@ bool KeyframeView::is_free_around(int row, int col, const Eigen::Vector3f& point
 /// has no range, or one whose wrap count is too uncertain to say that the space before it is free.
 std::optional<float> KeyframeView::share_before(int row, int col,
                                                 const Eigen::Vector3f& point_m) const {
-  constexpr float sigmas = 3;
   const SurfacePoint& surface = cloud_.at(col, row);
   if (!surface.has_position()) return std::nullopt;
   const Eigen::Vector3f at_m = surface.getVector3fMap();
   if (!surface.has_normal()) {
-    const float tolerated_m = static_cast<float>(margin_m_) + sigmas * surface.sigma_m;
-    const float share = (at_m.norm() - point_m.norm()) / tolerated_m;
+    const float share = (at_m.norm() - point_m.norm()) / tolerated_m(surface.sigma_m, point_m);
     const bool is_free = moves(surface) || surface.confidence >= sure_confidence;
     return share <= 1 || is_free ? std::optional(share) : std::nullopt;
   }
   const Eigen::Vector3f normal = surface.getNormalVector3fMap();
   const float sigma_m = surface.sigma_m * std::abs(normal.dot(at_m.normalized()));
-  const float tolerated_m = static_cast<float>(margin_m_) + sigmas * sigma_m;
-  return normal.dot(point_m - at_m) / tolerated_m;
+  return normal.dot(point_m - at_m) / tolerated_m(sigma_m, point_m);
+}
+
+/// The largest distance of a point from a surface, with this standard deviation of its range, at
+/// which both may be the same.
+float KeyframeView::tolerated_m(double sigma_m, const Eigen::Vector3f& point_m) const {
+  constexpr double sigmas = 3;
+  const double by_rotation_m = spread_.rotation_sigma_rad() * point_m.norm();
+  const double by_pose_m = std::hypot(spread_.translation_sigma_m(), by_rotation_m);
+  return static_cast<float>(margin_m_ + sigmas * (sigma_m + by_pose_m));
 }
 
 }  // namespace tofmap

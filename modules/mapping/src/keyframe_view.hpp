@@ -5,6 +5,7 @@
 #include <optional>
 
 #include <tofmap/core/camera.hpp>
+#include <tofmap/mapping/pose_spread.hpp>
 #include <tofmap/registration/projective_icp.hpp>
 
 namespace tofmap {
@@ -13,7 +14,7 @@ namespace tofmap {
 /// looks like a thing that has moved by a wavelength.
 constexpr float sure_confidence = 0.9F;
 
-/// What a point in the world is to a keyframe.
+/// How what a keyframe sees relates to a point in the world.
 enum class Observation {
   nothing,       ///< out of view, occluded, or at a pixel without a range
   agrees,        ///< on the surface
@@ -24,20 +25,24 @@ enum class Observation {
 /// and the camera must outlive it.
 class KeyframeView {
  public:
-  /// `margin_m` is added to three standard deviations of a surface, along its normal, and to those
-  /// of a point without a normal, along its ray.
-  KeyframeView(const RegistrationTarget& seen, const CameraModel& camera, double margin_m);
+  /// Tolerated are `margin_m`, three standard deviations of the surface (along its normal, or along
+  /// the ray if it has none), and three of `spread`, that of the relative pose of the cloud and the
+  /// points.
+  KeyframeView(const RegistrationTarget& seen, const CameraModel& camera, double margin_m,
+               const PoseSpread& spread = {});
 
   Observation judge(const Eigen::Vector3d& world_m) const;
 
  private:
   std::optional<float> share_before(int row, int col, const Eigen::Vector3f& point_m) const;
   bool is_free_around(int row, int col, const Eigen::Vector3f& point_m) const;
+  float tolerated_m(double sigma_m, const Eigen::Vector3f& point_m) const;
 
   Pose camera_from_world_;
   const SurfaceCloud& cloud_;
   const CameraModel& camera_;
   double margin_m_;
+  PoseSpread spread_;
   float farthest_m_ = 0;
 };
 

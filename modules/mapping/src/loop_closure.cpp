@@ -3,9 +3,10 @@
 
 #include "tofmap/mapping/loop_closure.hpp"
 
-#include "tofmap/mapping/free_space.hpp"
+#include "tofmap/mapping/keyframe_edge.hpp"
 #include "tofmap/mapping/keyframe_graph.hpp"
 #include "tofmap/mapping/place_recognition.hpp"
+#include "tofmap/mapping/verification.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,15 +14,6 @@
 
 namespace tofmap {
 namespace {
-
-/// Smallest standard deviations of the drift prior: registration corrects errors of this size.
-constexpr double least_prior_m = 0.05;
-constexpr double least_prior_rad = 0.03;
-
-/// Standard deviations of errors that neighbouring frames share, which the covariance of a
-/// registration does not include.
-constexpr double shared_sigma_m = 0.002;
-constexpr double shared_sigma_rad = 0.0005;
 
 /// Largest PlaceDescriptor::difference() of a keyframe that is tried.
 constexpr double alike_difference = 0.3;
@@ -153,109 +145,6 @@ std::optional<LoopCandidate> find_where_alike(const LoopSearch& search,
 }
 
 }  // namespace
-
-std::vector<OptionField<LoopOptions>> LoopOptions::fields() {
-  using O = LoopOptions;
-  return {
-      {"close", &O::close, 0, 1, "", "searches for loops and corrects the path with them"},
-      {"radius_m", &O::radius_m, 0.1, 100, "m",
-       "loops are searched for among keyframes at most this far away"},
-      {"max_rotation_rad", &O::max_rotation_rad, 0.01, 3.2, "rad",
-       "loops are searched for among keyframes that are rotated by at most this"},
-      {"min_keyframes", &O::min_keyframes, 1, 100000, "",
-       "smallest number of keyframes from one end of a loop to the other"},
-      {"min_overlap", &O::min_overlap, 0.01, 1, "",
-       "smallest share of a keyframe's points that must have a correspondence in earlier "
-       "keyframes"},
-      {"min_inlier_ratio", &O::min_inlier_ratio, 0, 1, "",
-       "smallest share of the correspondences of a loop that must fit its pose"},
-      {"drift_share", &O::drift_share, 0, 1, "",
-       "standard deviation of the drift in position, as a share of the length of the path since "
-       "the place was seen first"},
-      {"kernel_width", &O::kernel_width, 0.5, 100, "",
-       "width of the kernel that down-weights loop constraints with large errors, in standard "
-       "deviations"},
-  };
-}
-
-MotionPrior drift_prior(const Pose& expected, double path_m, const LoopOptions& options) {
-  const double drift_m = options.drift_share * path_m;
-  return {.world_from_camera = expected,
-          .rotation_sigma_rad = std::hypot(least_prior_rad, drift_rad_per_drift_m * drift_m),
-          .translation_sigma_m = std::hypot(least_prior_m, drift_m)};
-}
-
-double support(const RegistrationResult& result) {
-  return succeeded(result.status) ? result.overlap * result.inlier_ratio : 0;
-}
-
-bool is_verified(const RegistrationResult& result, const LoopOptions& options) {
-  return result.status == RegistrationStatus::converged && result.overlap >= options.min_overlap &&
-         result.inlier_ratio >= options.min_inlier_ratio && result.degenerate_directions == 0;
-}
-
-bool confirms_place(const Keyframe& keyframe, const SurfaceCloud& cloud,
-                    const RegistrationResult& result, const CameraModel& camera,
-                    const LoopOptions& options) {
-  return is_verified(result, options) &&
-         !contradicts_free_space({&cloud, result.world_from_camera}, target_of(keyframe), camera);
-}
-
-Eigen::Matrix<double, 6, 6> covariance_of(const Eigen::Matrix<double, 6, 6>& information) {
-  constexpr double unseen_rad = 0.5;
-  constexpr double unseen_m = 1;
-  Eigen::Matrix<double, 6, 6> sum = information;
-  sum.diagonal().head<3>().array() += 1 / (unseen_rad * unseen_rad);
-  sum.diagonal().tail<3>().array() += 1 / (unseen_m * unseen_m);
-  return sum.inverse();
-}
-
-PoseEdge edge_of(const Keyframe& from, int to, const Pose& world_from_camera,
-                 const Eigen::Matrix<double, 6, 6>& covariance) {
-  PoseEdge edge;
-  edge.from = from.id;
-  edge.to = to;
-  edge.from_from_to = from.world_from_camera.inverse() * world_from_camera;
-  // The covariance of a registration is along the world's axes, that of an edge along those of
-  // `from`.
-  edge.covariance = rotated(covariance, from.world_from_camera.linear().transpose());
-  widen(edge, shared_sigma_rad, shared_sigma_m);
-  return edge;
-}
-
-PoseEdge loop_edge(const Keyframe& from, int to, const RegistrationResult& result) {
-  PoseEdge edge =
-      edge_of(from, to, result.world_from_camera, covariance_of(result.target_information.front()));
-  edge.may_be_wrong = true;
-  return edge;
-}
-
-RegistrationResult register_from_afar(const SurfaceCloud& cloud,
-                                      std::span<const RegistrationTarget> targets,
-                                      const CameraModel& camera, const MotionPrior& prior,
-                                      const RegistrationOptions& registration) {
-  constexpr double max_distance_m = 1;
-  constexpr int iterations = 40;
-  RegistrationOptions wide = registration;
-  wide.max_correspondence_distance_m =
-      std::max(registration.max_correspondence_distance_m,
-               std::min(max_distance_m, 2 * prior.translation_sigma_m));
-  wide.max_iterations = std::max(registration.max_iterations, iterations);
-  MotionPrior closer = prior;
-  closer.world_from_camera =
-      register_to_targets(cloud, targets, camera, prior, wide).world_from_camera;
-  return register_to_targets(cloud, targets, camera, closer, registration);
-}
-
-RegistrationResult register_near(const Keyframe& keyframe, const SurfaceCloud& cloud,
-                                 std::span<const Keyframe> keyframes, const CameraModel& camera,
-                                 const RegistrationOptions& registration) {
-  const MotionPrior prior{.world_from_camera = keyframe.world_from_camera,
-                          .rotation_sigma_rad = recognition_reach_rad,
-                          .translation_sigma_m = recognition_reach_m};
-  return register_from_afar(cloud, targets_around(keyframe, keyframes), camera, prior,
-                            registration);
-}
 
 LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyframes,
                         std::span<const std::optional<PoseSpread>> spreads,

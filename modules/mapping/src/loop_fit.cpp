@@ -3,6 +3,7 @@
 
 #include "tofmap/mapping/loop_fit.hpp"
 
+#include "registration_choice.hpp"
 #include "tofmap/mapping/keyframe_graph.hpp"
 
 #include <algorithm>
@@ -55,9 +56,7 @@ bool agree(const PoseEdge& one, const PoseEdge& other, std::span<const Keyframe>
 /// Whether a loop may move the path, since others agree with it, or does not move it.
 bool is_supported(const PoseEdge& loop, const Loops& loops, std::span<const Keyframe> keyframes,
                   const LoopOptions& options) {
-  const Pose& believed = at(keyframes, loop.to).world_from_camera;
-  const double moved_m = (found_by(loop, keyframes).translation() - believed.translation()).norm();
-  if (moved_m <= KeyframeGraph::well_connected_sigma_m) return true;
+  if (!would_move(loop, keyframes)) return true;
   return std::ranges::count_if(loops, [&](const PoseEdge* other) {
            return agree(loop, *other, keyframes, options);
          }) >= least_agreeing_loops;
@@ -90,6 +89,13 @@ bool tell_of_drift(const Loops& agreeing, const Loops& supported, const std::vec
 }
 
 }  // namespace
+
+bool would_move(const PoseEdge& loop, std::span<const Keyframe> keyframes) {
+  constexpr double most_m = KeyframeGraph::well_connected_sigma_m;
+  constexpr double distance_m = 1;
+  return !are_near(found_by(loop, keyframes), at(keyframes, loop.to).world_from_camera, most_m,
+                   most_m / distance_m);
+}
 
 std::vector<const PoseEdge*> most_that_agree(const std::vector<const PoseEdge*>& loops,
                                              std::span<const Keyframe> keyframes,

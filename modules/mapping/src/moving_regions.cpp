@@ -27,8 +27,8 @@ constexpr int frames_until_still = 15;
 using CloudPointer = std::shared_ptr<const SurfaceCloud>;
 using Observations = Cells<Observation>;
 
-/// What the cells of a cloud are to a view. A cell that the view sees through counts only if both
-/// wrap counts are nearly certain.
+/// How a view relates to the cells of a cloud. A cell that the view sees through counts only if
+/// both wrap counts are nearly certain.
 Observations judge_cells(const CellGrid& grid, const Pose& world_from_camera,
                          const KeyframeView& view, const CellGrid& viewing,
                          const Pose& viewing_from_world, const CameraModel& camera) {
@@ -46,18 +46,24 @@ Observations judge_cells(const CellGrid& grid, const Pose& world_from_camera,
 
 /// A frame and a keyframe, compared both ways.
 struct Comparison {
-  Comparison(const CellGrid& frame, const RegistrationTarget& placed, const KeyframeView& view,
-             const Keyframe& keyframe, const CameraModel& camera)
+  Comparison(const CellGrid& frame, const RegistrationTarget& view,
+             const ComparedKeyframe& compared, const CameraModel& camera)
+      : Comparison(frame, view, target_of(*compared.keyframe), compared.spread, camera) {}
+
+  Comparison(const CellGrid& frame, const RegistrationTarget& view,
+             const RegistrationTarget& keyframe, const PoseSpread& spread,
+             const CameraModel& camera)
       : grid(*keyframe.cloud, camera),
-        of_frame(judge_cells(frame, placed.world_from_camera,
-                             KeyframeView(target_of(keyframe), camera, margin_m), grid,
+        of_frame(judge_cells(frame, view.world_from_camera,
+                             KeyframeView(keyframe, camera, margin_m, spread), grid,
                              keyframe.world_from_camera.inverse(), camera)),
-        of_keyframe(judge_cells(grid, keyframe.world_from_camera, view, frame,
-                                placed.world_from_camera.inverse(), camera)) {}
+        of_keyframe(judge_cells(grid, keyframe.world_from_camera,
+                                KeyframeView(view, camera, margin_m, spread), frame,
+                                view.world_from_camera.inverse(), camera)) {}
 
   CellGrid grid;             ///< of the keyframe
-  Observations of_frame;     ///< what the cells of the frame are to the keyframe
-  Observations of_keyframe;  ///< what the cells of the keyframe are to the frame
+  Observations of_frame;     ///< of the cells of the frame by the keyframe
+  Observations of_keyframe;  ///< of the cells of the keyframe by the frame
 };
 
 /// What the keyframes say about the cells of a frame.
@@ -160,24 +166,23 @@ CloudPointer MovingRegions::background(const CloudPointer& cloud) const {
 }
 
 Motion MovingRegions::find(const CloudPointer& cloud, const Pose& world_from_camera,
-                           std::span<const Keyframe* const> keyframes) const {
+                           std::span<const ComparedKeyframe> keyframes) const {
   Motion motion{.still = cloud, .keyframes = {}, .points = {}, .contradicts_pose = false};
   const CellGrid grid(*cloud, camera_);
-  const RegistrationTarget placed{cloud.get(), world_from_camera};
-  const KeyframeView view(placed, camera_, margin_m);
-  const auto compare = [&](const Keyframe& keyframe) {
-    return Comparison(grid, placed, view, keyframe, camera_);
-  };
+  const RegistrationTarget view{cloud.get(), world_from_camera};
   std::vector<Comparison> comparisons;
-  for (const Keyframe* keyframe : keyframes) comparisons.push_back(compare(*keyframe));
+  for (const ComparedKeyframe& keyframe : keyframes) {
+    comparisons.emplace_back(grid, view, keyframe, camera_);
+  }
   Evidence evidence = gather(grid, comparisons);
   const Cells<int> known = known_cells(known_, grid, world_from_camera, camera_);
   motion.contradicts_pose = evidence.is_of_wrong_pose(known);
   if (motion.contradicts_pose) return motion;
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
-    if (auto cleaned = clean(*keyframes[i], comparisons[i])) {
+    const Keyframe& keyframe = *keyframes[i].keyframe;
+    if (auto cleaned = clean(keyframe, comparisons[i])) {
       motion.keyframes.push_back(std::move(*cleaned));
-      add_steps(comparisons[i], world_from_camera.inverse() * keyframes[i]->world_from_camera, grid,
+      add_steps(comparisons[i], world_from_camera.inverse() * keyframe.world_from_camera, grid,
                 camera_, evidence);
     }
   }

@@ -6,7 +6,9 @@
 #include "registration_choice.hpp"
 #include "target_choice.hpp"
 #include "tofmap/mapping/free_space.hpp"
+#include "tofmap/mapping/keyframe_edge.hpp"
 #include "tofmap/mapping/rotation_search.hpp"
+#include "tofmap/mapping/verification.hpp"
 
 #include <algorithm>
 #include <array>
@@ -64,7 +66,8 @@ std::vector<OptionField<OdometryOptions>> OdometryOptions::fields() {
   return {
       {"keyframe_translation_m", &O::keyframe_translation_m, 0.01, 10, "m",
        "distance from all nearby keyframes at which a frame becomes a keyframe; twice this "
-       "distance from those of an earlier visit"},
+       "distance from those of an earlier visit, half of it while a loop waits for others; a "
+       "standard deviation of a fifth of it also makes a frame a keyframe"},
       {"keyframe_rotation_rad", &O::keyframe_rotation_rad, 0.01, 3.2, "rad",
        "rotation from all nearby keyframes at which a frame becomes a keyframe; twice this "
        "rotation from those of an earlier visit"},

@@ -4,6 +4,7 @@
 #include "tofmap/mapping/place_recognition.hpp"
 
 #include "registration_choice.hpp"
+#include "tofmap/mapping/verification.hpp"
 
 #include <algorithm>
 
@@ -28,6 +29,16 @@ bool is_same_place(const Recognition& one, const Recognition& other,
 }
 
 }  // namespace
+
+RegistrationResult register_near(const Keyframe& keyframe, const SurfaceCloud& cloud,
+                                 std::span<const Keyframe> keyframes, const CameraModel& camera,
+                                 const RegistrationOptions& registration) {
+  const MotionPrior prior{.world_from_camera = keyframe.world_from_camera,
+                          .rotation_sigma_rad = recognition_reach_rad,
+                          .translation_sigma_m = recognition_reach_m};
+  return register_from_afar(cloud, targets_around(keyframe, keyframes), camera, prior,
+                            registration);
+}
 
 std::optional<Recognition> recognise(const Keyframe& keyframe,
                                      std::vector<const Keyframe*> candidates,

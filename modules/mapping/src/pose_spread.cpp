@@ -25,6 +25,14 @@ PoseSpread operator+(const PoseSpread& one, const PoseSpread& other) {
   return {one.rotation_rad2 + other.rotation_rad2, one.translation_m2 + other.translation_m2};
 }
 
+PoseSpread smaller(const PoseSpread& one, const PoseSpread& other) {
+  return one.translation_m2 < other.translation_m2 ? one : other;
+}
+
+PoseSpread larger(const PoseSpread& one, const PoseSpread& other) {
+  return one.translation_m2 < other.translation_m2 ? other : one;
+}
+
 PoseSpread spread_of(const Eigen::Matrix<double, 6, 6>& covariance) {
   return {largest_eigenvalue(covariance.topLeftCorner<3, 3>()),
           largest_eigenvalue(covariance.bottomRightCorner<3, 3>())};

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <tofmap/core/camera.hpp>
-#include <tofmap/mapping/loop_closure.hpp>
+#include <tofmap/mapping/verification.hpp>
 
 namespace tofmap {
 

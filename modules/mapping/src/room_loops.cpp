@@ -3,6 +3,7 @@
 
 // How RoomMapper closes loops, mends slips of odometry and fits the pose graph.
 
+#include "tofmap/mapping/loop_closure.hpp"
 #include "tofmap/mapping/loop_fit.hpp"
 #include "tofmap/mapping/room_mapper.hpp"
 #include "tofmap/mapping/slip_search.hpp"
@@ -12,13 +13,6 @@
 #include <map>
 
 namespace tofmap {
-namespace {
-
-/// Smallest number of keyframes between two fits, unless a recent loop still awaits others that
-/// agree with it. Loops mostly come one after the other, and are fitted together.
-constexpr int keyframes_between_fits = 10;
-
-}  // namespace
 
 /// Searches for a loop of the newest keyframe and recognises its place in other maps, once per
 /// keyframe. Fits the pose graph if there are new loops and the last fit was long enough ago.
@@ -37,7 +31,7 @@ void RoomMapper::close_loops() {
                 loop_options_, registration_);
   if (candidate.edge) add_loop(*candidate.edge);
   if (unfitted_loops_ > 0 &&
-      (loop_awaits_others_ || keyframe.id - last_fit_ >= keyframes_between_fits)) {
+      (loop_awaits_others() || keyframe.id - last_fit_ >= keyframes_between_fits)) {
     fit();
   }
 }
@@ -48,12 +42,16 @@ void RoomMapper::add_loop(const PoseEdge& edge) {
   const Pose found = keyframes_[edge.from].world_from_camera * edge.from_from_to;
   const Pose& believed = keyframes_[edge.to].world_from_camera;
   const double error_m = (found.translation() - believed.translation()).norm();
-  if (error_m > KeyframeGraph::well_connected_sigma_m) loop_awaits_others_ = true;
+  if (would_move(edge, keyframes_.all())) waiting_loop_ = edge.to;
   edges_.push_back(edge);
   loops_.push_back({.from_frame = keyframes_[edge.from].frame_index,
                     .to_frame = keyframes_[edge.to].frame_index,
                     .error_m = error_m});
   ++unfitted_loops_;
+}
+
+bool RoomMapper::loop_awaits_others() const {
+  return waiting_loop_ >= 0 && waiting_loop_ + keyframes_between_fits >= keyframes_.size();
 }
 
 void RoomMapper::finish() {
@@ -113,18 +111,18 @@ void RoomMapper::fit() {
   mend_slips();
   const LoopFit fitted = fit_loops(keyframes_.all(), edges_, loop_options_);
   set_poses(fitted.poses);
-  loop_awaits_others_ = false;
+  waiting_loop_ = -1;
+  keyframes_.forget_loops();
   auto loop = loops_.begin();
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     if (!edges_[i].may_be_wrong) continue;
     loop->mahalanobis_distance = fitted.edge_mahalanobis[i];
     loop->is_used = fitted.is_used[i];
-    if (!loop->is_used && edges_[i].to + keyframes_between_fits >= keyframes_.size()) {
-      loop_awaits_others_ = true;
-    }
-    // The relative pose of both ends is now correct, so frames may be registered with either.
     if (loop->is_used) {
-      keyframes_.connect(edges_[i].from, edges_[i].to, spread_of(edges_[i].covariance));
+      // The relative pose of both ends is now correct, so frames may be registered with either.
+      keyframes_.connect_by_loop(edges_[i].from, edges_[i].to, spread_of(edges_[i].covariance));
+    } else {
+      waiting_loop_ = std::max(waiting_loop_, edges_[i].to);
     }
     ++loop;
   }

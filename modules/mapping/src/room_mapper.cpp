@@ -4,6 +4,7 @@
 #include "tofmap/mapping/room_mapper.hpp"
 
 #include "tofmap/mapping/free_space.hpp"
+#include "tofmap/mapping/keyframe_edge.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -229,7 +230,7 @@ bool RoomMapper::wants_keyframe(const TrackingResult& result,
     return true;
   }
   // Loops of keyframes that follow soon show whether the path, or the loop, is wrong.
-  const double share = loop_awaits_others_ ? share_for_loops : 1;
+  const double share = loop_awaits_others() ? share_for_loops : 1;
   return std::ranges::none_of(own(around), [&](const Keyframe* keyframe) {
     const bool is_of_earlier_visit = keyframe->id + recent_keyframes < keyframes_.size();
     return keyframe_spacing().between(keyframe->world_from_camera, pose) <

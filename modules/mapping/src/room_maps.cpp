@@ -4,6 +4,7 @@
 // How RoomMapper begins maps, joins them, and takes a join back.
 
 #include "tofmap/mapping/free_space.hpp"
+#include "tofmap/mapping/keyframe_edge.hpp"
 #include "tofmap/mapping/map_join.hpp"
 #include "tofmap/mapping/place_recognition.hpp"
 #include "tofmap/mapping/room_mapper.hpp"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <set>
 #include <utility>
 
 namespace tofmap {
@@ -142,8 +144,9 @@ std::vector<Stretch> RoomMapper::stretches() const {
 void RoomMapper::join_maps(std::span<const Stretch> travelled) {
   const auto join = find_join(recognitions_, map_, keyframes_.all(), loop_options_);
   if (!join) return;
-  differing_keyframes_ = differing_keyframes(*join);
-  if (differing_keyframes_ >= least_differing_keyframes) return;
+  const int differing = differing_keyframes(*join);
+  if (differing >= least_differing_keyframes) return;
+  differing_keyframes_ = std::max(differing_keyframes_, differing);
   const auto gap =
       std::ranges::adjacent_find(travelled, [&](const Stretch& one, const Stretch& next) {
         return next.map == map_ && next.begin_s - one.end_s > longest_blink_s;
@@ -181,8 +184,9 @@ int RoomMapper::differing_keyframes(const MapJoin& join) const {
 bool RoomMapper::differs_from_others(const Keyframe& keyframe) const {
   const Keyframe* other = keyframe_near(keyframe.world_from_camera, keyframe.map);
   if (other == nullptr) return false;
+  const ComparedKeyframe compared{other, {}};
   const Motion motion =
-      MovingRegions(camera_).find(keyframe.cloud, keyframe.world_from_camera, {&other, 1});
+      MovingRegions(camera_).find(keyframe.cloud, keyframe.world_from_camera, {&compared, 1});
   return motion.contradicts_pose || !motion.is_empty();
 }
 
@@ -207,6 +211,7 @@ void RoomMapper::take_join_back() {
   const auto taken_back =
       std::erase_if(joins_, [&](const JoinedMaps& join) { return join.found_in == newest_map(); });
   joins_taken_back_ += static_cast<int>(taken_back);
+  connect_own_keyframes();
   std::vector<int> map_of(static_cast<std::size_t>(begun_maps_));
   std::iota(map_of.begin(), map_of.end(), 0);
   for (const JoinedMaps& join : joins_) std::ranges::replace(map_of, join.map, join.into);
@@ -216,6 +221,35 @@ void RoomMapper::take_join_back() {
   differing_keyframes_ = 0;
   fit();
   for (const int map : map_of) return_to_origin(map);
+}
+
+/// Gives an edge to each keyframe of the newest map that is connected with earlier ones of its map
+/// only over those of other maps.
+void RoomMapper::connect_own_keyframes() {
+  std::set<int> connected;
+  for (const PoseEdge& edge : edges_) {
+    if (is_own(keyframes_[edge.from]) && edge.from < edge.to) connected.insert(edge.to);
+  }
+  for (const Keyframe& keyframe : keyframes_.all()) {
+    if (!is_own(keyframe) || connected.contains(keyframe.id)) continue;
+    const auto spreads = keyframes_.spreads_from(keyframe.id);
+    const Keyframe* nearest = nullptr;
+    PoseSpread least;
+    for (const Keyframe& earlier : keyframes_.all().first(static_cast<std::size_t>(keyframe.id))) {
+      const auto& spread = spreads[static_cast<std::size_t>(earlier.id)];
+      if (!is_own(earlier) || !spread) continue;
+      if (nearest != nullptr && spread->translation_m2 >= least.translation_m2) continue;
+      nearest = &earlier;
+      least = *spread;
+    }
+    if (nearest == nullptr) continue;  // the first one
+    PoseEdge edge{.from = nearest->id, .to = keyframe.id};
+    edge.from_from_to = nearest->world_from_camera.inverse() * keyframe.world_from_camera;
+    edge.covariance.diagonal() << Eigen::Vector3d::Constant(least.rotation_rad2),
+        Eigen::Vector3d::Constant(least.translation_m2);
+    edges_.push_back(edge);
+    keyframes_.connect(edge.from, edge.to, least);
+  }
 }
 
 /// Drops the edges, and with them the loops, between keyframes of different maps.

@@ -5,7 +5,9 @@
 
 #include "registration_choice.hpp"
 #include "tofmap/mapping/free_space.hpp"
+#include "tofmap/mapping/keyframe_edge.hpp"
 #include "tofmap/mapping/keyframe_graph.hpp"
+#include "tofmap/mapping/verification.hpp"
 
 #include <algorithm>
 

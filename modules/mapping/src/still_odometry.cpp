@@ -4,6 +4,7 @@
 #include "tofmap/mapping/still_odometry.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -30,17 +31,33 @@ bool contradicts(const RegistrationResult& one, const RegistrationResult& other)
   return twist.tail<3>().norm() > least_m && squared_sigmas > least_sigmas * least_sigmas;
 }
 
-/// The targets of a registration among some keyframes, in the order of the targets, and the first
-/// of the keyframes.
-std::vector<const Keyframe*> targets_and_first(const std::vector<int>& targets,
-                                               std::span<const Keyframe* const> keyframes) {
-  std::vector<const Keyframe*> found;
-  for (const int id : targets) {
-    const auto target = std::ranges::find(keyframes, id, &Keyframe::id);
-    if (target != keyframes.end()) found.push_back(*target);
+/// Of a keyframe that is not connected with the others: no difference tells of motion.
+constexpr PoseSpread unknown_spread{.rotation_rad2 = 0, .translation_m2 = 1e6};
+
+/// The targets of a registered frame among some keyframes, in the order of the targets, and the
+/// first of the keyframes. `spreads` are those of the keyframes around, relative to one of them.
+std::vector<ComparedKeyframe> targets_and_first(const TrackingResult& frame,
+                                                std::span<const Keyframe* const> keyframes,
+                                                const std::map<int, PoseSpread>& spreads) {
+  const auto spread_to = [&](int id) {
+    const auto known = spreads.find(id);
+    return known != spreads.end() ? known->second : unknown_spread;
+  };
+  // The targets determine the pose together, as well as their poses are known.
+  PoseSpread of_targets;
+  for (const int id : frame.targets) of_targets = larger(of_targets, spread_to(id));
+  const PoseSpread of_frame = of_targets + frame.spread;
+  std::vector<ComparedKeyframe> found;
+  for (std::size_t i = 0; i < frame.targets.size(); ++i) {
+    const auto target = std::ranges::find(keyframes, frame.targets[i], &Keyframe::id);
+    if (target == keyframes.end()) continue;
+    const PoseSpread by_itself = spread_of(frame.target_covariances[i]);
+    found.push_back({*target, smaller(by_itself, of_frame + spread_to((*target)->id))});
   }
-  const bool has_first = std::ranges::find(found, keyframes.front()) != found.end();
-  if (!has_first) found.push_back(keyframes.front());
+  const Keyframe* first = keyframes.front();
+  if (std::ranges::find(found, first, &ComparedKeyframe::keyframe) == found.end()) {
+    found.push_back({first, of_frame + spread_to(first->id)});
+  }
   return found;
 }
 
@@ -65,8 +82,9 @@ StillTracking StillOdometry::track(double timestamp_s, const CloudPointer& cloud
   TrackingResult first = odometry_.track(timestamp_s, *expected, around);
   const bool is_of_background = track_background(timestamp_s, expected, around, before, first);
   if (first.status != TrackingStatus::tracked || compared.empty()) return {first, cloud};
+  const auto spreads = keyframes.well_connected_to(around.back()->id);
   const Motion motion =
-      moving_.find(cloud, first.world_from_camera, targets_and_first(first.targets, compared));
+      moving_.find(cloud, first.world_from_camera, targets_and_first(first, compared, spreads));
   moving_.remember(motion);
   for (const CleanedKeyframe& keyframe : motion.keyframes) {
     keyframes.set_cloud(keyframe.id, keyframe.cloud);

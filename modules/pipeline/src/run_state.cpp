@@ -18,7 +18,7 @@ namespace tofmap {
 namespace {
 
 // Raise the number after the comma whenever the stored data change between two releases.
-constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 19";
+constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 20";
 
 /// The camera, frequencies and options of a run, one per line. A run can only resume a run with the
 /// same lines.

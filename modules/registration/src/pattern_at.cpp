@@ -39,7 +39,7 @@ std::size_t direction_blocks(int along_side) {
   return 6 * static_cast<std::size_t>(along_side * along_side);
 }
 
-/// The block of directions that a vector falls into.
+/// The block of directions that a vector, which must not be zero, falls into.
 std::size_t direction_block(const Eigen::Vector3d& vector, int along_side) {
   Eigen::Index axis = 0;
   const double most = vector.cwiseAbs().maxCoeff(&axis);
@@ -67,7 +67,7 @@ Directions directions_from(std::span<const Eigen::Vector3d> points, const Eigen:
   const std::size_t blocks = direction_blocks(blocks_along_side);
   std::vector<bool> is_occupied(blocks);
   for (const Eigen::Vector3d& point : points) {
-    is_occupied[direction_block(point - place, blocks_along_side)] = true;
+    if (point != place) is_occupied[direction_block(point - place, blocks_along_side)] = true;
   }
   const std::size_t one_in = (points.size() + most_points - 1) / most_points;
   std::vector<bool> is_kept(blocks);

@@ -9,6 +9,7 @@
 #include <string>
 
 #include <Eigen/Cholesky>
+#include <boost/pending/disjoint_sets.hpp>
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
 
@@ -82,6 +83,23 @@ Node node_of(const Pose& pose) {
   return {Eigen::Quaterniond(pose.linear()).normalized(), pose.translation()};
 }
 
+/// The first pose of each set of poses that edges connect.
+std::vector<std::size_t> first_of_components(std::span<const PoseEdge> edges, std::size_t poses) {
+  boost::disjoint_sets_with_storage<> components(poses);
+  for (std::size_t pose = 0; pose < poses; ++pose) components.make_set(pose);
+  for (const PoseEdge& edge : edges) {
+    components.union_set(static_cast<std::size_t>(edge.from), static_cast<std::size_t>(edge.to));
+  }
+  std::vector<bool> is_known(poses);
+  std::vector<std::size_t> firsts;
+  for (std::size_t pose = 0; pose < poses; ++pose) {
+    const std::size_t component = components.find_set(pose);
+    if (!is_known[component]) firsts.push_back(pose);
+    is_known[component] = true;
+  }
+  return firsts;
+}
+
 /// One pass of optimisation with a fixed kernel. Updates `nodes`.
 ceres::Solver::Summary solve(std::span<const PoseEdge> edges, double kernel_width,
                              std::vector<Node>& nodes) {
@@ -96,8 +114,10 @@ ceres::Solver::Summary solve(std::span<const PoseEdge> edges, double kernel_widt
     problem.AddParameterBlock(node.rotation.coeffs().data(), 4, &rotations);
     problem.AddParameterBlock(node.translation_m.data(), 3);
   }
-  problem.SetParameterBlockConstant(nodes.front().rotation.coeffs().data());
-  problem.SetParameterBlockConstant(nodes.front().translation_m.data());
+  for (const std::size_t first : first_of_components(edges, nodes.size())) {
+    problem.SetParameterBlockConstant(nodes[first].rotation.coeffs().data());
+    problem.SetParameterBlockConstant(nodes[first].translation_m.data());
+  }
   for (const PoseEdge& edge : edges) {
     Node& from = nodes[static_cast<std::size_t>(edge.from)];
     Node& to = nodes[static_cast<std::size_t>(edge.to)];
@@ -184,8 +204,8 @@ PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const Pos
   return result;
 }
 
-bool is_rejected(double deviations, double kernel_width) {
-  return deviations > std::sqrt(3) * kernel_width;  // where the weight is 1/16
+bool is_rejected(double mahalanobis_distance, double kernel_width) {
+  return mahalanobis_distance > std::sqrt(3) * kernel_width;  // where the weight is 1/16
 }
 
 }  // namespace tofmap

@@ -26,8 +26,8 @@ struct RangeLimit {
 /// points without a return if
 ///  - there are at least 30 of them, and at least 0.1 % of the cloud;
 ///  - hardly any points (0.05 %) are farther away;
-///  - there are at least eight times as many of them as of points in a band of ranges of the same
-///    width just before them. Near the greatest range of a real surface, which is an edge or a
+///  - there are at least four times as many of them, on average, as of points in the two bands of
+///    ranges of the same width just before them. Near the greatest range of a real surface, which is an edge or a
 ///    corner of it, points become fewer;
 ///  - their ranges are much more alike than those of planes in the same directions would be, one
 ///    plane in each octant.

@@ -14,7 +14,7 @@ namespace tofmap {
 inline constexpr double nearly_all_percent = 95;
 
 /// A map with more of its frames registered slowly than this is to be checked: few maps with a
-/// right path have as many (docs/evaluation.md).
+/// right path have as many (benchmarks/troubled_rooms.py, seeds 11 to 15).
 inline constexpr double most_slow_percent = 4;
 
 /// The facts by which a map is judged.

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -39,6 +41,12 @@ class KeyframeGraph {
   /// spread is kept.
   void connect(int a, int b, const PoseSpread& spread);
 
+  /// Records that a loop connects two keyframes with this spread, until forget_loops().
+  void connect_by_loop(int a, int b, const PoseSpread& spread);
+
+  /// Forgets the connections by loops, and what reconnect() has derived from them.
+  void forget_loops();
+
   int size() const { return static_cast<int>(keyframes_.size()); }
   const Keyframe& operator[](int id) const { return keyframes_[static_cast<std::size_t>(id)]; }
   std::span<const Keyframe> all() const { return keyframes_; }
@@ -66,15 +74,16 @@ class KeyframeGraph {
   std::vector<const Keyframe*> around(int id, const Pose& pose, int count,
                                       const KeyframeSpacing& steps) const;
 
-  /// Ids of the keyframes that are well connected with a keyframe, without itself: at most five
-  /// registrations connect both, and these add up to at most `well_connected_sigma_m` of spread in
-  /// translation.
-  std::vector<int> well_connected_to(int id) const;
+  /// The spreads of the keyframes that are well connected with a keyframe, by their ids: at most
+  /// five registrations connect both, and these add up to at most `well_connected_sigma_m` of spread
+  /// in translation. The keyframe itself has a spread of 0.
+  std::map<int, PoseSpread> well_connected_to(int id) const;
 
   /// For each keyframe, the spread of its pose relative to keyframe `id`, along the connections
   /// that give the smallest spread in translation. Empty for a keyframe that has no connection with
-  /// `id`.
-  std::vector<std::optional<PoseSpread>> spreads_from(int id) const;
+  /// `id`, or one with a larger standard deviation than `most_sigma_m`.
+  std::vector<std::optional<PoseSpread>> spreads_from(
+      int id, double most_sigma_m = std::numeric_limits<double>::infinity()) const;
 
   /// Reduces the spread of keyframes whose registration with each other did not constrain all
   /// directions, if a path over other keyframes now connects them with a spread of at most
@@ -90,17 +99,20 @@ class KeyframeGraph {
   template <class Archive>
   void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
 
-  /// A keyframe that another one was registered with.
+  /// A keyframe that another one is connected with.
   struct Neighbour {
     int id = 0;
     PoseSpread spread;
+    std::optional<PoseSpread> registered;  ///< `spread` without loops; empty if only by a loop
 
     template <class Archive>
     void serialize(Archive& archive, unsigned version);
   };
 
+  Neighbour& neighbour(int of, int id);
+
   std::vector<Keyframe> keyframes_;
-  std::vector<std::vector<Neighbour>> neighbours_;  ///< for each keyframe, those registered with it
+  std::vector<std::vector<Neighbour>> neighbours_;  ///< for each keyframe, those connected with it
 };
 
 }  // namespace tofmap

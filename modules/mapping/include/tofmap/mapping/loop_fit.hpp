@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <tofmap/mapping/keyframe.hpp>
-#include <tofmap/mapping/loop_closure.hpp>
+#include <tofmap/mapping/loop_options.hpp>
 #include <tofmap/registration/pose_graph.hpp>
 
 namespace tofmap {
@@ -18,6 +18,10 @@ namespace tofmap {
 std::vector<const PoseEdge*> most_that_agree(const std::vector<const PoseEdge*>& loops,
                                              std::span<const Keyframe> keyframes,
                                              const LoopOptions& options);
+
+/// Whether a loop would move its later keyframe by more than frames can be registered across
+/// (KeyframeGraph::well_connected_sigma_m), or what that sees at a distance of a metre.
+bool would_move(const PoseEdge& loop, std::span<const Keyframe> keyframes);
 
 /// Poses of keyframes that fit odometry and loops.
 struct LoopFit {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <tofmap/mapping/keyframe.hpp>
-#include <tofmap/mapping/loop_closure.hpp>
+#include <tofmap/mapping/loop_options.hpp>
 #include <tofmap/registration/pose_graph.hpp>
 
 namespace tofmap {

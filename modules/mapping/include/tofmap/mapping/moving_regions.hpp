@@ -8,12 +8,19 @@
 
 #include <tofmap/core/camera.hpp>
 #include <tofmap/mapping/keyframe.hpp>
+#include <tofmap/mapping/pose_spread.hpp>
 
 namespace boost::serialization {
 class access;
 }
 
 namespace tofmap {
+
+/// A keyframe that a frame is compared with.
+struct ComparedKeyframe {
+  const Keyframe* keyframe = nullptr;
+  PoseSpread spread;  ///< of the frame's pose relative to the keyframe
+};
 
 /// A keyframe in which something moved.
 struct CleanedKeyframe {
@@ -36,9 +43,8 @@ inline bool moves(const SurfacePoint& point) { return point.confidence == moving
 
 /// What moves in a frame, as regions of its image and of those of keyframes.
 struct Motion {
-  /// The frame's cloud without the surface of what moves (moves()), and without what stands in
-  /// front of the background if the background determined the pose. The same object as the input if
-  /// nothing is left out.
+  /// The frame's cloud without the surface of what moves (moves()). The same object as the input if
+  /// nothing does.
   std::shared_ptr<const SurfaceCloud> still;
   std::vector<CleanedKeyframe> keyframes;  ///< those in which something has moved since
   std::vector<MovingPoint> points;         ///< one for each cell of the grid that moves
@@ -57,6 +63,9 @@ struct Motion {
 /// no keyframe agrees that the surface was there before. What moved in the frame before is expected
 /// to keep moving, for 15 frames after the last evidence: somebody who walks ahead of the camera,
 /// at its pace, covers what keyframes could see through.
+///
+/// Where surfaces hardly constrain the pose, a wall that comes into view is not where it is expected.
+/// So differences count only beyond three standard deviations of the pose relative to the keyframe.
 ///
 /// Regions are found on a coarse grid of about 1/32 rad; those with fewer than six cells of
 /// evidence are ignored. If more than half of what can be compared, apart from what moved in the
@@ -81,7 +90,7 @@ class MovingRegions {
   /// What moves in a frame whose pose is known, compared with keyframes. The result is the same for
   /// any number of threads.
   Motion find(const std::shared_ptr<const SurfaceCloud>& cloud, const Pose& world_from_camera,
-              std::span<const Keyframe* const> keyframes) const;
+              std::span<const ComparedKeyframe> keyframes) const;
 
   /// Expects what moves in a frame to be near the same places in the next one. If nothing is known
   /// of the frame, since its pose is contradicted, expects what moved in the frame before.

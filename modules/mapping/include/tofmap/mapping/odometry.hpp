@@ -12,7 +12,7 @@
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/core/trajectory.hpp>
 #include <tofmap/mapping/keyframe.hpp>
-#include <tofmap/mapping/loop_closure.hpp>
+#include <tofmap/mapping/loop_options.hpp>
 #include <tofmap/mapping/motion_uncertainty.hpp>
 #include <tofmap/mapping/pose_spread.hpp>
 #include <tofmap/registration/projective_icp.hpp>
@@ -27,8 +27,8 @@ namespace tofmap {
 struct OdometryOptions {
   /// A frame becomes a keyframe if each nearby keyframe of its map is at least this far away, or
   /// `keyframe_rotation_rad` in rotation. Keyframes of an earlier visit must be twice as far away.
-  /// A frame also becomes a keyframe if its position relative to them is uncertain by half of this
-  /// (one standard deviation). 0.01 … 10 m.
+  /// A frame also becomes a keyframe if its position relative to them is uncertain by a fifth of
+  /// this (one standard deviation). 0.01 … 10 m.
   double keyframe_translation_m = 0.25;
   /// Rotation from each nearby keyframe that makes a frame a keyframe, 0.01 … 3.2 rad. See
   /// `keyframe_translation_m`.
@@ -82,8 +82,9 @@ struct TrackingResult {
   /// Covariance of the error of the pose relative to each target if the status is `tracked`, else
   /// empty: rotation vector in radians, then translation in metres, along the axes of the world.
   /// Each comes from the surfaces of that target alone, so it is large in directions that these do
-  /// not constrain, even if other targets do. Only one of them also includes the motion since then:
-  /// that of the latest keyframe or, once that is no longer a target, of another target.
+  /// not constrain, even if other targets do. One of them also includes what the motion model knows
+  /// since the latest keyframe: that of this keyframe or, once it is no longer a target, of another
+  /// target.
   /// RoomMapper::add_frame() makes edges of the covariances and removes them.
   std::vector<Eigen::Matrix<double, 6, 6>> target_covariances;
   PoseSpread spread;  ///< of the pose relative to all targets together, if the status is `tracked`
@@ -107,8 +108,8 @@ struct TrackingResult {
 /// The camera may move faster than the prior allows. With `check_poses`, if registration fails,
 /// ends far from the predicted pose, or fits the surfaces clearly worse than the frames before, the
 /// frame is also registered from the rotations around the last pose that search_rotations() finds.
-/// The best of these results replaces the first one if it fits better, is verified as for a loop,
-/// and no result at another place fits about as well. If none does, and the first one fits the
+/// The best of these results replaces the first one if it is verified as for a loop, no result at
+/// another place fits about as well, and the first one failed or fits clearly worse. If none does, and the first one fits the
 /// surfaces far worse than is usual or contradicts the free space of the keyframes, the frame is
 /// lost.
 class Odometry {

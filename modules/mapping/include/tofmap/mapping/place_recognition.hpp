@@ -9,10 +9,21 @@
 
 #include <tofmap/core/camera.hpp>
 #include <tofmap/mapping/keyframe.hpp>
-#include <tofmap/mapping/loop_closure.hpp>
+#include <tofmap/mapping/loop_options.hpp>
 #include <tofmap/registration/projective_icp.hpp>
 
 namespace tofmap {
+
+/// How far a camera may be from a keyframe that recognises it: the standard deviations of the prior
+/// of register_near().
+inline constexpr double recognition_reach_m = 0.5;
+inline constexpr double recognition_reach_rad = 0.35;
+
+/// Registers a cloud with a keyframe and the keyframes directly before and after it, from the pose
+/// of that keyframe (register_from_afar()).
+RegistrationResult register_near(const Keyframe& keyframe, const SurfaceCloud& cloud,
+                                 std::span<const Keyframe> keyframes, const CameraModel& camera,
+                                 const RegistrationOptions& registration);
 
 /// A place that was recognised: the pose of a keyframe in the map of another one, found without
 /// knowledge of the camera's motion.

@@ -18,6 +18,12 @@ struct PoseSpread {
 
 PoseSpread operator+(const PoseSpread& one, const PoseSpread& other);
 
+/// The one that is smaller in translation.
+PoseSpread smaller(const PoseSpread& one, const PoseSpread& other);
+
+/// The one that is larger in translation.
+PoseSpread larger(const PoseSpread& one, const PoseSpread& other);
+
 /// The spread of a pose error with this covariance: rotation vector, radians, then translation,
 /// metres.
 PoseSpread spread_of(const Eigen::Matrix<double, 6, 6>& covariance);

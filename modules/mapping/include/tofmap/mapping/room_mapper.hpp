@@ -9,7 +9,7 @@
 
 #include <tofmap/mapping/camera_travel.hpp>
 #include <tofmap/mapping/keyframe_graph.hpp>
-#include <tofmap/mapping/loop_closure.hpp>
+#include <tofmap/mapping/loop_options.hpp>
 #include <tofmap/mapping/still_odometry.hpp>
 #include <tofmap/mapping/surface_map.hpp>
 #include <tofmap/registration/path_uncertainty.hpp>
@@ -48,15 +48,15 @@ struct NewFrame {
 struct LateFrame {
   int index = 0;  ///< NewFrame::index
   TrackingResult tracking;
-  std::shared_ptr<const SurfaceCloud> still;  ///< as AddedFrame::still; null if not registered
+  std::shared_ptr<const SurfaceCloud> still;  ///< as AddedFrame::still
 };
 
 /// What became of a frame, and the wall-clock times of the steps.
 struct AddedFrame {
   TrackingResult tracking;
   std::vector<LateFrame> late;  ///< frames before it whose result has changed
-  /// The cloud without the surface of what moves (Motion::still); NewFrame::cloud itself if
-  /// nothing does.
+  /// The cloud as it may enter the map (StillTracking::still); NewFrame::cloud itself if nothing is
+  /// left out.
   std::shared_ptr<const SurfaceCloud> still;
   double register_ms = 0;   ///< tracking or relocalisation
   double integrate_ms = 0;  ///< adding the surface to the map
@@ -73,7 +73,7 @@ struct AddedFrame {
 /// the same place, and the pose graph fits the poses of all keyframes to the edges of odometry
 /// and loops. Submaps and frames move with their keyframes, so no frame is integrated again.
 ///
-/// When tracking is lost, or after more than two seconds without frames, a new map begins: once
+/// When tracking is lost, or after more than two seconds without registered frames, a new map begins: once
 /// three frames with a surface could not be registered, the first of them is the origin of a map of
 /// its own, and the others are tracked in it. Every keyframe of the newest map is compared with
 /// those of the other maps that the camera can have reached in the time since then (can_travel());
@@ -173,6 +173,11 @@ class RoomMapper {
     SurfaceMap surface;
   };
 
+  /// Smallest number of keyframes between two fits, unless a loop still awaits others that agree
+  /// with it, and largest number of keyframes that it waits for. Loops mostly come one after the
+  /// other, and are fitted together.
+  static constexpr int keyframes_between_fits = 10;
+
   /// Number of keyframes that must differ from a map before they count as showing another place. A
   /// single one may be wrong.
   static constexpr int least_differing_keyframes = 2;
@@ -191,6 +196,7 @@ class RoomMapper {
   bool differs_from_others(const Keyframe& keyframe) const;
   TrackingResult track_apart(NewFrame& frame, std::span<const Keyframe* const> around);
   void take_join_back();
+  void connect_own_keyframes();
   void drop_edges_between_maps();
   void return_to_origin(int map);
   int newest_map() const { return begun_maps_ - 1; }
@@ -199,6 +205,7 @@ class RoomMapper {
   std::vector<const Keyframe*> own(std::span<const Keyframe* const> keyframes) const;
   const Keyframe* keyframe_near(const Pose& pose, int map) const;
   void add_loop(const PoseEdge& edge);
+  bool loop_awaits_others() const;
   KeyframeSpacing keyframe_spacing() const;
   Pose pose_of(const RegisteredFrame& frame) const;
   std::vector<const Keyframe*> keyframes_around() const;
@@ -224,10 +231,10 @@ class RoomMapper {
   std::vector<PoseEdge> edges_;
   std::vector<Loop> loops_;  ///< in the order of their edges
   int unfitted_loops_ = 0;
-  bool loop_awaits_others_ = false;  ///< whether a recent loop would move the path, but is alone
-  int last_fit_ = 0;                 ///< id of the newest keyframe in the last fit
-  int current_ = 0;                  ///< id of the keyframe that the latest frame belongs to
-  int map_ = 0;                      ///< the map that frames are added to
+  int waiting_loop_ = -1;       ///< later keyframe of the newest loop that awaits others; −1: none
+  int last_fit_ = 0;            ///< id of the newest keyframe in the last fit
+  int current_ = 0;             ///< id of the keyframe that the latest frame belongs to
+  int map_ = 0;                 ///< the map that frames are added to
   int begun_maps_ = 1;          ///< number of maps so far, with those that were joined or dropped
   int lost_frames_ = 0;         ///< number of frames since the last registered one
   int searched_ = 0;            ///< number of keyframes for which loops were searched

@@ -8,7 +8,7 @@
 
 #include <tofmap/core/camera.hpp>
 #include <tofmap/mapping/keyframe.hpp>
-#include <tofmap/mapping/loop_closure.hpp>
+#include <tofmap/mapping/loop_options.hpp>
 #include <tofmap/registration/pose_graph.hpp>
 #include <tofmap/registration/projective_icp.hpp>
 

@@ -45,8 +45,9 @@ struct PoseGraphResult {
   std::vector<double> edge_mahalanobis;
 };
 
-/// Finds the poses that fit all edges best, with the first pose held fixed, by nonlinear least
-/// squares over rotations and translations (Ceres, Levenberg-Marquardt).
+/// Finds the poses that fit all edges best, by nonlinear least squares over rotations and
+/// translations (Ceres, Levenberg-Marquardt). Of poses that edges connect, the first one is held
+/// fixed.
 ///
 /// Edges that may be wrong go through a Geman-McClure kernel whose width is halved from pass to
 /// pass until it is `kernel_width` standard deviations (graduated non-convexity, Yang et al., RA-L
@@ -63,6 +64,6 @@ double mahalanobis_distance(const PoseEdge& edge, const std::vector<Pose>& poses
 
 /// Whether the kernel rejects an edge at this Mahalanobis distance: its weight is less than a
 /// sixteenth of the weight of an edge without error.
-bool is_rejected(double deviations, double kernel_width);
+bool is_rejected(double mahalanobis_distance, double kernel_width);
 
 }  // namespace tofmap

@@ -23,7 +23,7 @@ struct ScanPattern {
 
   /// Whether the sensor was at the place: hardly any point is hidden, and either three times as
   /// many are hidden around, or the pattern is clearly more regular than around. What is hidden is
-  /// no evidence if the directions are concentrated within about 20 degrees of each other: from far
+  /// no evidence if the directions are concentrated within about 25 degrees of their mean: from far
   /// away, everything is hidden or seen by chance. A cloud of a few plain walls that was
   /// downsampled has no such evidence for any place.
   bool is_evidence_for() const;
