@@ -73,15 +73,16 @@ struct AddedFrame {
 /// the same place, and the pose graph fits the poses of all keyframes to the edges of odometry
 /// and loops. Submaps and frames move with their keyframes, so no frame is integrated again.
 ///
-/// When tracking is lost, or after more than two seconds without registered frames, a new map begins: once
-/// three frames with a surface could not be registered, the first of them is the origin of a map of
-/// its own, and the others are tracked in it. Every keyframe of the newest map is compared with
-/// those of the other maps that the camera can have reached in the time since then (can_travel());
-/// when three keyframes recognise places of another map and agree, both maps are joined. Maps that
-/// are never joined stay separate. The keyframes and submaps of a map stay apart from those of the
-/// maps that it was joined with, so that the join can be taken back: when two later keyframes
-/// differ from what the other map has there, or when a frame fits only its own map and contradicts
-/// the other. A map of fewer than three frames is dropped again when the next one begins.
+/// When tracking is lost, or after more than two seconds without registered frames, a new map
+/// begins: once three frames with a surface could not be registered, the first of them is the
+/// origin of a map of its own, and the others are tracked in it. Every keyframe of the newest map
+/// is compared with those of the other maps that the camera can have reached in the time since then
+/// (can_travel()); when three keyframes recognise places of another map and agree, both maps are
+/// joined. Maps that are never joined stay separate. The keyframes and submaps of a map stay apart
+/// from those of the maps that it was joined with, so that the join can be taken back: when two
+/// later keyframes differ from what the other map has there, or when a frame fits only its own map
+/// and contradicts the other. A map of fewer than three frames is dropped again when the next one
+/// begins.
 ///
 /// People, doors and other things that move are found (StillOdometry); they have no part in
 /// registration, keyframes and surface.
@@ -231,14 +232,14 @@ class RoomMapper {
   std::vector<PoseEdge> edges_;
   std::vector<Loop> loops_;  ///< in the order of their edges
   int unfitted_loops_ = 0;
-  int waiting_loop_ = -1;       ///< later keyframe of the newest loop that awaits others; −1: none
-  int last_fit_ = 0;            ///< id of the newest keyframe in the last fit
-  int current_ = 0;             ///< id of the keyframe that the latest frame belongs to
-  int map_ = 0;                 ///< the map that frames are added to
-  int begun_maps_ = 1;          ///< number of maps so far, with those that were joined or dropped
-  int lost_frames_ = 0;         ///< number of frames since the last registered one
-  int searched_ = 0;            ///< number of keyframes for which loops were searched
-  std::vector<NewFrame> held_;  ///< frames with a surface since the last registered one
+  int waiting_loop_ = -1;  ///< later keyframe of the newest loop that awaits others; −1: none
+  int last_fit_ = 0;       ///< id of the newest keyframe in the last fit
+  int current_ = 0;        ///< id of the keyframe that the latest frame belongs to
+  int map_ = 0;            ///< the map that frames are added to
+  int begun_maps_ = 1;     ///< number of maps so far, with those that were joined or dropped
+  int lost_frames_ = 0;    ///< number of frames since the last registered one
+  int searched_ = 0;       ///< number of keyframes for which loops were searched
+  std::vector<NewFrame> held_;     ///< frames with a surface since the last registered one
   std::vector<JoinedMaps> joins_;  ///< those not taken back, in order
   int differing_keyframes_ = 0;    ///< of the newest map, from the map that it was joined with
   int joins_taken_back_ = 0;
