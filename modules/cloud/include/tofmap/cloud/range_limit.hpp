@@ -27,8 +27,8 @@ struct RangeLimit {
 ///  - there are at least 30 of them, and at least 0.1 % of the cloud;
 ///  - hardly any points (0.05 %) are farther away;
 ///  - there are at least four times as many of them, on average, as of points in the two bands of
-///    ranges of the same width just before them. Near the greatest range of a real surface, which is an edge or a
-///    corner of it, points become fewer;
+///    ranges of the same width just before them. Near the greatest range of a real surface, which
+///    is an edge or a corner of it, points become fewer;
 ///  - their ranges are much more alike than those of planes in the same directions would be, one
 ///    plane in each octant.
 /// Walls across the ends of a corridor fulfil all but the last condition. The inside of a ball

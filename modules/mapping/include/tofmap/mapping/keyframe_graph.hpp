@@ -75,8 +75,8 @@ class KeyframeGraph {
                                       const KeyframeSpacing& steps) const;
 
   /// The spreads of the keyframes that are well connected with a keyframe, by their ids: at most
-  /// five registrations connect both, and these add up to at most `well_connected_sigma_m` of spread
-  /// in translation. The keyframe itself has a spread of 0.
+  /// five registrations connect both, and these add up to at most `well_connected_sigma_m` of
+  /// spread in translation. The keyframe itself has a spread of 0.
   std::map<int, PoseSpread> well_connected_to(int id) const;
 
   /// For each keyframe, the spread of its pose relative to keyframe `id`, along the connections

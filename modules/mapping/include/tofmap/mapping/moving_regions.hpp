@@ -64,8 +64,9 @@ struct Motion {
 /// to keep moving, for 15 frames after the last evidence: somebody who walks ahead of the camera,
 /// at its pace, covers what keyframes could see through.
 ///
-/// Where surfaces hardly constrain the pose, a wall that comes into view is not where it is expected.
-/// So differences count only beyond three standard deviations of the pose relative to the keyframe.
+/// Where surfaces hardly constrain the pose, a wall that comes into view is not where it is
+/// expected. So differences count only beyond three standard deviations of the pose relative to the
+/// keyframe.
 ///
 /// Regions are found on a coarse grid of about 1/32 rad; those with fewer than six cells of
 /// evidence are ignored. If more than half of what can be compared, apart from what moved in the

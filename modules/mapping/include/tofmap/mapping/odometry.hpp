@@ -109,9 +109,9 @@ struct TrackingResult {
 /// ends far from the predicted pose, or fits the surfaces clearly worse than the frames before, the
 /// frame is also registered from the rotations around the last pose that search_rotations() finds.
 /// The best of these results replaces the first one if it is verified as for a loop, no result at
-/// another place fits about as well, and the first one failed or fits clearly worse. If none does, and the first one fits the
-/// surfaces far worse than is usual or contradicts the free space of the keyframes, the frame is
-/// lost.
+/// another place fits about as well, and the first one failed or fits clearly worse. If none does,
+/// and the first one fits the surfaces far worse than is usual or contradicts the free space of the
+/// keyframes, the frame is lost.
 class Odometry {
  public:
   /// `recognition` has the limits for trusting a registration that does not follow from the motion
