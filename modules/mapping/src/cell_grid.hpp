@@ -23,6 +23,7 @@ using Cells = std::vector<Value>;
 /// a cell are left out.
 class CellGrid {
  public:
+  CellGrid() = default;  ///< without cells
   CellGrid(const SurfaceCloud& cloud, const CameraModel& camera);
 
   std::size_t size() const { return points_m_.size(); }
@@ -47,10 +48,10 @@ class CellGrid {
   bool are_joined(std::size_t a, std::size_t b) const;
 
  private:
-  int side_px_;
-  int rows_;
-  int cols_;
-  double cell_rad_;  ///< the angle that a cell covers
+  int side_px_ = 1;
+  int rows_ = 0;
+  int cols_ = 0;
+  double cell_rad_ = 0;  ///< the angle that a cell covers
   std::vector<Eigen::Vector3f> points_m_;
   std::vector<float> ranges_m_;
   Cells<char> is_sure_;

@@ -46,6 +46,8 @@ Observations judge_cells(const CellGrid& grid, const Pose& world_from_camera,
 
 /// A frame and a keyframe, compared both ways.
 struct Comparison {
+  Comparison() = default;
+
   Comparison(const CellGrid& frame, const RegistrationTarget& view,
              const ComparedKeyframe& compared, const CameraModel& camera)
       : Comparison(frame, view, target_of(*compared.keyframe), compared.spread, camera) {}
@@ -170,9 +172,12 @@ Motion MovingRegions::find(const CloudPointer& cloud, const Pose& world_from_cam
   Motion motion{.still = cloud, .keyframes = {}, .points = {}, .contradicts_pose = false};
   const CellGrid grid(*cloud, camera_);
   const RegistrationTarget view{cloud.get(), world_from_camera};
-  std::vector<Comparison> comparisons;
-  for (const ComparedKeyframe& keyframe : keyframes) {
-    comparisons.emplace_back(grid, view, keyframe, camera_);
+  std::vector<Comparison> comparisons(keyframes.size());
+  const int count = static_cast<int>(keyframes.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    comparisons[at] = Comparison(grid, view, keyframes[at], camera_);
   }
   Evidence evidence = gather(grid, comparisons);
   const Cells<int> known = known_cells(known_, grid, world_from_camera, camera_);
