@@ -28,7 +28,7 @@ def scene_path(tofmap, scene, folder):
     """Positions and rotations of the camera along the path of a scene, in 10 000 small steps."""
     if not (folder / "groundtruth.txt").exists():
         recording.run(tofmap, "simulate", scene, "--out", folder, "--set", "simulator.frames=10000",
-            "simulator.width_px=8", "simulator.height_px=8", "simulator.subpixels=1")
+                      "simulator.width_px=8", "simulator.height_px=8", "simulator.subpixels=1")
     rows = numpy.loadtxt(folder / "groundtruth.txt")
     return rows[:, 1:4], Rotation.from_quat(rows[:, 4:8])
 
@@ -72,7 +72,7 @@ def measure(tofmap, out, scene, seed, largest_turn_deg):
     write_trajectory(out / f"{name}.txt", along, turned)
     if not (out / name / "sequence.yaml").exists():
         recording.run(tofmap, "simulate", scene, "--out", out / name, "--set",
-            f"simulator.trajectory_file={out / name}.txt")
+                      f"simulator.trajectory_file={out / name}.txt")
     recording.run(tofmap, "map", out / name, "--out", out / f"{name}_map")
     found = numpy.loadtxt(out / f"{name}_map" / "trajectory.txt")
     errors_m = position_errors_m(numpy.loadtxt(out / name / "groundtruth.txt"), found)

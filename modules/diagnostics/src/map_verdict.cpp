@@ -11,12 +11,12 @@
 #include <tofmap/core/text.hpp>
 
 namespace tofmap {
-
 namespace {
 
-std::string times(int count) { return counted(static_cast<std::size_t>(count), "time"); }
-
-std::string places(int count) { return counted(static_cast<std::size_t>(count), "place"); }
+/// The count with a noun, in the plural unless it is 1.
+std::string number_of(int count, const char* noun) {
+  return counted(static_cast<std::size_t>(count), noun);
+}
 
 /// Adds reasons and the verdicts that they lead to.
 class Judge {
@@ -51,11 +51,10 @@ void Judge::judge_coverage() {
         fmt::format("{:.0f} % of the frames could not be registered", 100 - registered_percent));
   }
   if (evidence_.separate_maps > 0) {
-    hold_against(
-        Verdict::check,
-        fmt::format("tracking was lost, and {} with {} could not be joined with this one",
-                    counted(static_cast<std::size_t>(evidence_.separate_maps), "other map"),
-                    counted(static_cast<std::size_t>(evidence_.separate), "frame")));
+    hold_against(Verdict::check,
+                 fmt::format("tracking was lost, and {} with {} could not be joined with this one",
+                             number_of(evidence_.separate_maps, "other map"),
+                             number_of(evidence_.separate, "frame")));
   }
 }
 
@@ -95,23 +94,22 @@ void Judge::judge_places() {
         Verdict::check,
         fmt::format("after more than two seconds without tracking, the camera was found again only "
                     "by the look of the place ({}), and another place may look the same",
-                    times(evidence_.blind_joins)));
+                    number_of(evidence_.blind_joins, "time")));
   }
   if (evidence_.unused_loops > 0) {
     hold_against(Verdict::check,
-                 "the map contradicts " +
-                     counted(static_cast<std::size_t>(evidence_.unused_loops), "recognised place"));
+                 "the map contradicts " + number_of(evidence_.unused_loops, "recognised place"));
   }
   if (evidence_.joins > 0) {
     judgement_.remarks.push_back(
         fmt::format("maps that began when tracking was lost were joined at recognised places ({})",
-                    times(evidence_.joins)));
+                    number_of(evidence_.joins, "time")));
   }
   if (evidence_.joins_taken_back > 0) {
     judgement_.remarks.push_back(
         fmt::format("{} looked like one seen before but proved to be another; the maps were "
                     "separated again",
-                    places(evidence_.joins_taken_back)));
+                    number_of(evidence_.joins_taken_back, "place")));
   }
 }
 

@@ -16,7 +16,8 @@ KeyframeView::KeyframeView(const RegistrationTarget& seen, const CameraModel& ca
       cloud_(*seen.cloud),
       camera_(camera),
       margin_m_(margin_m),
-      spread_(spread) {
+      pose_sigma_m_(spread.translation_sigma_m()),
+      pose_sigma_rad_(spread.rotation_sigma_rad()) {
   for (const SurfacePoint& point : cloud_.points) {
     if (point.has_position()) farthest_m_ = std::max(farthest_m_, point.z);
   }
@@ -84,8 +85,7 @@ std::optional<float> KeyframeView::share_before(int row, int col,
 /// which both may be the same.
 float KeyframeView::tolerated_m(double sigma_m, const Eigen::Vector3f& point_m) const {
   constexpr double sigmas = 3;
-  const double by_rotation_m = spread_.rotation_sigma_rad() * point_m.norm();
-  const double by_pose_m = std::hypot(spread_.translation_sigma_m(), by_rotation_m);
+  const double by_pose_m = std::hypot(pose_sigma_m_, pose_sigma_rad_ * point_m.norm());
   return static_cast<float>(margin_m_ + sigmas * (sigma_m + by_pose_m));
 }
 

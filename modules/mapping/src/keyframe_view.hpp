@@ -42,7 +42,8 @@ class KeyframeView {
   const SurfaceCloud& cloud_;
   const CameraModel& camera_;
   double margin_m_;
-  PoseSpread spread_;
+  double pose_sigma_m_;
+  double pose_sigma_rad_;
   float farthest_m_ = 0;
 };
 

@@ -100,9 +100,9 @@ std::vector<std::size_t> first_of_components(std::span<const PoseEdge> edges, st
   return firsts;
 }
 
-/// One pass of optimisation with a fixed kernel. Updates `nodes`.
+/// One pass of optimisation with a fixed kernel. Updates `nodes` but those that are held.
 ceres::Solver::Summary solve(std::span<const PoseEdge> edges, double kernel_width,
-                             std::vector<Node>& nodes) {
+                             std::span<const std::size_t> held, std::vector<Node>& nodes) {
   // The manifold and the kernel are shared by all blocks and live on the stack.
   ceres::Problem::Options ownership;
   ownership.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -114,9 +114,9 @@ ceres::Solver::Summary solve(std::span<const PoseEdge> edges, double kernel_widt
     problem.AddParameterBlock(node.rotation.coeffs().data(), 4, &rotations);
     problem.AddParameterBlock(node.translation_m.data(), 3);
   }
-  for (const std::size_t first : first_of_components(edges, nodes.size())) {
-    problem.SetParameterBlockConstant(nodes[first].rotation.coeffs().data());
-    problem.SetParameterBlockConstant(nodes[first].translation_m.data());
+  for (const std::size_t node : held) {
+    problem.SetParameterBlockConstant(nodes[node].rotation.coeffs().data());
+    problem.SetParameterBlockConstant(nodes[node].translation_m.data());
   }
   for (const PoseEdge& edge : edges) {
     Node& from = nodes[static_cast<std::size_t>(edge.from)];
@@ -186,8 +186,9 @@ PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const Pos
   for (const PoseEdge& edge : edges) {
     if (edge.may_be_wrong) width = std::max(width, 2 * mahalanobis_distance(edge, result.poses));
   }
+  const std::vector<std::size_t> held = first_of_components(edges, nodes.size());
   while (true) {
-    const ceres::Solver::Summary summary = solve(edges, width, nodes);
+    const ceres::Solver::Summary summary = solve(edges, width, held, nodes);
     result.iterations += static_cast<int>(summary.iterations.size());
     result.converged = summary.termination_type == ceres::CONVERGENCE;
     if (width <= kernel_width) break;
