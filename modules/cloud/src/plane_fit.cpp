@@ -148,40 +148,82 @@ struct Sums {
   float* sqq;
 };
 
-/// Adds one neighbour of each pixel if it is near the plane of the pixel.
-TOFMAP_VECTOR_CLONES void add_neighbour(int pixels, const Pixels& own_, const Pixels& other_,
-                                        const Planes& planes_, float gate2, const Sums& sums_) {
+/// Neighbours that are added together, so that sums are loaded and stored once for them.
+constexpr int neighbours_at_once = 3;
+
+/// Adds `Count` neighbours of each pixel, from `first_` to the right, if they are near the plane of
+/// the pixel.
+template <int Count>
+[[gnu::always_inline]] inline void add_neighbours(int pixels, const Pixels& own_,
+                                                  const Pixels& first_, const Planes& planes_,
+                                                  float gate2, const Sums& sums_) {
   const Pixels own = own_;
-  const Pixels other = other_;
+  const Pixels first = first_;
   const Planes planes = planes_;
   const Sums sums = sums_;
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
-    const float x = other.x[i] - own.x[i];
-    const float y = other.y[i] - own.y[i];
-    const float d = other.q[i] - own.q[i];  // NaN fails the gate below
-    const float variance = other.variance[i];
-    const float error = d - planes.offset[i] - planes.a[i] * x - planes.b[i] * y;
-    const float tolerated = gate2 * (variance + planes.slack[i] + planes.slack_a[i] * x * x +
-                                     planes.slack_b[i] * y * y);
-    const bool is_near = error * error < tolerated;
-    const float weight = is_near ? 1 / variance : 0.0F;
-    const float near_d = is_near ? d : 0.0F;
-    const float wx = weight * x;
-    const float wy = weight * y;
-    const float wd = weight * near_d;
-    sums.count[i] += is_near ? 1.0F : 0.0F;
-    sums.s[i] += weight;
-    sums.sx[i] += wx;
-    sums.sy[i] += wy;
-    sums.sxx[i] += wx * x;
-    sums.sxy[i] += wx * y;
-    sums.syy[i] += wy * y;
-    sums.sq[i] += wd;
-    sums.sxq[i] += wd * x;
-    sums.syq[i] += wd * y;
-    sums.sqq[i] += wd * near_d;
+    float count = sums.count[i];
+    float s = sums.s[i];
+    float sx = sums.sx[i];
+    float sy = sums.sy[i];
+    float sxx = sums.sxx[i];
+    float sxy = sums.sxy[i];
+    float syy = sums.syy[i];
+    float sq = sums.sq[i];
+    float sxq = sums.sxq[i];
+    float syq = sums.syq[i];
+    float sqq = sums.sqq[i];
+#pragma GCC unroll 3
+    for (int k = 0; k < Count; ++k) {
+      const float x = first.x[i + k] - own.x[i];
+      const float y = first.y[i + k] - own.y[i];
+      const float d = first.q[i + k] - own.q[i];  // NaN fails the gate below
+      const float variance = first.variance[i + k];
+      const float error = d - planes.offset[i] - planes.a[i] * x - planes.b[i] * y;
+      const float tolerated = gate2 * (variance + planes.slack[i] + planes.slack_a[i] * x * x +
+                                       planes.slack_b[i] * y * y);
+      const bool is_near = error * error < tolerated;
+      const float weight = is_near ? 1 / variance : 0.0F;
+      const float near_d = is_near ? d : 0.0F;
+      const float wx = weight * x;
+      const float wy = weight * y;
+      const float wd = weight * near_d;
+      count += is_near ? 1.0F : 0.0F;
+      s += weight;
+      sx += wx;
+      sy += wy;
+      sxx += wx * x;
+      sxy += wx * y;
+      syy += wy * y;
+      sq += wd;
+      sxq += wd * x;
+      syq += wd * y;
+      sqq += wd * near_d;
+    }
+    sums.count[i] = count;
+    sums.s[i] = s;
+    sums.sx[i] = sx;
+    sums.sy[i] = sy;
+    sums.sxx[i] = sxx;
+    sums.sxy[i] = sxy;
+    sums.syy[i] = syy;
+    sums.sq[i] = sq;
+    sums.sxq[i] = sxq;
+    sums.syq[i] = syq;
+    sums.sqq[i] = sqq;
   }
+}
+
+/// Adds `count` neighbours of each pixel, from `first` to the right, if they are near the plane of
+/// the pixel.
+TOFMAP_VECTOR_CLONES void add_row(int pixels, int count, const Pixels& own, const Pixels& first,
+                                  const Planes& planes, float gate2, const Sums& sums) {
+  int k = 0;
+  for (; k + neighbours_at_once <= count; k += neighbours_at_once) {
+    add_neighbours<neighbours_at_once>(pixels, own, first.at(k), planes, gate2, sums);
+  }
+  for (; k < count; ++k) add_neighbours<1>(pixels, own, first.at(k), planes, gate2, sums);
 }
 
 /// Results of a fit besides the plane.
@@ -339,9 +381,7 @@ void PlaneFits::fit(int row, PlaneRow& out) const {
   for (int i = 0; i < fits; ++i) {
     work.sums.set_zero();
     for (int down = -margin_; down <= margin_; ++down) {
-      for (int right = -margin_; right <= margin_; ++right) {
-        add_neighbour(cols_, own, own.at(down * stride_ + right), planes, gate2_, sums);
-      }
+      add_row(cols_, 2 * margin_ + 1, own, own.at(down * stride_ - margin_), planes, gate2_, sums);
     }
     solve(cols_, sums, least_spread2_, planes,
           {work.neighbours.data(), out.q0_variance.data(), out.a_variance.data(),

@@ -31,7 +31,9 @@ const SurfacePoint* look_up(const SurfaceCloud& target, const CameraModel& camer
   return found.has_normal() ? &found : nullptr;
 }
 
-constexpr int least_points_for_threads = 4000;
+/// More pairs of a point and a target than this are shared among threads.
+constexpr std::size_t enough_for_threads = 4000;
+constexpr std::size_t points_per_block = 512;
 
 /// Limits that a correspondence must keep, and the variance added to each.
 struct Gates {
@@ -73,6 +75,74 @@ std::optional<Correspondence> correspondence(const SurfacePoint& source,
   return pair;
 }
 
+/// A target, with poses relative to it and to the world's axes about the source's camera.
+struct OrientedTarget {
+  const SurfaceCloud* cloud;
+  Pose target_from_source;
+  Pose local_from_target;
+};
+
+std::vector<OrientedTarget> oriented_targets(std::span<const RegistrationTarget> targets,
+                                             const Pose& world_from_source) {
+  std::vector<OrientedTarget> oriented;
+  for (const RegistrationTarget& target : targets) {
+    Pose local_from_target = target.world_from_camera;
+    local_from_target.translation() -= world_from_source.translation();
+    oriented.push_back(
+        {target.cloud, target.world_from_camera.inverse() * world_from_source, local_from_target});
+  }
+  return oriented;
+}
+
+/// The correspondences of some of the points.
+struct Block {
+  std::vector<std::vector<Correspondence>> by_target;
+  std::ptrdiff_t matched = 0;  ///< number of points with a correspondence
+
+  Block() = default;
+
+  Block(std::span<const SurfacePoint* const> points, std::span<const OrientedTarget> targets,
+        const CameraModel& camera, const Gates& gates)
+      : by_target(targets.size()) {
+    std::vector<char> is_matched(points.size(), 0);
+    for (std::size_t t = 0; t < targets.size(); ++t) {
+      const OrientedTarget& target = targets[t];
+      by_target[t].reserve(points.size());
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        auto pair =
+            correspondence(*points[i], target.target_from_source, *target.cloud, camera, gates);
+        if (!pair) continue;
+        pair->point_m = target.local_from_target * pair->point_m;
+        pair->normal = target.local_from_target.linear() * pair->normal;
+        pair->source_normal = target.local_from_target.linear() * pair->source_normal;
+        by_target[t].push_back(*pair);
+        is_matched[i] = 1;
+      }
+    }
+    matched = std::ranges::count(is_matched, 1);
+  }
+};
+
+Correspondences joined(std::span<const Block> blocks, std::size_t points, std::size_t targets) {
+  Correspondences out;
+  std::ptrdiff_t matched = 0;
+  std::size_t size = 0;
+  for (const Block& block : blocks) {
+    matched += block.matched;
+    for (const auto& pairs : block.by_target) size += pairs.size();
+  }
+  out.pairs.reserve(size);
+  for (std::size_t t = 0; t < targets; ++t) {
+    const std::size_t before = out.pairs.size();
+    for (const Block& block : blocks) {
+      out.pairs.insert(out.pairs.end(), block.by_target[t].begin(), block.by_target[t].end());
+    }
+    out.of_target.push_back(out.pairs.size() - before);
+  }
+  if (points > 0) out.overlap = static_cast<double>(matched) / static_cast<double>(points);
+  return out;
+}
+
 }  // namespace
 
 std::vector<const SurfacePoint*> select_points(const SurfaceCloud& source, int stride_px) {
@@ -92,39 +162,17 @@ Correspondences find_correspondences(const std::vector<const SurfacePoint*>& poi
                                      const CameraModel& camera,
                                      const RegistrationOptions& options) {
   const Gates gates(options);
-  const Eigen::Vector3d origin = world_from_source.translation();
-  std::vector<Pose> targets_from_source;
-  for (const RegistrationTarget& target : targets) {
-    targets_from_source.push_back(target.world_from_camera.inverse() * world_from_source);
-  }
-  std::vector<std::optional<Correspondence>> found(points.size() * targets.size());
-  const int count = static_cast<int>(found.size());
+  const std::vector<OrientedTarget> oriented = oriented_targets(targets, world_from_source);
+  const std::size_t count = (points.size() + points_per_block - 1) / points_per_block;
+  std::vector<Block> blocks(count);
   // With few points, synchronising threads costs more than it saves.
-#pragma omp parallel for schedule(static) if (count > least_points_for_threads)
-  for (int i = 0; i < count; ++i) {
-    const std::size_t t = static_cast<std::size_t>(i) / points.size();
-    const std::size_t p = static_cast<std::size_t>(i) % points.size();
-    auto pair =
-        correspondence(*points[p], targets_from_source[t], *targets[t].cloud, camera, gates);
-    if (!pair) continue;
-    const Pose& world_from_target = targets[t].world_from_camera;
-    pair->point_m = world_from_target * pair->point_m - origin;
-    pair->normal = world_from_target.linear() * pair->normal;
-    pair->source_normal = world_from_target.linear() * pair->source_normal;
-    found[i] = pair;
+#pragma omp parallel for schedule(static) if (points.size() * targets.size() > enough_for_threads)
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t first = i * points_per_block;
+    const auto size = std::min(points_per_block, points.size() - first);
+    blocks[i] = Block(std::span(points).subspan(first, size), oriented, camera, gates);
   }
-  Correspondences out;
-  out.of_target.assign(targets.size(), 0);
-  std::vector<bool> is_matched(points.size(), false);
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (!found[i]) continue;
-    out.pairs.push_back(*found[i]);
-    ++out.of_target[i / points.size()];
-    is_matched[i % points.size()] = true;
-  }
-  const auto matched = static_cast<double>(std::ranges::count(is_matched, true));
-  if (!points.empty()) out.overlap = matched / static_cast<double>(points.size());
-  return out;
+  return joined(blocks, points.size(), targets.size());
 }
 
 }  // namespace tofmap

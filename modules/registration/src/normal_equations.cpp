@@ -12,6 +12,14 @@
 
 namespace tofmap {
 
+NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
+  information += other.information;
+  gradient += other.gradient;
+  weight_sum += other.weight_sum;
+  noise_induced += other.noise_induced;
+  return *this;
+}
+
 Vector6d residual_jacobian(const Eigen::Vector3d& point_m, const Eigen::Vector3d& normal) {
   Vector6d jacobian;
   jacobian << point_m.cross(normal), normal;
@@ -20,11 +28,11 @@ Vector6d residual_jacobian(const Eigen::Vector3d& point_m, const Eigen::Vector3d
 
 double robust_scale(const std::vector<Correspondence>& pairs) {
   if (pairs.empty()) return 1;
-  std::vector<double> deviations(pairs.size());
-  std::ranges::transform(pairs, deviations.begin(), [](const Correspondence& pair) {
-    return std::abs(pair.residual_m) / std::sqrt(pair.variance_m2);
+  std::vector<double> squares(pairs.size());
+  std::ranges::transform(pairs, squares.begin(), [](const Correspondence& pair) {
+    return pair.residual_m * pair.residual_m / pair.variance_m2;
   });
-  return std::max(1.0, sigma_of_median_deviation * median(deviations));
+  return std::max(1.0, sigma_of_median_deviation * std::sqrt(median(squares)));
 }
 
 double geman_mcclure_weight(double normalised_residual, double width) {
@@ -34,10 +42,11 @@ double geman_mcclure_weight(double normalised_residual, double width) {
 
 namespace {
 
-/// Geman-McClure weight times confidence, divided by the predicted variance.
-double weight_of(const Correspondence& pair, double kernel_width) {
-  const double normalised = pair.residual_m / std::sqrt(pair.variance_m2);
-  return geman_mcclure_weight(normalised, kernel_width) * pair.confidence / pair.variance_m2;
+/// geman_mcclure_weight() of a correspondence, without a root.
+double kernel_weight(const Correspondence& pair, double kernel_width) {
+  const double width_m2 = kernel_width * kernel_width * pair.variance_m2;
+  const double ratio = width_m2 / (width_m2 + pair.residual_m * pair.residual_m);
+  return ratio * ratio;
 }
 
 /// The part of a share of the information that is relied on. The noise-induced rest is estimated
@@ -47,28 +56,22 @@ double relied_on(double share) {
   return std::max(0.0, 1 - margin * (1 - share));
 }
 
-void fill_upper(Matrix6d& lower) {
-  lower.triangularView<Eigen::StrictlyUpper>() =
-      lower.transpose().triangularView<Eigen::StrictlyUpper>();
-}
-
 }  // namespace
 
 NormalEquations build_equations(std::span<const Correspondence> pairs, double kernel_width) {
   NormalEquations equations;
   for (const Correspondence& pair : pairs) {
-    const double weight = weight_of(pair, kernel_width);
+    const double weight = kernel_weight(pair, kernel_width) * pair.confidence / pair.variance_m2;
     const Vector6d of_target = residual_jacobian(pair.point_m, pair.normal);
     const Vector6d of_source = residual_jacobian(pair.point_m, pair.source_normal);
     const Vector6d mean = (of_target + of_source) / 2;
     const Vector6d half_difference = (of_target - of_source) / 2;
-    equations.information.selfadjointView<Eigen::Lower>().rankUpdate(mean, weight);
-    equations.noise_induced.selfadjointView<Eigen::Lower>().rankUpdate(half_difference, weight);
-    equations.gradient += weight * pair.residual_m * mean;
+    const Vector6d weighted = weight * mean;
+    equations.information.noalias() += weighted * mean.transpose();
+    equations.noise_induced.noalias() += (weight * half_difference) * half_difference.transpose();
+    equations.gradient += pair.residual_m * weighted;
     equations.weight_sum += weight;
   }
-  fill_upper(equations.information);
-  fill_upper(equations.noise_induced);
   return equations;
 }
 
@@ -79,8 +82,7 @@ ResidualStatistics residual_statistics(const std::vector<Correspondence>& pairs,
   int inliers = 0;
   double sum = 0;
   for (const Correspondence& pair : pairs) {
-    const double normalised = pair.residual_m / std::sqrt(pair.variance_m2);
-    if (geman_mcclure_weight(normalised, kernel_width) < 0.5) continue;
+    if (kernel_weight(pair, kernel_width) < 0.5) continue;
     ++inliers;
     sum += pair.residual_m * pair.residual_m;
   }

@@ -20,6 +20,8 @@ struct NormalEquations {
   double weight_sum = 0;  ///< of confidence / variance, kernel included
   /// The part of `information` that is noise-induced: it comes from the noise of normals alone.
   Matrix6d noise_induced = Matrix6d::Zero();
+
+  NormalEquations& operator+=(const NormalEquations& other);
 };
 
 /// How well the residuals fit at one pose.

@@ -60,14 +60,13 @@ Vector6d prior_sigmas(const MotionPrior& prior) {
   return sigmas;
 }
 
-/// The Gauss-Newton system at one pose, prior included.
+/// The Gauss-Newton system at one pose.
 struct System {
-  NormalEquations equations;
+  NormalEquations equations;               ///< of all targets and the prior
+  std::vector<NormalEquations> of_target;  ///< of each target alone, as it is observed
   ResidualStatistics statistics;
   Observability seen;
   std::vector<int> degenerate;  ///< directions, as columns of `seen.directions`
-  double kernel_width = 0;      ///< in predicted standard deviations of the residuals
-  double independent = 1;       ///< share of a correspondence in an independent observation
 };
 
 /// Points whose plane fits share pixels are not independent observations, and residuals above the
@@ -79,15 +78,37 @@ void count_independent(NormalEquations& equations, double independent) {
   equations.noise_induced *= independent;
 }
 
-System build_system(const std::vector<Correspondence>& pairs, const Pose& pose, double lever_m,
+/// The equations of the correspondences with each target.
+std::vector<NormalEquations> equations_by_target(const Correspondences& found,
+                                                 double kernel_width) {
+  std::vector<std::span<const Correspondence>> pairs;
+  std::span<const Correspondence> rest = found.pairs;
+  for (const std::size_t count : found.of_target) {
+    pairs.push_back(rest.first(count));
+    rest = rest.subspan(count);
+  }
+  std::vector<NormalEquations> equations(pairs.size());
+  // With few correspondences, synchronising threads costs more than it saves.
+  constexpr std::size_t enough_for_threads = 4000;
+#pragma omp parallel for schedule(dynamic, 1) if (found.pairs.size() > enough_for_threads)
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    equations[i] = build_equations(pairs[i], kernel_width);
+  }
+  return equations;
+}
+
+System build_system(const Correspondences& found, const Pose& pose, double lever_m,
                     const MotionPrior& prior, const RegistrationOptions& options) {
   System system;
-  const double scale = robust_scale(pairs);
-  system.kernel_width = options.kernel_width * scale;
-  system.independent = 1 / (options.correlated_observations * scale * scale);
-  system.equations = build_equations(pairs, system.kernel_width);
-  system.statistics = residual_statistics(pairs, scale, system.kernel_width);
-  count_independent(system.equations, system.independent);
+  const double scale = robust_scale(found.pairs);
+  const double kernel_width = options.kernel_width * scale;
+  const double independent = 1 / (options.correlated_observations * scale * scale);
+  system.statistics = residual_statistics(found.pairs, scale, kernel_width);
+  system.of_target = equations_by_target(found, kernel_width);
+  for (NormalEquations& of_target : system.of_target) {
+    count_independent(of_target, independent);
+    system.equations += of_target;
+  }
   system.seen = observability(system.equations, lever_m);
   const Vector6d sigmas = prior_sigmas(prior);
   keep_shares(system.equations, system.seen, surface_shares(system.seen, system.equations));
@@ -105,16 +126,11 @@ Matrix6d surface_information(NormalEquations equations, double lever_m) {
 
 /// The information about the pose relative to each target, from the correspondences with that
 /// target alone. There is none along directions that are degenerate with all of them.
-std::vector<Matrix6d> information_by_target(const Correspondences& found, const System& system,
-                                            double lever_m) {
+std::vector<Matrix6d> information_by_target(const System& system, double lever_m) {
   Vector6d not_degenerate = Vector6d::Ones();
   for (const int i : system.degenerate) not_degenerate[i] = 0;
   std::vector<Matrix6d> information;
-  std::span<const Correspondence> pairs = found.pairs;
-  for (const std::size_t count : found.of_target) {
-    NormalEquations equations = build_equations(pairs.first(count), system.kernel_width);
-    pairs = pairs.subspan(count);
-    count_independent(equations, system.independent);
+  for (NormalEquations equations : system.of_target) {
     keep_shares(equations, system.seen, not_degenerate);
     information.push_back(surface_information(equations, lever_m));
   }
@@ -136,15 +152,15 @@ RegistrationStatus descend(const std::vector<const SurfacePoint*>& points,
                            double tolerances, RegistrationResult& result) {
   const double lever_m = median_range_m(points);
   bool has_converged = false;
-  Correspondences found;
   System system;
   while (result.iterations < options.max_iterations && !has_converged) {
-    found = find_correspondences(points, result.world_from_camera, targets, camera, options);
+    const Correspondences found =
+        find_correspondences(points, result.world_from_camera, targets, camera, options);
     result.correspondences = static_cast<int>(found.pairs.size());
     if (result.correspondences < options.min_correspondences) {
       return RegistrationStatus::few_correspondences;
     }
-    system = build_system(found.pairs, result.world_from_camera, lever_m, prior, options);
+    system = build_system(found, result.world_from_camera, lever_m, prior, options);
     const Eigen::LDLT<Matrix6d> solver(system.equations.information);
     const Vector6d twist = -solver.solve(system.equations.gradient);
     result.world_from_camera = moved(result.world_from_camera, twist);
@@ -158,7 +174,7 @@ RegistrationStatus descend(const std::vector<const SurfacePoint*>& points,
     has_converged = is_below_tolerance(twist, tolerances);
     ++result.iterations;
   }
-  result.target_information = information_by_target(found, system, lever_m);
+  result.target_information = information_by_target(system, lever_m);
   return verdict(result, has_converged, options);
 }
 
