@@ -109,6 +109,21 @@ TEST(StillOdometry, TakesSomebodyWhoLeavesOutOfTheKeyframe) {
   EXPECT_GT(count_moving(*camera.keyframe().cloud), 100);
 }
 
+TEST(StillOdometry, TracksAFrameInWhichSomebodyCoversMuchOfTheRoom) {
+  const Eigen::Vector2d near_person(0, 1);
+  StillCamera camera;
+  camera.track(0, room_view(0, {}));
+  const StillTracking found = camera.track(1, room_view(1, near_person));
+  ASSERT_TRUE(found.tracking.registered());
+  EXPECT_GT(count_moving(*found.still), 1500);
+  EXPECT_LT(error_of(found, 1), 0.002);
+  EXPECT_EQ(count_moving(*camera.keyframe().cloud), 0);
+  // Without the search for what moves, the person contradicts the free space of the keyframe.
+  StillCamera unaware({.leave_out_moving = false});
+  unaware.track(0, room_view(0, {}));
+  EXPECT_EQ(unaware.track(1, room_view(1, near_person)).tracking.status, TrackingStatus::lost);
+}
+
 TEST(StillOdometry, IsOdometryAloneIfTheOptionsSaySo) {
   OdometryOptions options;
   options.leave_out_moving = false;

@@ -67,7 +67,8 @@ std::vector<OptionField<OdometryOptions>> OdometryOptions::fields() {
       {"keyframe_translation_m", &O::keyframe_translation_m, 0.01, 10, "m",
        "distance from all nearby keyframes at which a frame becomes a keyframe; twice this "
        "distance from those of an earlier visit, half of it while a loop waits for others; a "
-       "standard deviation of a fifth of it also makes a frame a keyframe"},
+       "standard deviation of a fifth of it also makes a frame a keyframe, as does an overlap of "
+       "less than 70 %"},
       {"keyframe_rotation_rad", &O::keyframe_rotation_rad, 0.01, 3.2, "rad",
        "rotation from all nearby keyframes at which a frame becomes a keyframe; twice this "
        "rotation from those of an earlier visit"},
@@ -118,7 +119,7 @@ Odometry::Odometry(const CameraModel& camera, const OdometryOptions& options,
       uncertainty_(options.prior_rotation_sigma_rad, options.prior_translation_sigma_m) {}
 
 TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
-                               std::span<const Keyframe* const> around) {
+                               std::span<const Keyframe* const> around, bool may_contradict) {
   TrackingResult result;
   ++frames_since_registered_;
   if (!has_surface(cloud, registration_.min_correspondences)) {
@@ -144,7 +145,8 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
       periods = std::max(periods, prior_deviation_sigmas(predict(timestamp_s),
                                                          attempt.registration.world_from_camera));
     } else if (contradicts_targets(attempt, cloud)) {
-      result.status = TrackingStatus::lost;
+      result.contradicts_targets = true;
+      if (!may_contradict) result.status = TrackingStatus::lost;
     }
   }
   for (const Keyframe* target : attempt.targets) result.targets.push_back(target->id);

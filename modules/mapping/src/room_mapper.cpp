@@ -229,6 +229,9 @@ bool RoomMapper::wants_keyframe(const TrackingResult& result,
   if (result.spread.translation_sigma_m() > most_share * odometry_options_.keyframe_translation_m) {
     return true;
   }
+  // Behind a column or a person who moves, much may come into view without much motion.
+  constexpr double least_overlap = 0.7;
+  if (result.registration.overlap < least_overlap) return true;
   // Loops of keyframes that follow soon show whether the path, or the loop, is wrong.
   const double share = loop_awaits_others() ? share_for_loops : 1;
   return std::ranges::none_of(own(around), [&](const Keyframe* keyframe) {

@@ -61,6 +61,17 @@ std::vector<ComparedKeyframe> targets_and_first(const TrackingResult& frame,
   return found;
 }
 
+/// Gives keyframes other clouds. Returns those that they had.
+std::vector<CleanedKeyframe> replace_clouds(std::span<const CleanedKeyframe> others,
+                                            KeyframeGraph& keyframes) {
+  std::vector<CleanedKeyframe> before;
+  for (const CleanedKeyframe& other : others) {
+    before.push_back({other.id, keyframes[other.id].cloud});
+    keyframes.set_cloud(other.id, other.cloud);
+  }
+  return before;
+}
+
 }  // namespace
 
 StillOdometry::StillOdometry(const CameraModel& camera, const OdometryOptions& options,
@@ -79,23 +90,31 @@ StillTracking StillOdometry::track(double timestamp_s, const CloudPointer& cloud
   if (!leaves_out_moving_) return {odometry_.track(timestamp_s, *cloud, around), cloud};
   const Odometry before = odometry_;
   const CloudPointer expected = moving_.without_known(cloud, odometry_.expected_pose(timestamp_s));
-  TrackingResult first = odometry_.track(timestamp_s, *expected, around);
+  // Until they are found, things that move contradict the free space of keyframes.
+  const bool may_contradict = !compared.empty();
+  TrackingResult first = odometry_.track(timestamp_s, *expected, around, may_contradict);
   const bool is_of_background = track_background(timestamp_s, expected, around, before, first);
   if (first.status != TrackingStatus::tracked || compared.empty()) return {first, cloud};
   const auto spreads = keyframes.well_connected_to(around.back()->id);
   const Motion motion =
       moving_.find(cloud, first.world_from_camera, targets_and_first(first, compared, spreads));
-  moving_.remember(motion);
-  for (const CleanedKeyframe& keyframe : motion.keyframes) {
-    keyframes.set_cloud(keyframe.id, keyframe.cloud);
-  }
   const CloudPointer still = is_of_background ? moving_.background(motion.still) : motion.still;
-  if (motion.is_empty()) return {first, still};
-  const Odometry after_first = std::exchange(odometry_, before);
-  TrackingResult second = odometry_.track(timestamp_s, *still, around);
-  if (second.registered()) return {second, still};
-  odometry_ = after_first;
-  return {first, still};
+  const std::vector<CleanedKeyframe> as_before = replace_clouds(motion.keyframes, keyframes);
+  TrackingResult result = first;
+  if (!motion.is_empty() || first.contradicts_targets) {
+    const Odometry after_first = std::exchange(odometry_, before);
+    result = odometry_.track(timestamp_s, *still, around);
+    if (!result.registered() && first.contradicts_targets) {  // not by what moves
+      replace_clouds(as_before, keyframes);
+      return {result, cloud};
+    }
+    if (!result.registered()) {
+      result = first;
+      odometry_ = after_first;
+    }
+  }
+  moving_.remember(motion);
+  return {result, still};
 }
 
 /// In the first frames of a map the motion of the camera is not known yet, and registration may

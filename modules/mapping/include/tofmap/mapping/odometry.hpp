@@ -28,7 +28,8 @@ struct OdometryOptions {
   /// A frame becomes a keyframe if each nearby keyframe of its map is at least this far away, or
   /// `keyframe_rotation_rad` in rotation. Keyframes of an earlier visit must be twice as far away.
   /// A frame also becomes a keyframe if its position relative to them is uncertain by a fifth of
-  /// this (one standard deviation). 0.01 … 10 m.
+  /// this (one standard deviation), or if less than 70 % of its points have a correspondence in
+  /// them. 0.01 … 10 m.
   double keyframe_translation_m = 0.25;
   /// Rotation from each nearby keyframe that makes a frame a keyframe, 0.01 … 3.2 rad. See
   /// `keyframe_translation_m`.
@@ -87,6 +88,9 @@ struct TrackingResult {
   /// target.
   /// RoomMapper::add_frame() makes edges of the covariances and removes them.
   std::vector<Eigen::Matrix<double, 6, 6>> target_covariances;
+  /// Whether frame and keyframes see through each other where they should not. It is tested only if
+  /// the pose is unlikely.
+  bool contradicts_targets = false;
   PoseSpread spread;  ///< of the pose relative to all targets together, if the status is `tracked`
 
   /// Whether the pose of the frame was found.
@@ -122,9 +126,10 @@ class Odometry {
   /// Finds the pose of a frame. Frames must come in the order of time. `around` are keyframes whose
   /// relative poses are correct. The last of them is considered as a target even if it overlaps the
   /// frame by less than `min_target_overlap`. Without keyframes, every frame after the first
-  /// registered one is lost.
+  /// registered one is lost. With `may_contradict`, a frame is not lost because it contradicts free
+  /// space: something that moves may do so.
   TrackingResult track(double timestamp_s, const SurfaceCloud& cloud,
-                       std::span<const Keyframe* const> around);
+                       std::span<const Keyframe* const> around, bool may_contradict = false);
 
   /// Whether nearly as many correspondences of a registration fit its pose as is usual.
   bool fits_as_usual(const RegistrationResult& result) const;

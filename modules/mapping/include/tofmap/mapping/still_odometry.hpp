@@ -29,9 +29,10 @@ struct StillTracking {
 /// (MovingRegions) have no part in registration.
 ///
 /// A frame is registered without what moved in the frame before, and then again without what is
-/// found to move at the resulting pose. In the first 15 frames of a map, and whenever a frame fits
-/// worse than is usual, the background is also registered without the things in front of it, and
-/// determines the pose if the two results differ.
+/// found to move at the resulting pose. The first pose may contradict the free space of keyframes,
+/// since things do that have not moved before, the second one may not. In the first 15 frames of a
+/// map, and whenever a frame fits worse than is usual, the background is also registered without
+/// the things in front of it, and determines the pose if the two results differ.
 ///
 /// With `leave_out_moving` off, and with PCL's methods of registration, this is Odometry alone.
 class StillOdometry {
