@@ -4,6 +4,7 @@
 #include "support/box_room.hpp"
 #include "support/scenery.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -225,6 +226,37 @@ TEST_F(Turning, NeedsNoNewKeyframesWhereAPlaceIsSeenAgain) {
   EXPECT_EQ(thrice.trajectory(0).size(), 216U);
   // One standard deviation of the loop that connects the last keyframe with the first one.
   EXPECT_LT(last_error_m(thrice, camera_at(0).inverse() * camera_at(215)), 2.8e-3);
+}
+
+TEST_F(Turning, IsMendedByThreeLoopsIfTheFocalLengthIsWrong) {
+  CameraModel wrong = wide_camera();
+  wrong.fx_px *= 1.02;
+  RoomMapper mapper(wrong, {}, {}, loops_, {});
+  double before_rad = 0;
+  std::vector<int> keyframes;
+  for (int i = 0; i < frames; ++i) {
+    const RangeImage image = test::box_ranges(wide_camera(), box_min_, box_max_, camera_at(i));
+    const auto cloud =
+        std::make_shared<const SurfaceCloud>(surface_cloud(image, pixel_rays(wrong), {}));
+    const TrackingResult result = mapper.add_frame({i, i / 15.0, cloud}).tracking;
+    ASSERT_TRUE(result.registered()) << i;
+    if (result.is_keyframe) keyframes.push_back(i);
+    if (mapper.loops().empty()) {
+      before_rad = rotation_angle_rad(camera_at(0) * mapper.trajectory(0).back().world_from_camera,
+                                      camera_at(i));
+    }
+  }
+  mapper.finish();
+  const double after_rad = rotation_angle_rad(
+      camera_at(0) * mapper.trajectory(0).back().world_from_camera, camera_at(frames - 1));
+  EXPECT_GT(before_rad, 0.05);
+  EXPECT_LT(after_rad, 0.2 * before_rad);
+  ASSERT_EQ(mapper.loops().size(), 3U);
+  for (const Loop& loop : mapper.loops()) EXPECT_TRUE(loop.is_used);
+  // The first loop waits for others, and keyframes are taken closer together.
+  const auto first = std::ranges::find(keyframes, mapper.loops()[0].to_frame);
+  ASSERT_GT(first - keyframes.begin(), 2);
+  EXPECT_LT(mapper.loops()[2].to_frame - *first, *first - *(first - 2));
 }
 
 TEST_F(Turning, MovesPathAndMapTogether) {

@@ -62,17 +62,29 @@ bool is_supported(const PoseEdge& loop, const Loops& loops, std::span<const Keyf
          }) >= least_agreeing_loops;
 }
 
+/// Sum of the rotations from each keyframe to the next.
+double turned_rad(std::span<const Keyframe> keyframes) {
+  double sum = 0;
+  for (std::size_t i = 1; i < keyframes.size(); ++i) {
+    if (keyframes[i].map != keyframes[i - 1].map) continue;
+    sum += rotation_angle_rad(keyframes[i - 1].world_from_camera, keyframes[i].world_from_camera);
+  }
+  return sum;
+}
+
 /// Edges for the second fit: `loops`, and the edges of odometry with covariances increased so that
 /// they add up to the drift of the whole path.
 std::vector<PoseEdge> with_drift(std::span<const PoseEdge> edges, const Loops& loops,
                                  std::span<const Keyframe> keyframes, const LoopOptions& options) {
   const double drift_m = options.drift_share * keyframes.back().path_m;
-  const double share_m = drift_m / std::sqrt(static_cast<double>(keyframes.size()));
+  const double drift_rad =
+      std::hypot(drift_rad_per_drift_m * drift_m, options.drift_share * turned_rad(keyframes));
+  const double per_edge = 1 / std::sqrt(static_cast<double>(keyframes.size()));
   std::vector<PoseEdge> loosened;
   for (const PoseEdge& edge : edges) {
     if (edge.may_be_wrong) continue;
     loosened.push_back(edge);
-    widen(loosened.back(), drift_rad_per_drift_m * share_m, share_m);
+    widen(loosened.back(), per_edge * drift_rad, per_edge * drift_m);
   }
   for (const PoseEdge* loop : loops) loosened.push_back(*loop);
   return loosened;

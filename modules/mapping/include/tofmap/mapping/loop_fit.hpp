@@ -40,7 +40,7 @@ struct LoopFit {
 /// Wrong loops do not agree with each other. Therefore, if more than half of the supported loops
 /// agree with each other, but most of these are rejected, the path is taken to be wrong. The poses
 /// are then optimised again with only these loops, and with larger covariances of the other edges,
-/// which allow for a drift of `drift_share` of the path.
+/// which allow for a drift of `drift_share` of the path's length and of all turns.
 LoopFit fit_loops(std::span<const Keyframe> keyframes, std::span<const PoseEdge> edges,
                   const LoopOptions& options);
 
