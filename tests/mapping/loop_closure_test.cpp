@@ -197,6 +197,10 @@ double last_error_m(const RoomMapper& mapper, const Pose& truth) {
   return (truth.inverse() * mapper.trajectory(0).back().world_from_camera).translation().norm();
 }
 
+double last_rotation_error_rad(const RoomMapper& mapper, const Pose& truth) {
+  return rotation_angle_rad(mapper.trajectory(0).back().world_from_camera, truth);
+}
+
 TEST_F(Turning, ClosesTheLoop) {
   RoomMapper mapper(wide_camera(), {}, {}, loops_, {});
   run(mapper);
@@ -242,13 +246,12 @@ TEST_F(Turning, IsMendedByThreeLoopsIfTheFocalLengthIsWrong) {
     ASSERT_TRUE(result.registered()) << i;
     if (result.is_keyframe) keyframes.push_back(i);
     if (mapper.loops().empty()) {
-      before_rad = rotation_angle_rad(camera_at(0) * mapper.trajectory(0).back().world_from_camera,
-                                      camera_at(i));
+      before_rad = last_rotation_error_rad(mapper, camera_at(0).inverse() * camera_at(i));
     }
   }
   mapper.finish();
-  const double after_rad = rotation_angle_rad(
-      camera_at(0) * mapper.trajectory(0).back().world_from_camera, camera_at(frames - 1));
+  const double after_rad =
+      last_rotation_error_rad(mapper, camera_at(0).inverse() * camera_at(frames - 1));
   EXPECT_GT(before_rad, 0.05);
   EXPECT_LT(after_rad, 0.2 * before_rad);
   ASSERT_EQ(mapper.loops().size(), 3U);

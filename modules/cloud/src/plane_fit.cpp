@@ -174,7 +174,7 @@ template <int Count>
     float sxq = sums.sxq[i];
     float syq = sums.syq[i];
     float sqq = sums.sqq[i];
-#pragma GCC unroll 3
+#pragma GCC unroll neighbours_at_once
     for (int k = 0; k < Count; ++k) {
       const float x = first.x[i + k] - own.x[i];
       const float y = first.y[i + k] - own.y[i];

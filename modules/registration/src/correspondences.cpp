@@ -31,8 +31,6 @@ const SurfacePoint* look_up(const SurfaceCloud& target, const CameraModel& camer
   return found.has_normal() ? &found : nullptr;
 }
 
-/// More pairs of a point and a target than this are shared among threads.
-constexpr std::size_t enough_for_threads = 4000;
 constexpr std::size_t points_per_block = 512;
 
 /// Limits that a correspondence must keep, and the variance added to each.
@@ -165,7 +163,6 @@ Correspondences find_correspondences(const std::vector<const SurfacePoint*>& poi
   const std::vector<OrientedTarget> oriented = oriented_targets(targets, world_from_source);
   const std::size_t count = (points.size() + points_per_block - 1) / points_per_block;
   std::vector<Block> blocks(count);
-  // With few points, synchronising threads costs more than it saves.
 #pragma omp parallel for schedule(static) if (points.size() * targets.size() > enough_for_threads)
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t first = i * points_per_block;

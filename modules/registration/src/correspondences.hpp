@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,10 @@ struct Correspondence {
   double variance_m2 = 0;         ///< predicted variance of the residual
   double confidence = 1;          ///< probability that the wrap counts of both points are right
 };
+
+/// More correspondences than this are shared among threads. With fewer, synchronising threads costs
+/// more than it saves.
+inline constexpr std::size_t enough_for_threads = 4000;
 
 /// The source points used for registration: every n-th pixel in both axes, where n is `stride_px`,
 /// if it has a normal.

@@ -35,18 +35,17 @@ double robust_scale(const std::vector<Correspondence>& pairs) {
   return std::max(1.0, sigma_of_median_deviation * std::sqrt(median(squares)));
 }
 
-double geman_mcclure_weight(double normalised_residual, double width) {
-  const double ratio = 1 / (1 + (normalised_residual / width) * (normalised_residual / width));
+namespace {
+
+/// geman_mcclure_weight() from the squares of residual and width, so that no root is needed.
+double weight_of_squares(double squared_residual, double squared_width) {
+  const double ratio = squared_width / (squared_width + squared_residual);
   return ratio * ratio;
 }
 
-namespace {
-
-/// geman_mcclure_weight() of a correspondence, without a root.
 double kernel_weight(const Correspondence& pair, double kernel_width) {
-  const double width_m2 = kernel_width * kernel_width * pair.variance_m2;
-  const double ratio = width_m2 / (width_m2 + pair.residual_m * pair.residual_m);
-  return ratio * ratio;
+  return weight_of_squares(pair.residual_m * pair.residual_m,
+                           kernel_width * kernel_width * pair.variance_m2);
 }
 
 /// The part of a share of the information that is relied on. The noise-induced rest is estimated
@@ -57,6 +56,10 @@ double relied_on(double share) {
 }
 
 }  // namespace
+
+double geman_mcclure_weight(double normalised_residual, double width) {
+  return weight_of_squares(normalised_residual * normalised_residual, width * width);
+}
 
 NormalEquations build_equations(std::span<const Correspondence> pairs, double kernel_width) {
   NormalEquations equations;

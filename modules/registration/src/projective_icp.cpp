@@ -88,8 +88,6 @@ std::vector<NormalEquations> equations_by_target(const Correspondences& found,
     rest = rest.subspan(count);
   }
   std::vector<NormalEquations> equations(pairs.size());
-  // With few correspondences, synchronising threads costs more than it saves.
-  constexpr std::size_t enough_for_threads = 4000;
 #pragma omp parallel for schedule(dynamic, 1) if (found.pairs.size() > enough_for_threads)
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     equations[i] = build_equations(pairs[i], kernel_width);
