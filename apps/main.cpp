@@ -10,6 +10,7 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include <tofmap/core/error.hpp>
 
@@ -35,7 +36,6 @@ int run(int argc, char** argv) {
   CLI::App program("Maps of large rooms from dual-frequency time-of-flight cameras", "tofmap");
   program.set_version_flag("--version", TOFMAP_VERSION);
   program.require_subcommand(1);
-  program.failure_message(CLI::FailureMessage::simple);
   Outcome outcome;
   add_simulate_command(program, outcome);
   add_record_command(program, outcome);
@@ -58,8 +58,9 @@ int run(int argc, char** argv) {
       return fail(exit_status::bad_use,
                   "there is no command '" + first + "'; 'tofmap --help' lists all commands");
     }
-    const bool asked_for_text = program.exit(error) == 0;
-    return asked_for_text ? exit_status::done : exit_status::bad_use;
+    if (error.get_exit_code() == 0) return program.exit(error);  // the user asked for help
+    return fail(exit_status::bad_use, fmt::format("{}; 'tofmap {}--help' lists what can be given",
+                                                  error.what(), is_word ? first + " " : ""));
   }
   return outcome.status;
 }

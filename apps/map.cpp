@@ -8,6 +8,7 @@
 #include "input/map_input.hpp"
 #include "input/recording.hpp"
 #include "options/options.hpp"
+#include "output/coverage.hpp"
 #include "output/frame_report.hpp"
 #include "output/json_text.hpp"
 #include "output/output_folder.hpp"
@@ -30,6 +31,7 @@
 
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
 #include <tofmap/diagnostics/recording_survey.hpp>
 #include <tofmap/mapping/mesh_extraction.hpp>
 #include <tofmap/pipeline/frame_sample.hpp>
@@ -130,14 +132,32 @@ void keeping_map(const OutputFolder& out, const Step& step) {
   }
 }
 
-void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
-  std::printf("%zu of %zu frames registered, %zu keyframes, %zu map points\n",
-              map.trajectory.size(), map.frames.size(), map.keyframes.size(), map.surface.size());
-  for (std::size_t i = 0; i < map.separate_maps.size(); ++i) {
-    std::printf("tracking was lost: %zu more frames are in a separate map, %s\n",
-                map.separate_maps[i].trajectory.size(), files_of_separate_map(i).map.c_str());
+void print_separate_maps(const RoomMap& map, const std::filesystem::path& folder) {
+  if (map.separate_maps.empty()) return;
+  constexpr std::size_t most_named = 5;
+  const std::size_t count = map.separate_maps.size();
+  std::printf("tracking was lost, and %s could not be joined with this one:\n",
+              counted(count, "separate map").c_str());
+  for (std::size_t i = 0; i < std::min(count, most_named); ++i) {
+    std::printf("  %s: %s (%s), begun %s\n", files_of_separate_map(i).map.c_str(),
+                counted(map.separate_maps[i].trajectory.size(), "frame").c_str(),
+                told_extent(map, i).c_str(), told_beginning(map, i).c_str());
   }
-  if (map.damaged() > 0) std::printf("%d frames were damaged; see report.json\n", map.damaged());
+  if (count > most_named) std::printf("  and %zu more; see report.html\n", count - most_named);
+  std::printf(
+      "  if two maps show the same place, this may join them: tofmap register %s %s --out DIR\n",
+      (folder / "map.ply").c_str(), (folder / files_of_separate_map(0).map).c_str());
+}
+
+void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
+  std::printf("%zu of %zu frames registered, %s, %zu map points\n", map.trajectory.size(),
+              map.frames.size(), counted(map.keyframes.size(), "keyframe").c_str(),
+              map.surface.size());
+  print_separate_maps(map, folder);
+  for (const AbsentFrames& absent : absent_frames(map)) {
+    std::printf("%s in no map, %s: %s\n", counted(absent.indices.size(), "frame").c_str(),
+                absent.why.c_str(), told_indices(absent.indices).c_str());
+  }
   for (const std::string& remark : remarks_about(map.errors)) std::printf("%s\n", remark.c_str());
   const bool has_mesh = std::filesystem::exists(folder / "mesh.ply");
   std::printf("map: %s%s\n", (folder / "map.ply").c_str(), has_mesh ? ", mesh beside it" : "");
@@ -281,24 +301,6 @@ void map_frames(MapRun& run, MapInput& input, FrameSample& sample, bool quiet, L
   run.advance(input.frames(), hooks);
 }
 
-/// Resumes the run of an earlier result. The frames of the sample are not stored with a result, so
-/// those of the earlier run are unwrapped and filtered again.
-void resume(MapRun& run, SequenceReader& recording, const std::filesystem::path& folder,
-            FrameSample& sample, const PipelineOptions& options) {
-  resume_run(folder, run, recording, options);
-  const SensorModel& sensor = recording.sensor();
-  const PixelRays rays = pixel_rays(sensor.camera);
-  FrameMeasurer measurer(sensor, options.unwrap);
-  Unwrapper unwrapper(sensor, options.unwrap);
-  for (const int index : sample.missing(static_cast<int>(run.frames().size()))) {
-    stop_if_interrupted();
-    const SourcedFrame sourced = recording.read(index);
-    if (!sourced.frame) continue;
-    sample.add(*sourced.frame, prepare_ranges(measure_frame(*sourced.frame, measurer), unwrapper,
-                                              sensor, rays, options));
-  }
-}
-
 void print_how_to_resume(const RoomMap& map, const OutputFolder& out) {
   const bool can_be_resumed =
       map.interrupted && std::filesystem::exists(out.final_path() / run_state_file);
@@ -324,7 +326,7 @@ int run_map(const MapArguments& arguments) {
                    .sample = sample_for(input, options)};
   MapRun run(output.sensor, options.pipeline);
   if (arguments.resume) {
-    resume(run, *input.recording(), arguments.out, output.sample, options.pipeline);
+    resume_run(arguments.out, run, output.sample, *input.recording(), options.pipeline);
   }
   OutputFolder out(arguments.out);
   const std::unique_ptr<LiveView> view = open_view(arguments);
@@ -336,7 +338,7 @@ int run_map(const MapArguments& arguments) {
     output.losses = input.losses();
     output.acquisition = input.acquisition();
     if (run.is_interrupted() && input.is_recording()) {
-      output.state = run_state(run, *input.recording(), options.pipeline);
+      output.state = run_state(run, output.sample, *input.recording(), options.pipeline);
     }
     finished = finish_map(run, out, output);
   });

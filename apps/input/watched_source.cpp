@@ -13,6 +13,7 @@
 #include <tofmap/core/text.hpp>
 #include <tofmap/diagnostics/axial_depth.hpp>
 #include <tofmap/diagnostics/recording_survey.hpp>
+#include <tofmap/diagnostics/swapped_amplitude.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -23,10 +24,13 @@ constexpr std::size_t enough = 12;
 /// The survey of the first frames of a source, without times.
 SourceSurvey survey_of(const std::vector<DualFrequencyFrame>& first, const SensorModel& sensor) {
   for (const auto& warning :
-       {frequency_pair_warning(sensor.modulation), axial_depth_warning(first, sensor)}) {
+       {frequency_pair_warning(sensor.modulation), swapped_amplitude_warning(first),
+        axial_depth_warning(first, sensor)}) {
     if (warning) return {.warnings = {*warning}, .residual = {}, .times_s = {}};
   }
-  return {.warnings = {}, .residual = survey_residual(first, sensor), .times_s = {}};
+  SourceSurvey survey{.warnings = {}, .residual = survey_residual(first, sensor), .times_s = {}};
+  if (auto warning = camera_warning(sensor.camera)) survey.warnings.push_back(*std::move(warning));
+  return survey;
 }
 
 /// The times between the frames at these times.

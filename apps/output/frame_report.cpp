@@ -3,6 +3,8 @@
 
 #include "output/frame_report.hpp"
 
+#include "output/coverage.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -92,6 +94,7 @@ Json frame_json(const FrameRecord& record) {
   json["valid_pixels"] = record.valid_pixels;
   json["kept_pixels"] = record.kept_pixels;
   add_filter_counts(json, record.filters);
+  json["map"] = record.map > 0 ? Json(record.map) : Json(nullptr);
   json["tracking"] = tracking_json(record.tracking);
   json["milliseconds"] = times_json(record.times);
   return json;
@@ -120,30 +123,13 @@ Json errors_json(const ErrorSurvey& survey) {
           {"remarks", remarks_about(survey)}};
 }
 
-SeparateMapFiles files_of_separate_map(std::size_t index) {
-  constexpr std::size_t first = 2;
-  const std::string number = "_" + std::to_string(first + index);
-  return {"map" + number + ".ply", "trajectory" + number + ".txt", "keyframes" + number + ".txt"};
-}
-
-Json separate_maps_json(const RoomMap& map) {
-  Json separate = Json::array();
-  for (std::size_t i = 0; i < map.separate_maps.size(); ++i) {
-    const SeparateMap& one = map.separate_maps[i];
-    separate.push_back({{"map", files_of_separate_map(i).map},
-                        {"registered", one.trajectory.size()},
-                        {"keyframes", one.keyframes.size()},
-                        {"map_points", one.surface.size()}});
-  }
-  return separate;
-}
-
 Json summary_json(const RoomMap& map) {
   const StageTimes mean = mean_times(map);
   return {{"frames", map.frames.size()},
           {"damaged", map.damaged()},
           {"repeated", map.repeated()},
           {"registered", map.trajectory.size()},
+          {"missing", missing_json(map)},
           {"keyframes", map.keyframes.size()},
           {"frames_with_degenerate_directions", map.degenerate()},
           {"frames_registered_slowly", map.registered_slowly},

@@ -28,16 +28,6 @@ nlohmann::ordered_json frame_json(const FrameRecord& record);
 /// Mean times of the stages over the frames that are neither damaged nor repeated.
 StageTimes mean_times(const RoomMap& map);
 
-/// Names of the files of a separate map, in the folder of the result.
-struct SeparateMapFiles {
-  std::string map;
-  std::string trajectory;
-  std::string keyframes;
-};
-
-/// The names for RoomMap::separate_maps[index]. The first one is map 2.
-SeparateMapFiles files_of_separate_map(std::size_t index);
-
 /// Totals and means over the frames of a map.
 nlohmann::ordered_json summary_json(const RoomMap& map);
 

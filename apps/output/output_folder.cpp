@@ -29,7 +29,7 @@ fs::path resolved(const fs::path& folder) {
   if (!path.has_filename() && path.has_relative_path()) path = path.parent_path();
   if (fs::is_symlink(path, error)) {
     throw InputError(path.string() + ": is a link to " + fs::read_symlink(path, error).string() +
-                     ", which is not there; make that folder, or choose another output folder");
+                     ", which does not exist; make that folder, or choose another output folder");
   }
   return path;
 }

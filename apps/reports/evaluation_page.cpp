@@ -61,7 +61,7 @@ std::string told(const MethodResult& result) {
     text = fmt::format("the path is {:.0f} mm off", 1000 * result.scores.trajectory->ate_rmse_m);
   } else if (result.map) {
     text = std::to_string(result.map->trajectory.size()) + " of " +
-           counted(result.map->frames.size(), "frame") + " could be registered";
+           counted(result.map->frames.size(), "frame") + " are in one map";
   } else {
     const std::vector<RangeScore> scores = scores_of(result);
     if (scores.empty()) return counted(result.frames.size(), "frame") + " were unwrapped";

@@ -5,7 +5,8 @@
 
 #include "console/interruption.hpp"
 #include "console/progress.hpp"
-#include "output/frame_report.hpp"
+#include "output/coverage.hpp"
+#include "reports/coverage_section.hpp"
 #include "reports/error_curves.hpp"
 #include "reports/map_section.hpp"
 #include "reports/page_progress.hpp"
@@ -90,11 +91,12 @@ std::string sentence_of(const MapPageSubject& subject, const MapScores& scores,
                         double moved_percent) {
   const RoomMap& map = subject.map;
   std::string text = std::to_string(map.trajectory.size()) + " of " +
-                     counted(map.frames.size(), "frame") + " could be registered. ";
+                     counted(map.frames.size(), "frame") + " are in this map";
   if (!map.separate_maps.empty()) {
-    text += fmt::format("{} more are in {}: tracking was lost. ", map.separate(),
+    text += fmt::format(", {} in {}", map.separate(),
                         counted(map.separate_maps.size(), "separate map"));
   }
+  text += ". ";
   if (map.interrupted) text += "Then the run was interrupted. ";
   if (subject.options.pipeline.unwrap.method == UnwrapMethod::none) {
     text += "Nothing was unwrapped. ";
@@ -132,11 +134,10 @@ PageTable summary_table(const RoomMap& map, const MapScores& scores) {
   };
   const auto used = std::ranges::count_if(map.loops, [](const Loop& loop) { return loop.is_used; });
   add("frames", std::to_string(map.frames.size()));
-  add("damaged", std::to_string(map.damaged()));
   add("registered", std::to_string(map.trajectory.size()));
-  for (std::size_t i = 0; i < map.separate_maps.size(); ++i) {
-    add(("registered in " + files_of_separate_map(i).map).c_str(),
-        std::to_string(map.separate_maps[i].trajectory.size()));
+  if (!map.separate_maps.empty()) add("in separate maps", std::to_string(map.separate()));
+  for (const AbsentFrames& absent : absent_frames(map)) {
+    add(("in no map, " + absent.why).c_str(), std::to_string(absent.indices.size()));
   }
   add("frames with a degenerate direction, %",
       fmt::format("{:.1f}", percent(map.degenerate(), static_cast<double>(map.frames.size()))));
@@ -234,6 +235,7 @@ void write_map_page(const std::filesystem::path& result, const MapPageSubject& s
   page.add_warnings(warnings_of(subject));
   add_maps(page, shown_maps(subject, truth, scores, wrapped.map), truth.poses,
            subject.options.report);
+  add_coverage(page, map);
   add_errors(page, subject, truth, scores, sample, wrapped);
   add_frames(
       page, subject.sample, subject.sensor.modulation,

@@ -64,7 +64,11 @@ TEST(Verdict, SaysToCheckAMapThatIsNotTheOnlyOne) {
   evidence.separate = 38;
   evidence.separate_maps = 2;
   EXPECT_EQ(reason_to_check(evidence),
-            "tracking was lost, and 2 other maps with 38 frames could not be joined with this one");
+            "tracking was lost, and 2 other maps with 38 frames in total could not be joined with "
+            "this one");
+  evidence.registered = 45;
+  evidence.separate = 53;
+  EXPECT_EQ(verdict_on(evidence), Verdict::bad) << "most of the recording is elsewhere";
 }
 
 TEST(Verdict, GoesByDirectionsThatNoSurfaceConstrained) {
@@ -75,7 +79,7 @@ TEST(Verdict, GoesByDirectionsThatNoSurfaceConstrained) {
   evidence.least_certain_frame = 17;
   EXPECT_EQ(reason_to_check(evidence),
             "the position at frame 17 is uncertain by 0.12 m (one standard deviation), since "
-            "surfaces seen on the way there did not constrain all directions of motion");
+            "what the camera saw on the way there, or a gap in it, leaves its motion open");
 }
 
 TEST(Verdict, GoesByFramesThatWereRegisteredSlowly) {
@@ -110,7 +114,7 @@ TEST(Verdict, MentionsJoinsThatDoNotMakeItWorse) {
   EXPECT_EQ(verdict_on(evidence), Verdict::good);
   EXPECT_EQ(told_reasons(judge(evidence)),
             " Also: maps that began when tracking was lost were joined at recognised places "
-            "(2 times).");
+            "(2 joins).");
 }
 
 TEST(Verdict, MentionsJoinsThatWereTakenBack) {
@@ -143,7 +147,7 @@ TEST(Verdict, IsNoBetterThanWhatCouldBeChecked) {
   evidence.is_seen_twice = false;
   EXPECT_EQ(verdict_on(evidence), Verdict::check);
   evidence.is_seen_twice = true;
-  evidence.is_warned = true;
+  evidence.warnings = 1;
   EXPECT_EQ(verdict_on(evidence), Verdict::check);
 }
 
@@ -151,9 +155,11 @@ TEST(Verdict, TellsItsReasons) {
   MapEvidence evidence = good_evidence();
   EXPECT_EQ(told_reasons(judge(evidence)), "");
   evidence.registered = 90;
+  evidence.missing = {.damaged = 2, .without_return = 7, .unregistered = 1};
   evidence.is_interrupted = true;
   EXPECT_EQ(told_reasons(judge(evidence)),
-            " Reasons: 10 % of the frames could not be registered; the run was interrupted.");
+            " Reasons: 10 % of the frames are in no map (2 damaged, 7 without any return, 1 not "
+            "registered); the run was interrupted.");
 }
 
 TEST(Verdict, OnRangesGoesByWrongWraps) {

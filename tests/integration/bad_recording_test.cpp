@@ -216,7 +216,8 @@ TEST_F(BadRecording, FrameThatIsMissingIsSkippedAndNamed) {
 
 TEST_F(BadRecording, FrameOfWrongSizeIsSkippedAndNamed) {
   write_png(phase_a(1), ImageU16(ImageU16::Constant(36, 43, 7)));
-  expect_frame_1_skipped("is 43 x 36 pixels, but the camera of sequence.yaml has 44 x 36");
+  expect_frame_1_skipped(
+      "is 43 x 36 pixels, but the camera of sequence.yaml has a width of 44 and a height of 36");
 }
 
 TEST_F(BadRecording, FrameOf8BitsIsSkippedAndNamed) {

@@ -33,7 +33,7 @@ TEST_F(ReportPage, OfAMapTellsVerdictFiguresAndOptions) {
   ASSERT_EQ(run("map").status, 0);
   EXPECT_THAT(
       page(),
-      AllOf(HasSubstr("4 of 4 frames could be registered"),
+      AllOf(HasSubstr("4 of 4 frames are in this map"),
             HasSubstr("with unwrapping (joint), coloured by height"),
             HasSubstr("the same path, ranges as measured (of 4 frames), coloured by height"),
             HasSubstr("ATE, m (RMSE)"), HasSubstr("map error, m"),
@@ -82,7 +82,7 @@ TEST_F(ReportPage, OfADeviceShowsItsFrames) {
   const Finished finished = run_program({"map", "tofmap://" + sequence_.string() + "?speed=-1",
                                          "--out", out_.string(), "--set", "report.frames=3"});
   ASSERT_EQ(finished.status, 0) << finished.err;
-  EXPECT_THAT(page(), AllOf(HasSubstr("of 4 frames could be registered"),
+  EXPECT_THAT(page(), AllOf(HasSubstr("of 4 frames are in this map"),
                             HasSubstr("the same path, ranges as measured")));
   EXPECT_EQ(frames_in(page()), 3);
 }

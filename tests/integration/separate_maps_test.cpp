@@ -59,13 +59,22 @@ TEST_F(CarriedCamera, GetsAMapOfEachRoomAndIsToBeChecked) {
   // B of the last frame before was taken on the way to the other room.
   EXPECT_EQ(read_trajectory(out_ / "trajectory.txt").size(), frames_before - 1U);
   EXPECT_EQ(read_trajectory(out_ / "trajectory_2.txt").size(), std::size_t{frames_after});
-  EXPECT_THAT(run.out, HasSubstr("20 more frames are in a separate map, map_2.ply"));
+  EXPECT_THAT(run.out, HasSubstr("map_2.ply: 20 frames (frames 30 to 49, 2.00 to 3.27 s after the "
+                                 "first), begun after 1 frame that is in no map"));
+  EXPECT_THAT(run.out, HasSubstr("1 frame in no map, not registered: 29"));
+  EXPECT_THAT(run.out, HasSubstr("tofmap register " + (out_ / "map.ply").string()));
   const auto report = test::read_json(out_ / "report.json");
   const auto& separate = report["summary"]["separate_maps"];
   ASSERT_EQ(separate.size(), 1U);
   EXPECT_EQ(separate[0]["map"], "map_2.ply");
   EXPECT_EQ(separate[0]["registered"], frames_after);
   EXPECT_GT(separate[0]["map_points"], 1000);
+  EXPECT_EQ(separate[0]["first_frame"], frames_before);
+  EXPECT_EQ(separate[0]["last_frame"], frames_before + frames_after - 1);
+  EXPECT_EQ(report["frames"][0]["map"], 1);
+  EXPECT_EQ(report["frames"][frames_before - 1]["map"], nullptr);
+  EXPECT_EQ(report["frames"][frames_before]["map"], 2);
+  EXPECT_EQ(report["summary"]["missing"]["unregistered"], 1);
   EXPECT_EQ(report["frames"][frames_before]["tracking"]["status"], "first");
   EXPECT_EQ(report["frames"][frames_before + 1]["tracking"]["status"], "tracked");
   EXPECT_EQ(report["judgement"]["verdict"], "check");
@@ -74,7 +83,8 @@ TEST_F(CarriedCamera, GetsAMapOfEachRoomAndIsToBeChecked) {
   EXPECT_THAT(run.out, HasSubstr("verdict: Check this result. Reasons: tracking was lost"));
   const std::string page = test::read_text(out_ / "report.html");
   EXPECT_THAT(page, HasSubstr(reason));
-  EXPECT_THAT(page, HasSubstr("map_2.ply"));
+  EXPECT_THAT(page, HasSubstr("map_2.ply, coloured by height: 20 frames (frames 30 to 49"));
+  EXPECT_THAT(page, HasSubstr("Frames in no map"));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <sstream>
 
 #include <gmock/gmock.h>
 
@@ -94,22 +95,39 @@ TEST(SpreadIndices, OfTheLongestRecordingsStayWithin) {
   EXPECT_GT(indices.back(), total - total / 1000);
 }
 
+TEST(FrameSample, IsTheSameAfterItWasPutAside) {
+  const CameraModel camera = camera_of(4);
+  FrameSample sample(camera, 3, 9);
+  DualFrequencyFrame frame;
+  frame.index = 1;
+  frame.phase_a = ImageF::Constant(camera.height_px, camera.width_px, 0.25F);
+  PreparedFrame prepared;
+  prepared.unwrapped.image = RangeImage(camera.height_px, camera.width_px);
+  prepared.unwrapped.curl_violations = 7;
+  prepared.unwrapped.converged = false;
+  prepared.filtered.image = prepared.unwrapped.image;
+  prepared.filtered.image.reason(1, 2) = 8;
+  sample.add(frame, prepared);
+  std::stringstream aside;
+  sample.save(aside);
+
+  FrameSample resumed(camera, 3, 9);
+  resumed.load(aside);
+  add(resumed, {2, 3, 4, 5, 6, 7, 8});
+  ASSERT_THAT(indices_of(resumed), ElementsAre(1, 4, 7));
+  const SampledFrame& first = resumed.frames().front();
+  EXPECT_TRUE(same_values(first.recorded.phase_a, frame.phase_a));
+  EXPECT_EQ(first.unwrapped.curl_violations, 7);
+  EXPECT_EQ(first.unwrapped.converged, false);
+  EXPECT_TRUE((first.filtered.reason == prepared.filtered.image.reason).all());
+}
+
 TEST(FrameSample, OfKnownLengthKeepsFramesSpreadOverTheRun) {
   FrameSample sample(camera_of(4), 3, 9);
   add(sample, up_to(9));
   EXPECT_THAT(indices_of(sample), ElementsAre(1, 4, 7));
   EXPECT_TRUE(sample.wants(4));
   EXPECT_FALSE(sample.wants(5));
-}
-
-TEST(FrameSample, OfKnownLengthTakesFramesInAnyOrderAndNamesThoseThatAreMissing) {
-  FrameSample sample(camera_of(4), 3, 9);
-  add(sample, {5, 6, 7, 8});
-  EXPECT_THAT(sample.missing(9), ElementsAre(1, 4));
-  EXPECT_THAT(sample.missing(4), ElementsAre(1)) << "those before frame 4";
-  add(sample, {4, 1});
-  EXPECT_THAT(indices_of(sample), ElementsAre(1, 4, 7));
-  EXPECT_THAT(sample.missing(9), IsEmpty());
 }
 
 TEST(FrameSample, OfUnknownLengthKeepsAllOfAFew) {

@@ -10,6 +10,7 @@
 #include <omp.h>
 
 #include <tofmap/evaluation/trajectory_score.hpp>
+#include <tofmap/pipeline/frame_sample.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
 #include <tofmap/simulation/simulator.hpp>
 
@@ -318,6 +319,49 @@ TEST(MapRun, GoesOnToTheSameBitsAfterItWasPutAside) {
 
   EXPECT_FALSE(resumed.interrupted);
   expect_same_bits(resumed, at_once);
+}
+
+TEST(MapRun, GoesOnToTheSameConsistencyAfterItWasPutAside) {
+  SimulatorOptions options;
+  options.width_px = 88;
+  options.height_px = 72;
+  options.people = 1;
+  const Scene scene = make_scene("room");
+  constexpr int frames = 30;
+  const auto consistency_if_put_aside_after = [&](int first_frames) {
+    Simulator source(scene, options);
+    const auto run_until = [&](MapRun& run, FrameSample& sample, int end) {
+      MapHooks hooks;
+      hooks.keep_going = [&](int done) { return done < end; };
+      hooks.on_frame = [&](const DualFrequencyFrame& recorded, const PreparedFrame& prepared) {
+        sample.add(recorded, prepared);
+      };
+      hooks.on_motion = [&](int index, const SurfaceCloud& still) {
+        sample.drop_moving(index, still);
+      };
+      run.advance(source, hooks);
+    };
+    std::stringstream aside;
+    {
+      MapRun run(source.sensor(), {});
+      FrameSample sample(source.sensor().camera, frames, frames);
+      run_until(run, sample, first_frames);
+      run.save(aside);
+      sample.save(aside);
+    }
+    MapRun run(source.sensor(), {});
+    FrameSample sample(source.sensor().camera, frames, frames);
+    run.load(aside);
+    sample.load(aside);
+    run_until(run, sample, frames);
+    return consistency_of(run.finish(), sample, source.sensor(), UnwrapMethod::joint);
+  };
+  const Consistency at_once = consistency_if_put_aside_after(frames);
+  const Consistency resumed = consistency_if_put_aside_after(14);
+  EXPECT_GT(at_once.contradicted_percent, 0);
+  EXPECT_EQ(resumed.contradicted_percent, at_once.contradicted_percent);
+  EXPECT_EQ(resumed.residual_rms_cycles, at_once.residual_rms_cycles);
+  EXPECT_EQ(resumed.plane_thickness_m, at_once.plane_thickness_m);
 }
 
 TEST(MapRoom, ShowsEveryReadableFrameInOrder) {

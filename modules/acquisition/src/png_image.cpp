@@ -137,7 +137,8 @@ Image<Pixel> read_png(const std::filesystem::path& path) {
   if (file_bits != bits || png_get_color_type(reader.png, reader.info) != PNG_COLOR_TYPE_GRAY) {
     const int channels = png_get_channels(reader.png, reader.info);
     fail("must be a gray PNG of " + std::to_string(bits) + " bits, but has " +
-         std::to_string(file_bits) + " bits and " + std::to_string(channels) + " channel(s)");
+         std::to_string(file_bits) + " bits and " + std::to_string(channels) +
+         (channels == 1 ? " channel" : " channels"));
   }
 
   Image<Pixel> image(png_get_image_height(reader.png, reader.info),

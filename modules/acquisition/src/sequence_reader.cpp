@@ -35,7 +35,8 @@ SequenceFrameFiles parse_line(const std::vector<std::string>& words, const std::
   constexpr const char* expected =
       ": expected 'timestamp phase_a phase_b [amplitude_a amplitude_b]'";
   if (words.size() < 3 || words.size() > 5) {
-    throw InputError(place + expected + ", got " + std::to_string(words.size()) + " column(s)");
+    throw InputError(place + expected + ", got " + std::to_string(words.size()) +
+                     (words.size() == 1 ? " column" : " columns"));
   }
   SequenceFrameFiles files;
   const char* end = words[0].data() + words[0].size();
@@ -147,7 +148,7 @@ ImageU16 read_sized(const std::filesystem::path& file, const CameraModel& camera
   if (image.cols() != camera.width_px || image.rows() != camera.height_px) {
     throw InputError(file.string() + ": is " + std::to_string(image.cols()) + " x " +
                      std::to_string(image.rows()) + " pixels, but the camera of sequence.yaml " +
-                     "has " + std::to_string(camera.width_px) + " x " +
+                     "has a width of " + std::to_string(camera.width_px) + " and a height of " +
                      std::to_string(camera.height_px));
   }
   return image;

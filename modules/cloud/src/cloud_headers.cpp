@@ -47,7 +47,8 @@ void check_size(const std::filesystem::path& file, std::streamoff header_end, st
   const auto size = static_cast<std::int64_t>(std::filesystem::file_size(file));
   const std::int64_t stored = (size - header_end) / std::max<std::int64_t>(1, bytes_per_point);
   if (stored < points) {
-    throw InputError("is cut off: it should have " + std::to_string(points) + " points");
+    throw InputError("is cut off: it should have " + std::to_string(points) +
+                     " points; copy or export it again");
   }
 }
 
@@ -138,7 +139,8 @@ PlyHeader read_ply_header(std::istream& in) {
   PlyHeader header;
   std::string element;
   std::string line;
-  if (!std::getline(in, line) || !line.starts_with("ply")) throw InputError("is no PLY file");
+  if (!std::getline(in, line) || !line.starts_with("ply"))
+    throw InputError("is no PLY file: it does not begin with the word ply");
   for (int number = 0; number < most_header_lines && std::getline(in, line); ++number) {
     const std::vector<std::string> words = words_of_line(line);
     if (words.empty()) continue;

@@ -61,7 +61,8 @@ struct PointsHeader {
 };
 
 [[noreturn]] void fail_as_cut_off(std::size_t count) {
-  throw InputError("is cut off: it should have " + std::to_string(count) + " points");
+  throw InputError("is cut off: it should have " + std::to_string(count) +
+                   " points; copy or export it again");
 }
 
 /// Reads on to the POINTS section. Empty if there is none.

@@ -28,7 +28,15 @@ double millimetres(double metres) { return 1000 * metres; }
 
 void ErrorTally::add(const MeasuredFrame& frame) {
   camera_ = frame.errors.camera;
-  if (frame.errors.pixels > 0) flows_px_.push_back(static_cast<float>(frame.errors.flow_px));
+  if (frame.errors.pixels > 0) {
+    ++frames_;
+    // No camera turns by a quarter of its view between two exposures: images do not belong
+    // together.
+    const double most_flow_px = 0.25 * static_cast<double>(frame.returns.phase_a.cols());
+    if (frame.errors.flow_px < most_flow_px) {
+      flows_px_.push_back(static_cast<float>(frame.errors.flow_px));
+    }
+  }
   pixels_ += static_cast<double>((frame.valid != 0).count());
   has_amplitudes_ = frame.returns.has_amplitude();
   constexpr float raised = 1.4F;
@@ -43,7 +51,7 @@ ErrorSurvey ErrorTally::survey() const {
   ErrorSurvey survey;
   survey.camera = camera_;
   survey.has_amplitudes = has_amplitudes_;
-  survey.frames = static_cast<int>(flows_px_.size());
+  survey.frames = frames_;
   std::vector<float> flows_px = flows_px_;
   if (!flows_px.empty()) survey.flow_px = median(flows_px);
   if (pixels_ > 0) survey.ambient_share = ambient_pixels_ / pixels_;

@@ -43,18 +43,21 @@ void Judge::hold_against(Verdict verdict, std::string reason) {
 /// Whether frames are missing from the map.
 void Judge::judge_coverage() {
   constexpr double half_percent = 50;  // with fewer frames, most of the recording is missing
+  const bool has_half = percent_of_frames(evidence_, evidence_.registered) >= half_percent;
+  const Verdict if_incomplete = has_half ? Verdict::check : Verdict::bad;
   const double registered_percent =
       percent_of_frames(evidence_, evidence_.registered + evidence_.separate);
   if (registered_percent < nearly_all_percent) {
-    hold_against(
-        registered_percent < half_percent ? Verdict::bad : Verdict::check,
-        fmt::format("{:.0f} % of the frames could not be registered", 100 - registered_percent));
+    hold_against(if_incomplete, fmt::format("{:.0f} % of the frames are in no map ({})",
+                                            100 - registered_percent, told(evidence_.missing)));
   }
   if (evidence_.separate_maps > 0) {
-    hold_against(Verdict::check,
-                 fmt::format("tracking was lost, and {} with {} could not be joined with this one",
-                             number_of(evidence_.separate_maps, "other map"),
-                             number_of(evidence_.separate, "frame")));
+    hold_against(
+        if_incomplete,
+        fmt::format("tracking was lost, and {} with {}{} could not be joined with this one",
+                    number_of(evidence_.separate_maps, "other map"),
+                    number_of(evidence_.separate, "frame"),
+                    evidence_.separate_maps > 1 ? " in total" : ""));
   }
 }
 
@@ -74,8 +77,8 @@ void Judge::judge_certainty() {
   if (evidence_.position_sigma_m > most_sigma_m) {
     hold_against(Verdict::check,
                  fmt::format("the position at frame {} is uncertain by {:.2f} m (one standard "
-                             "deviation), since surfaces seen on the way there did not constrain "
-                             "all directions of motion",
+                             "deviation), since what the camera saw on the way there, or a gap in "
+                             "it, leaves its motion open",
                              evidence_.least_certain_frame, evidence_.position_sigma_m));
   }
   const double slow_percent = percent_of_frames(evidence_, evidence_.registered_slowly);
@@ -103,7 +106,7 @@ void Judge::judge_places() {
   if (evidence_.joins > 0) {
     judgement_.remarks.push_back(
         fmt::format("maps that began when tracking was lost were joined at recognised places ({})",
-                    number_of(evidence_.joins, "time")));
+                    number_of(evidence_.joins, "join")));
   }
   if (evidence_.joins_taken_back > 0) {
     judgement_.remarks.push_back(
@@ -127,8 +130,23 @@ Judgement judge(const MapEvidence& evidence) {
     judge.hold_against(Verdict::check, "no place was seen by two frames");
   }
   if (evidence.is_interrupted) judge.hold_against(Verdict::check, "the run was interrupted");
-  if (evidence.is_warned) judge.hold_against(Verdict::check, "there are warnings");
+  if (evidence.warnings > 0) {
+    judge.hold_against(Verdict::check, number_of(evidence.warnings, "warning"));
+  }
   return std::move(judge).judgement();
+}
+
+std::string told(const MissingFrames& missing) {
+  std::vector<std::string> parts;
+  const auto add = [&](int count, const char* what) {
+    if (count > 0) parts.push_back(fmt::format("{} {}", count, what));
+  };
+  add(missing.damaged, "damaged");
+  add(missing.repeated, "repeated");
+  add(missing.without_return, "without any return");
+  add(missing.without_surface, "with too little surface");
+  add(missing.unregistered, "not registered");
+  return joined(parts, ", ");
 }
 
 std::string told_reasons(const Judgement& judgement) {

@@ -12,6 +12,7 @@
 #include <tofmap/core/median.hpp>
 #include <tofmap/core/text.hpp>
 #include <tofmap/diagnostics/axial_depth.hpp>
+#include <tofmap/diagnostics/swapped_amplitude.hpp>
 
 namespace tofmap {
 namespace {
@@ -192,6 +193,7 @@ RecordingSurvey survey_recording(const SequenceReader& recording,
   survey.no_return_share = totals.share(totals.without_return);
   survey.saturated_share = totals.share(totals.saturated);
   survey_times(recording.files(), survey);
+  survey.swapped_amplitude_warning = swapped_amplitude_warning(some);
   survey.axial_depth_warning = axial_depth_warning(some, sensor);
   survey.residual = survey_residual(some, sensor);
   survey.errors = survey_errors(some, sensor);
@@ -203,6 +205,7 @@ std::vector<std::string> warnings_about(const RecordingSurvey& survey, const Sen
   const auto add = [&](std::optional<std::string> warning) {
     if (warning) warnings.push_back(*std::move(warning));
   };
+  add(camera_warning(sensor.camera));
   const std::optional<std::string> pair_warning = frequency_pair_warning(sensor.modulation);
   add(pair_warning);
   if (sensor.max_range_m > combined_range_m(sensor.modulation)) {
@@ -213,11 +216,13 @@ std::vector<std::string> warnings_about(const RecordingSurvey& survey, const Sen
   warn_of_returns(survey, warnings);
   warn_of_images(survey, warnings);
   warn_of_times(survey, warnings);
+  add(survey.swapped_amplitude_warning);
   add(survey.axial_depth_warning);
   // If there is a warning about the images themselves, A and B cannot agree, and a comparison of
   // the frequencies tells nothing new.
   const bool is_comparable = survey.residual && !pair_warning && !survey.axial_depth_warning &&
-                             survey.constant_images.empty() && survey.repeated_single == 0;
+                             !survey.swapped_amplitude_warning && survey.constant_images.empty() &&
+                             survey.repeated_single == 0;
   if (!is_comparable) return warnings;
   const std::optional<std::string> mixed_up = pairing_warning(*survey.residual);
   add(mixed_up);

@@ -230,8 +230,8 @@ std::optional<std::string> pairing_warning(const ResidualSurvey& residual, bool 
   if (!map_agrees && residual.spread_m > no_agreement * residual.ambiguity_m) {
     return fmt::format(
         "A and B agree only within {:.0f} mm, no better than images of different places; are "
-        "their folders or files mixed up, is device.layout wrong for the device, or do the images "
-        "show nothing but noise?",
+        "their folders or files mixed up, is max_range_m less than the size of the room, is "
+        "device.layout wrong for the device, or do the images show nothing but noise?",
         1000 * residual.spread_m);
   }
   return std::nullopt;
@@ -257,6 +257,24 @@ std::optional<std::string> offset_warning(const ResidualSurvey& residual,
   const bool is_smallest_by_far = std::abs(estimate_m) < residual.ambiguity_m / 4;
   if (is_known && (is_smallest_by_far || map_agrees)) return std::nullopt;
   return "A measures " + offset_text(residual) + remedy;
+}
+
+std::optional<std::string> camera_warning(const CameraModel& camera) {
+  constexpr double most_unequal = 1.25;  // pixels of cameras are square, or nearly
+  const double ratio = camera.fx_px / camera.fy_px;
+  if (!(ratio < most_unequal && ratio > 1 / most_unequal)) {
+    return fmt::format(
+        "the focal lengths differ: fx {:.1f}, fy {:.1f} px; are fx and fy right in sequence.yaml?",
+        camera.fx_px, camera.fy_px);
+  }
+  if (!(camera.cx_px >= 0 && camera.cx_px < camera.width_px && camera.cy_px >= 0 &&
+        camera.cy_px < camera.height_px)) {
+    return fmt::format(
+        "the principal point {:.1f}, {:.1f} px is outside the image; are cx and cy right in "
+        "sequence.yaml?",
+        camera.cx_px, camera.cy_px);
+  }
+  return std::nullopt;
 }
 
 std::optional<std::string> frequency_pair_warning(const Modulation& modulation) {

@@ -92,11 +92,14 @@ Patches patches_of(const RangeImage& image, const PixelRays& rays, int size_px) 
 }
 
 /// Signed distance of the centre of each patch of one frame from the plane that the other frame has
-/// there. NaN where that is no view of the same surface.
+/// there. NaN where that is no view of the same surface. The small rotations by which poses are
+/// uncertain move surfaces in proportion to their range, so distances of surfaces that are far away
+/// are scaled down.
 ImageF distances_m(const PlanarFrame& from, const PlanarFrame& to, const CameraModel& camera,
                    int size_px) {
   constexpr double same_direction = 0.94;  // cosine of 20 degrees
   constexpr double same_surface_m = 0.3;   // what is farther away is another surface
+  constexpr double far_m = 8;              // rooms are smaller
   const Pose to_from_from = to.world_from_camera.inverse() * from.world_from_camera;
   ImageF distances = ImageF::Constant(from.patches.rows(), from.patches.cols(), nan);
   for (Eigen::Index i = 0; i < distances.size(); ++i) {
@@ -113,7 +116,8 @@ ImageF distances_m(const PlanarFrame& from, const PlanarFrame& to, const CameraM
     if ((to_from_from.linear() * patch.normal).dot(other.normal) < same_direction) continue;
     const double distance_m = other.normal.dot(point_m - other.centre_m);
     if (std::abs(distance_m) < same_surface_m) {
-      distances.data()[i] = static_cast<float>(distance_m);
+      const double range_m = patch.centre_m.norm();
+      distances.data()[i] = static_cast<float>(distance_m * std::min(1.0, far_m / range_m));
     }
   }
   return distances;

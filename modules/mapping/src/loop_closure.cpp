@@ -3,9 +3,11 @@
 
 #include "tofmap/mapping/loop_closure.hpp"
 
+#include "registration_choice.hpp"
 #include "tofmap/mapping/keyframe_edge.hpp"
 #include "tofmap/mapping/keyframe_graph.hpp"
 #include "tofmap/mapping/place_recognition.hpp"
+#include "tofmap/mapping/slip_search.hpp"
 #include "tofmap/mapping/verification.hpp"
 
 #include <algorithm>
@@ -22,7 +24,8 @@ constexpr double alike_difference = 0.3;
 constexpr double most_drift_sigmas = 3;
 
 /// Largest correction by a place that was recognised farther away than ICP reaches. The drift would
-/// be larger in one of twenty cases; another place that looks the same is more likely then.
+/// be larger in one of twenty cases; a slip, or another place that looks the same, is more likely
+/// then.
 constexpr double most_recognised_sigmas = 2;
 
 /// The search for a loop of a keyframe.
@@ -37,6 +40,7 @@ struct LoopSearch {
   MotionPrior drift_from(const Keyframe& other) const;
   bool is_within(double reach_m, double reach_rad, const Keyframe& other) const;
   bool may_see_the_same(const Keyframe& other) const;
+  bool can_have_drifted_to(const Pose& pose, const Keyframe& other) const;
   std::vector<const Keyframe*> candidates() const;
 };
 
@@ -72,6 +76,11 @@ bool LoopSearch::may_see_the_same(const Keyframe& other) const {
     return false;
   }
   return is_within(options.radius_m, options.max_rotation_rad, other);
+}
+
+/// Whether drift explains that the keyframe is at a pose, relative to an earlier one.
+bool LoopSearch::can_have_drifted_to(const Pose& pose, const Keyframe& other) const {
+  return prior_deviation_sigmas(drift_from(other), pose) <= most_recognised_sigmas;
 }
 
 std::vector<const Keyframe*> LoopSearch::candidates() const {
@@ -124,7 +133,7 @@ LoopCandidate find_where_believed(const LoopSearch& search,
 }
 
 /// Recognises the place that the keyframe sees among keyframes of earlier visits near which the
-/// camera may be. Empty if that fails, or if the camera cannot have drifted that far.
+/// camera may be. Empty if that fails, or if neither drift nor a slip can have led that far.
 std::optional<LoopCandidate> find_where_alike(const LoopSearch& search,
                                               std::vector<const Keyframe*> earlier) {
   const Keyframe& keyframe = search.keyframe;
@@ -135,13 +144,20 @@ std::optional<LoopCandidate> find_where_alike(const LoopSearch& search,
   });
   if (earlier.empty()) return std::nullopt;
   const auto before = search.keyframes.first(static_cast<std::size_t>(keyframe.id));
-  const auto has_drifted_to = [&](const Keyframe& other, const Pose& pose) {
-    return prior_deviation_sigmas(search.drift_from(other), pose) <= most_recognised_sigmas;
+  const auto is_possible = [&](const Keyframe& other, const Pose& pose) {
+    return search.can_have_drifted_to(pose, other) ||
+           are_near(pose, keyframe.world_from_camera, farthest_slip_m,
+                    search.options.max_rotation_rad);
   };
-  const auto found = recognise(keyframe, std::move(earlier), has_drifted_to, before, search.camera,
+  const auto found = recognise(keyframe, std::move(earlier), is_possible, before, search.camera,
                                search.options, search.registration);
   if (!found) return std::nullopt;
-  return LoopCandidate{.from = found->from, .registration = found->registration, .edge = {}};
+  const Keyframe& from = search.keyframes[static_cast<std::size_t>(found->from)];
+  return LoopCandidate{
+      .from = found->from,
+      .registration = found->registration,
+      .edge = {},
+      .needs_slip = !search.can_have_drifted_to(found->registration.world_from_camera, from)};
 }
 
 }  // namespace

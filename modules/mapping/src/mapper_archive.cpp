@@ -149,8 +149,8 @@ void StillOdometry::serialize(Archive& archive, unsigned) {
 template <class Archive>
 void RoomMapper::serialize(Archive& archive, unsigned) {
   archive& odometry_& keyframes_& frames_& edges_& loops_;
-  archive& unfitted_loops_& waiting_loop_& last_fit_& current_& map_& begun_maps_& lost_frames_&
-      searched_;
+  archive& unfitted_loops_& waiting_loop_& last_fit_& last_slip_search_& current_& map_&
+      begun_maps_& lost_frames_& searched_;
   archive& held_& recognitions_& joins_& differing_keyframes_& joins_taken_back_;
 }
 

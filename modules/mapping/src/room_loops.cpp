@@ -29,11 +29,23 @@ void RoomMapper::close_loops() {
   const LoopCandidate candidate =
       find_loop(keyframe, keyframes_.all(), keyframes_.spreads_from(keyframe.id), camera_,
                 loop_options_, registration_);
-  if (candidate.edge) add_loop(*candidate.edge);
+  if (candidate.edge && (!candidate.needs_slip || is_slip(*candidate.edge))) {
+    add_loop(*candidate.edge);
+  }
   if (unfitted_loops_ > 0 &&
       (loop_awaits_others() || keyframe.id - last_fit_ >= keyframes_between_fits)) {
     fit();
   }
+}
+
+/// Whether a slip explains a loop that drift does not explain. The search takes long, so there is
+/// none for some keyframes after one that found no slip.
+bool RoomMapper::is_slip(const PoseEdge& loop) {
+  if (loop.to - last_slip_search_ < keyframes_between_fits) return false;
+  const bool is_found =
+      find_slip(loop, keyframes_.all(), edges_, camera_, loop_options_, registration_).has_value();
+  if (!is_found) last_slip_search_ = loop.to;
+  return is_found;
 }
 
 /// Adds a loop to those that the next fit decides on. One that would move the path waits for

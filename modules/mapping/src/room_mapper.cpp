@@ -163,6 +163,14 @@ Trajectory RoomMapper::trajectory(int map) const {
   return trajectory;
 }
 
+std::vector<int> RoomMapper::frames(int map) const {
+  std::vector<int> indices;
+  for (const RegisteredFrame& frame : frames_) {
+    if (keyframes_[frame.keyframe].map == map) indices.push_back(frame.index);
+  }
+  return indices;
+}
+
 Trajectory RoomMapper::keyframe_trajectory(int map) const {
   Trajectory trajectory;
   for (const Keyframe& keyframe : keyframes_.all()) {

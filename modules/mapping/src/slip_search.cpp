@@ -14,9 +14,6 @@
 namespace tofmap {
 namespace {
 
-/// Largest correction of a keyframe that is a slip.
-constexpr double farthest_m = 0.5;
-
 /// How far registration may end from its initial pose: the drift between the slip and the loop.
 constexpr double tolerance_m = 0.05;
 constexpr double tolerance_rad = 0.03;
@@ -76,7 +73,7 @@ std::optional<RegistrationResult> SlipSearch::slip_at(int id, const Others& othe
                                                       const Pose& corrected) const {
   const Keyframe& keyframe = at(id);
   const Pose& believed = keyframe.world_from_camera;
-  if (!are_near(corrected, believed, farthest_m, options.max_rotation_rad) ||
+  if (!are_near(corrected, believed, farthest_slip_m, options.max_rotation_rad) ||
       contradicts_free_space({keyframe.cloud.get(), corrected}, target_of(*others.front()),
                              camera)) {
     return std::nullopt;

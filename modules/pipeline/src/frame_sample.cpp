@@ -60,12 +60,11 @@ FrameSample::FrameSample(const CameraModel& camera, int wanted, std::optional<in
 
 void FrameSample::add(const DualFrequencyFrame& recorded, const PreparedFrame& prepared) {
   if (!is_its_turn(recorded.index)) return;
-  const auto after = std::ranges::upper_bound(
-      frames_, recorded.index, {}, [](const SampledFrame& frame) { return frame.recorded.index; });
-  const auto kept = frames_.insert(
-      after, {recorded, prepared.returns, prepared.unwrapped, prepared.filtered.image});
-  kept->returns.amplitude_a.resize(0, 0);
-  kept->returns.amplitude_b.resize(0, 0);
+  frames_.push_back({recorded, prepared.returns, prepared.unwrapped, prepared.filtered.image});
+  SampledFrame& kept = frames_.back();
+  kept.returns.amplitude_a.resize(0, 0);
+  kept.returns.amplitude_b.resize(0, 0);
+  kept.unwrapped.errors = {};
   if (!has_known_length_ && frames_.size() >= most_) drop_every_second();
 }
 
@@ -95,16 +94,6 @@ void FrameSample::drop_every_second() {
   for (std::size_t i = 1; 2 * i < frames_.size(); ++i) frames_[i] = std::move(frames_[2 * i]);
   frames_.resize((frames_.size() + 1) / 2);
   step_ *= 2;
-}
-
-std::vector<int> FrameSample::missing(int end) const {
-  std::vector<int> indices;
-  for (const int index : wanted_indices_) {
-    const bool is_kept = std::ranges::any_of(
-        frames_, [&](const SampledFrame& frame) { return frame.recorded.index == index; });
-    if (index < end && !is_kept) indices.push_back(index);
-  }
-  return indices;
 }
 
 void FrameSample::thin_out(int count) {

@@ -4,17 +4,13 @@
 #include "tofmap/pipeline/pipeline.hpp"
 
 #include "tofmap/core/side_by_side.hpp"
-#include "tofmap/diagnostics/recording_survey.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <numeric>
 #include <optional>
 
 #include <omp.h>
 
-#include <tofmap/core/error.hpp>
 #include <tofmap/core/timed.hpp>
 
 namespace tofmap {
@@ -122,77 +118,6 @@ void bind_options(OptionTable& table, PipelineOptions& options) {
   table.bind("odometry", options.odometry);
   table.bind("loops", options.loops);
   table.bind("map", options.map);
-}
-
-int RoomMap::repeated() const {
-  return static_cast<int>(std::ranges::count_if(frames, &FrameRecord::repeats));
-}
-
-int RoomMap::damaged() const {
-  return static_cast<int>(std::ranges::count_if(
-      frames, [](const FrameRecord& record) { return !record.damage.empty(); }));
-}
-
-int RoomMap::degenerate() const {
-  return static_cast<int>(std::ranges::count_if(frames, [](const FrameRecord& record) {
-    return record.tracking.registration.degenerate_directions > 0;
-  }));
-}
-
-int RoomMap::unused_loops() const {
-  return static_cast<int>(
-      std::ranges::count_if(loops, [](const Loop& loop) { return !loop.is_used; }));
-}
-
-int RoomMap::separate() const {
-  return std::accumulate(separate_maps.begin(), separate_maps.end(), 0,
-                         [](int sum, const SeparateMap& one) {
-                           return sum + static_cast<int>(one.trajectory.size());
-                         });
-}
-
-bool frames_agree(const RoomMap& map, const Consistency& consistency) {
-  const auto frames = static_cast<double>(map.frames.size());
-  return static_cast<double>(map.trajectory.size()) >= nearly_all_percent / 100 * frames &&
-         map.registered_slowly <= most_slow_percent / 100 * frames && map.separate_maps.empty() &&
-         !std::isnan(consistency.contradicted_percent) && warnings_about(consistency).empty();
-}
-
-MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options,
-                        const Consistency& consistency, const std::vector<std::string>& warnings) {
-  return {.frames = static_cast<int>(map.frames.size()),
-          .registered = static_cast<int>(map.trajectory.size()),
-          .separate = map.separate(),
-          .separate_maps = static_cast<int>(map.separate_maps.size()),
-          .joins = map.joins,
-          .blind_joins = map.blind_joins,
-          .joins_taken_back = map.joins_taken_back,
-          .unused_loops = map.unused_loops(),
-          .position_sigma_m = map.least_certain.error.position_m,
-          .least_certain_frame = map.least_certain.frame,
-          .registered_slowly = map.registered_slowly,
-          .is_empty = map.surface.empty(),
-          .is_interrupted = map.interrupted,
-          .is_unwrapped = options.unwrap.method != UnwrapMethod::none,
-          .accuracy_m = std::nullopt,
-          .voxel_m = options.map.voxel_m,
-          .is_seen_twice = !std::isnan(consistency.contradicted_percent),
-          .is_warned = !warnings.empty()};
-}
-
-void refuse_mostly_damaged(int damaged, int total, const std::string& first_damage) {
-  if (2 * damaged <= total) return;
-  throw InputError(
-      std::to_string(damaged) + " of " + std::to_string(total) +
-      " frames are damaged, which is more than half; nothing was written. The first damage: " +
-      first_damage);
-}
-
-void refuse_mostly_damaged(const RoomMap& map) {
-  const auto first = std::ranges::find_if(
-      map.frames, [](const FrameRecord& record) { return !record.damage.empty(); });
-  if (first == map.frames.end()) return;
-  refuse_mostly_damaged(map.damaged(), static_cast<int>(map.frames.size()), first->damage);
 }
 
 TimedMeasurement measure_frame(const DualFrequencyFrame& frame, FrameMeasurer& measurer) {
@@ -313,7 +238,12 @@ std::vector<SourcedFrame> MapRun::take_next(FrameSource& source) {
 RoomMap MapRun::finish() {
   mapper_.finish();
   RoomMap map;
+  int number_of_map = 0;
   for (const int number : mapper_.maps()) {
+    ++number_of_map;
+    for (const int index : mapper_.frames(number)) {
+      std::ranges::lower_bound(frames_, index, {}, &FrameRecord::index)->map = number_of_map;
+    }
     SeparateMap one{mapper_.trajectory(number), mapper_.keyframe_trajectory(number),
                     mapper_.surface(number)};
     if (map.trajectory.empty()) {

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Saving and loading the state of a MapRun.
+// Saving and loading the state of a MapRun and of a FrameSample.
 
+#include "tofmap/pipeline/frame_sample.hpp"
 #include "tofmap/pipeline/pipeline.hpp"
 
 #include <boost/archive/binary_iarchive.hpp>
@@ -16,8 +17,8 @@
 
 namespace boost::serialization {
 
-template <class Archive>
-void serialize(Archive& archive, tofmap::ImageF& image, unsigned) {
+template <class Archive, class Value>
+void serialize(Archive& archive, tofmap::Image<Value>& image, unsigned) {
   Eigen::Index rows = image.rows();
   Eigen::Index cols = image.cols();
   archive& rows& cols;
@@ -43,9 +44,44 @@ void serialize(Archive& archive, tofmap::FrameRecord& record, unsigned) {
   archive& record.kept_pixels& record.filters& record.times;  // save() stores `tracking`
 }
 
+template <class Archive>
+void serialize(Archive& archive, tofmap::DualFrequencyFrame& frame, unsigned) {
+  archive& frame.index& frame.timestamp_s& frame.phase_a& frame.phase_b;
+  archive& frame.amplitude_a& frame.amplitude_b;
+}
+
+template <class Archive>
+void serialize(Archive& archive, tofmap::RangeImage& image, unsigned) {
+  archive& image.range_m& image.sigma_m& image.wrap_count& image.confidence& image.reason;
+  archive& image.averaged_px& image.systematic_m;
+}
+
+template <class Archive>
+void serialize(Archive& archive, tofmap::SampledFrame& frame, unsigned) {
+  tofmap::UnwrapResult& unwrapped = frame.unwrapped;
+  archive& frame.recorded& frame.returns& frame.filtered& unwrapped.image& unwrapped.iterations;
+  archive& unwrapped.curl_violations& unwrapped.phase_noise_cycles& unwrapped.regions;
+  bool has_jumps = unwrapped.converged.has_value();
+  bool is_converged = unwrapped.converged.value_or(false);
+  archive& has_jumps& is_converged;
+  if constexpr (Archive::is_loading::value) {
+    if (has_jumps) unwrapped.converged = is_converged;
+  }
+}
+
 }  // namespace boost::serialization
 
 namespace tofmap {
+
+void FrameSample::save(std::ostream& out) const {
+  boost::archive::binary_oarchive archive(out);
+  archive << frames_;
+}
+
+void FrameSample::load(std::istream& in) {
+  boost::archive::binary_iarchive archive(in);
+  archive >> frames_;
+}
 
 void MapRun::save(std::ostream& out) const {
   {

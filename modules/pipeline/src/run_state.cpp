@@ -18,7 +18,7 @@ namespace tofmap {
 namespace {
 
 // Raise the number after the comma whenever the stored data change between two releases.
-constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 20";
+constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 21";
 
 /// The camera, frequencies and options of a run, one per line. A run can only resume a run with the
 /// same lines.
@@ -109,7 +109,8 @@ std::string read_checked(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::string run_state(const MapRun& run, const SequenceReader& source, PipelineOptions options) {
+std::string run_state(const MapRun& run, const FrameSample& sample, const SequenceReader& source,
+                      PipelineOptions options) {
   std::ostringstream state;
   state << first_line << '\n';
   for (const std::string& line : identity(source.sensor(), std::move(options))) {
@@ -117,13 +118,14 @@ std::string run_state(const MapRun& run, const SequenceReader& source, PipelineO
   }
   state << recording_line(source, static_cast<int>(run.frames().size())) << '\n';
   run.save(state);
+  sample.save(state);
   std::string text = std::move(state).str();
   text += checksum_line(text);
   return text;
 }
 
-void resume_run(const std::filesystem::path& folder, MapRun& run, SequenceReader& source,
-                PipelineOptions options) {
+void resume_run(const std::filesystem::path& folder, MapRun& run, FrameSample& sample,
+                SequenceReader& source, PipelineOptions options) {
   if (!std::filesystem::exists(folder)) return;
   const std::filesystem::path file = folder / run_state_file;
   if (!std::filesystem::is_regular_file(file)) {
@@ -142,6 +144,7 @@ void resume_run(const std::filesystem::path& folder, MapRun& run, SequenceReader
   check_recording(line, source, folder);
   try {
     run.load(in);
+    sample.load(in);
   } catch (const std::exception&) {
     throw InputError(file.string() +
                      ": was written by another build of tofmap; start anew without --resume");

@@ -38,9 +38,11 @@ struct DualFrequencyFrame {
   bool has_amplitude() const { return amplitude_a.size() > 0; }
 };
 
-/// Whether a frame has the same phases as the frame `last` before it, at both frequencies.
+/// Whether a frame has the same phases as the frame `last` before it, at both frequencies. Frames
+/// without any return do not repeat each other: the camera may be covered.
 inline bool repeats(const DualFrequencyFrame& frame, const DualFrequencyFrame& last) {
-  return same_values(frame.phase_a, last.phase_a) && same_values(frame.phase_b, last.phase_b);
+  return same_values(frame.phase_a, last.phase_a) && same_values(frame.phase_b, last.phase_b) &&
+         !frame.phase_a.isNaN().all();
 }
 
 }  // namespace tofmap

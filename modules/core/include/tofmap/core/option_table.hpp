@@ -149,6 +149,9 @@ class OptionTable {
   /// and unit to each option.
   std::string to_yaml(bool with_comments) const;
 
+  /// Whether there are options of this group; false for the empty name.
+  bool has_group(const std::string& group) const;
+
   /// All options, in the order in which they were bound.
   std::vector<OptionText> texts() const;
 
@@ -169,7 +172,6 @@ class OptionTable {
   };
 
   void add(Entry entry);
-  bool has_group(const std::string& group) const;
   Entry& find(const std::string& key, const std::string& value);
 
   std::vector<Entry> entries_;

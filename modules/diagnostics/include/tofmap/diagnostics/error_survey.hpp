@@ -36,7 +36,8 @@ class ErrorTally {
 
  private:
   CameraErrors camera_;          ///< of the last frame
-  std::vector<float> flows_px_;  ///< one number per frame whose errors could be estimated
+  int frames_ = 0;               ///< number of frames whose errors could be estimated
+  std::vector<float> flows_px_;  ///< of those frames whose images A and B belong together
   double pixels_ = 0;            ///< valid pixels
   double ambient_pixels_ = 0;    ///< those with raised noise
   double ambient_factors_ = 0;   ///< sum of the factors of pixels with raised noise

@@ -17,16 +17,30 @@ inline constexpr double nearly_all_percent = 95;
 /// right path have as many (benchmarks/troubled_rooms.py, seeds 11 to 15).
 inline constexpr double most_slow_percent = 4;
 
+/// Numbers of frames that are in no map, by the reason.
+struct MissingFrames {
+  int damaged = 0;          ///< could not be read
+  int repeated = 0;         ///< repeat the frame before them
+  int without_return = 0;   ///< no pixel has a range
+  int without_surface = 0;  ///< too few points have a normal
+  int unregistered = 0;     ///< could not be registered
+};
+
+/// The numbers with their reasons as words, for instance "3 damaged, 20 without any return". Empty
+/// if no frame is missing.
+std::string told(const MissingFrames& missing);
+
 /// The facts by which a map is judged.
 struct MapEvidence {
-  int frames = 0;            ///< frames of the recording, including damaged ones
-  int registered = 0;        ///< frames whose pose was found
-  int separate = 0;          ///< frames that are registered in separate maps
-  int separate_maps = 0;     ///< maps that could not be joined with this one
-  int joins = 0;             ///< how often maps were joined after tracking was lost
-  int blind_joins = 0;       ///< joins after the camera was not tracked for two seconds
-  int joins_taken_back = 0;  ///< joins that later frames contradicted
-  int unused_loops = 0;      ///< recognised places that the map does not agree with
+  int frames = 0;              ///< frames of the recording, including damaged ones
+  int registered = 0;          ///< frames whose pose was found
+  MissingFrames missing = {};  ///< frames that are in no map
+  int separate = 0;            ///< frames that are registered in separate maps
+  int separate_maps = 0;       ///< maps that could not be joined with this one
+  int joins = 0;               ///< how often maps were joined after tracking was lost
+  int blind_joins = 0;         ///< joins after the camera was not tracked for two seconds
+  int joins_taken_back = 0;    ///< joins that later frames contradicted
+  int unused_loops = 0;        ///< recognised places that the map does not agree with
   /// Standard deviation of the least certain position after the best alignment of the path, by what
   /// surfaces constrain, and the frame at that position.
   double position_sigma_m = 0;
@@ -38,7 +52,7 @@ struct MapEvidence {
   std::optional<double> accuracy_m;  ///< mean error of the surface; empty without ground truth
   double voxel_m = 0;                ///< edge length of the map's voxels
   bool is_seen_twice = true;  ///< some frames overlap, so that they can contradict each other
-  bool is_warned = false;     ///< there are warnings about the recording or the map
+  int warnings = 0;           ///< about the recording or the map
 };
 
 /// A verdict and the reasons why it is not better.

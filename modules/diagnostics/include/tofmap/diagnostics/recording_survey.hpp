@@ -29,9 +29,10 @@ struct RecordingSurvey {
   double median_period_s = 0;  ///< median time between consecutive frames; 0 if unknown
   double longest_gap_s = 0;    ///< longest time between consecutive frames; 0 if unknown
   int frame_before_gap = 0;    ///< index of the frame at which the longest gap begins
-  std::optional<std::string> axial_depth_warning;  ///< see axial_depth.hpp
-  std::optional<ResidualSurvey> residual;          ///< empty if too few pixels have both returns
-  ErrorSurvey errors;  ///< of up to twelve frames, spread over the recording
+  std::optional<std::string> swapped_amplitude_warning;  ///< see swapped_amplitude.hpp
+  std::optional<std::string> axial_depth_warning;        ///< see axial_depth.hpp
+  std::optional<ResidualSurvey> residual;  ///< empty if too few pixels have both returns
+  ErrorSurvey errors;                      ///< of up to twelve frames, spread over the recording
 };
 
 /// A warning that `repeated` frames repeat the previous frame. Empty if `repeated` is 0.

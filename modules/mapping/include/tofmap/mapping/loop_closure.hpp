@@ -19,6 +19,9 @@ struct LoopCandidate {
   int from = -1;                    ///< id of the earlier keyframe; −1 if there is no candidate
   RegistrationResult registration;  ///< of the later keyframe with the earlier one
   std::optional<PoseEdge> edge;     ///< loop constraint; empty if the loop was not verified
+  /// Whether drift does not explain the correction that the loop asks for. Then the loop is to be
+  /// used only if a slip of odometry does (find_slip()).
+  bool needs_slip = false;
 };
 
 /// Searches for an earlier keyframe that sees the same place as `keyframe`.
@@ -34,10 +37,10 @@ struct LoopCandidate {
 /// its current pose with a prior of drift. If that is wider than ICP reaches, or if the result is
 /// not verified, the place is recognised (recognise()) among those keyframes with an id that is
 /// smaller by at least `min_keyframes` that look alike, and the result is accepted if it is within
-/// two standard deviations of drift. A loop is found if the candidate
-/// confirms the result (confirms_place()), and if the surfaces of the candidate alone determine the
-/// relative pose (to KeyframeGraph::well_connected_sigma_m). `keyframes` are in the order of their
-/// ids, from 0, and hold all earlier keyframes; later ones are ignored.
+/// two standard deviations of drift, or at most `farthest_slip_m` away. A loop is found if the
+/// candidate confirms the result (confirms_place()), and if the surfaces of the candidate alone
+/// determine the relative pose (to KeyframeGraph::well_connected_sigma_m). `keyframes` are in the
+/// order of their ids, from 0, and hold all earlier keyframes; later ones are ignored.
 LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyframes,
                         std::span<const std::optional<PoseSpread>> spreads,
                         const CameraModel& camera, const LoopOptions& options,

@@ -108,6 +108,8 @@ class RoomMapper {
   std::vector<int> maps() const;
   /// Poses of all registered frames of a map, from the current poses of their keyframes.
   Trajectory trajectory(int map) const;
+  /// Indices of these frames in the recording, in the same order.
+  std::vector<int> frames(int map) const;
   /// Current poses of all keyframes of a map.
   Trajectory keyframe_trajectory(int map) const;
   /// How often maps were joined although the camera could have been carried to another place: it
@@ -205,6 +207,7 @@ class RoomMapper {
   bool is_own(const Keyframe& keyframe) const { return keyframe.taken_in == newest_map(); }
   std::vector<const Keyframe*> own(std::span<const Keyframe* const> keyframes) const;
   const Keyframe* keyframe_near(const Pose& pose, int map) const;
+  bool is_slip(const PoseEdge& loop);
   void add_loop(const PoseEdge& edge);
   bool loop_awaits_others() const;
   KeyframeSpacing keyframe_spacing() const;
@@ -234,12 +237,14 @@ class RoomMapper {
   int unfitted_loops_ = 0;
   int waiting_loop_ = -1;  ///< later keyframe of the newest loop that awaits others; −1: none
   int last_fit_ = 0;       ///< id of the newest keyframe in the last fit
-  int current_ = 0;        ///< id of the keyframe that the latest frame belongs to
-  int map_ = 0;            ///< the map that frames are added to
-  int begun_maps_ = 1;     ///< number of maps so far, with those that were joined or dropped
-  int lost_frames_ = 0;    ///< number of frames since the last registered one
-  int searched_ = 0;       ///< number of keyframes for which loops were searched
-  std::vector<NewFrame> held_;     ///< frames with a surface since the last registered one
+  /// Id of the newest keyframe at the last search for a slip that found none.
+  int last_slip_search_ = -keyframes_between_fits;
+  int current_ = 0;             ///< id of the keyframe that the latest frame belongs to
+  int map_ = 0;                 ///< the map that frames are added to
+  int begun_maps_ = 1;          ///< number of maps so far, with those that were joined or dropped
+  int lost_frames_ = 0;         ///< number of frames since the last registered one
+  int searched_ = 0;            ///< number of keyframes for which loops were searched
+  std::vector<NewFrame> held_;  ///< frames with a surface since the last registered one
   std::vector<JoinedMaps> joins_;  ///< those not taken back, in order
   int differing_keyframes_ = 0;    ///< of the newest map, from the map that it was joined with
   int joins_taken_back_ = 0;

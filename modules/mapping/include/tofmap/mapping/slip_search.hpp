@@ -21,6 +21,10 @@ struct Slip {
   std::vector<PoseEdge> edges;  ///< from keyframes before it, registered anew
 };
 
+/// Largest correction of a keyframe that is a slip: three times what the prior of odometry allows a
+/// frame.
+inline constexpr double farthest_slip_m = 0.75;
+
 /// Searches for a slip that explains a loop which puts its later keyframe elsewhere.
 ///
 /// After a slip, all keyframes are off by the same correction. Therefore each keyframe between both
@@ -29,9 +33,9 @@ struct Slip {
 /// (confirms_place()), and either fits clearly better (by 10 %) than a registration at the believed
 /// pose, or that registration moves away from it. Of several slips, the one that fits best is
 /// returned. Corrections of less than KeyframeGraph::well_connected_sigma_m, which are drift, and
-/// of more than half a metre at the keyframe, which odometry would not have accepted, are no slips.
-/// A keyframe has not slipped either if a later one was registered only with keyframes before it.
-/// Empty as well if both ends of the loop were taken in different maps. `keyframes` are in the
+/// of more than `farthest_slip_m` at the keyframe, which odometry would not have accepted, are
+/// none. A keyframe has not slipped either if a later one was registered only with keyframes before
+/// it. Empty as well if both ends of the loop were taken in different maps. `keyframes` are in the
 /// order of their ids, from 0.
 std::optional<Slip> find_slip(const PoseEdge& loop, std::span<const Keyframe> keyframes,
                               std::span<const PoseEdge> edges, const CameraModel& camera,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <iosfwd>
 #include <optional>
 #include <vector>
 
@@ -18,7 +19,7 @@ std::vector<int> spread_indices(int total, int wanted);
 struct SampledFrame {
   DualFrequencyFrame recorded;
   DualFrequencyFrame returns;  ///< PreparedFrame::returns, without amplitudes
-  UnwrapResult unwrapped;
+  UnwrapResult unwrapped;      ///< without errors
   RangeImage filtered;
 };
 
@@ -36,8 +37,8 @@ class FrameSample {
   /// Whether add() would keep the frame of this index. False if the length of the run is unknown.
   bool wants(int index) const;
 
-  /// Keeps the frame if it belongs to the sample, and ignores it otherwise. Frames may be added in
-  /// any order if the length of the run is known, otherwise in ascending order of their indices.
+  /// Keeps the frame if it belongs to the sample, and ignores it otherwise. Frames must be added in
+  /// ascending order of their indices.
   void add(const DualFrequencyFrame& recorded, const PreparedFrame& prepared);
 
   /// Invalidates the filtered ranges of what moves in a frame that was added (reason
@@ -45,12 +46,15 @@ class FrameSample {
   /// (Motion::still). Ignored if the frame is not kept.
   void drop_moving(int index, const SurfaceCloud& still);
 
-  /// Indices below `end` that belong to the sample, but whose frames were not added. Empty if the
-  /// length of the run is unknown.
-  std::vector<int> missing(int end) const;
-
   /// Keeps `count` of the frames, spread evenly, and frees the memory of the others.
   void thin_out(int count);
+
+  /// Saves the frames kept so far, and replaces them by saved ones. The sample of a resumed run is
+  /// then the same as without the interruption, provided that its length is known and that both
+  /// samples were constructed with the same arguments. Only the build that wrote the data can read
+  /// it. load() throws std::exception if the data is damaged.
+  void save(std::ostream& out) const;
+  void load(std::istream& in);
 
   /// The frames kept so far, in ascending order of their indices.
   const std::vector<SampledFrame>& frames() const { return frames_; }

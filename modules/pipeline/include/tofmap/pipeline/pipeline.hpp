@@ -5,18 +5,14 @@
 #include <functional>
 #include <iosfwd>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include <tofmap/acquisition/frame_source.hpp>
-#include <tofmap/cloud/cloud_file.hpp>
 #include <tofmap/cloud/surface_cloud.hpp>
-#include <tofmap/core/trajectory.hpp>
-#include <tofmap/diagnostics/consistency.hpp>
 #include <tofmap/diagnostics/error_survey.hpp>
-#include <tofmap/diagnostics/map_verdict.hpp>
 #include <tofmap/filters/filter_chain.hpp>
 #include <tofmap/mapping/room_mapper.hpp>
+#include <tofmap/pipeline/room_map.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
 namespace tofmap {
@@ -36,20 +32,6 @@ struct PipelineOptions {
 /// Adds the options of every stage to a table, each group under the name of its field in
 /// PipelineOptions.
 void bind_options(OptionTable& table, PipelineOptions& options);
-
-/// Wall-clock time that each stage took for one frame, milliseconds.
-struct StageTimes {
-  double unwrap_ms = 0;    ///< measuring noise and errors, and unwrapping
-  double filter_ms = 0;    ///< filters
-  double cloud_ms = 0;     ///< points and normals
-  double register_ms = 0;  ///< registration with keyframes
-  double map_ms = 0;       ///< integration into the map
-  double loop_ms = 0;      ///< search for loops, and the pose graph
-
-  double total_ms() const {
-    return unwrap_ms + filter_ms + cloud_ms + register_ms + map_ms + loop_ms;
-  }
-};
 
 /// A frame that has been unwrapped, filtered and turned into a cloud, but not registered yet.
 struct PreparedFrame {
@@ -83,77 +65,6 @@ PreparedFrame prepare_frame(TimedMeasurement measured, Unwrapper& unwrapper,
 PreparedFrame prepare_ranges(TimedMeasurement measured, Unwrapper& unwrapper,
                              const SensorModel& sensor, const PixelRays& rays,
                              const PipelineOptions& options);
-
-/// The result of processing one frame.
-struct FrameRecord {
-  int index = 0;
-  double timestamp_s = 0;
-  /// Why the frame could not be read; empty if it could. If it is not empty, only `damage`, `index`
-  /// and `timestamp_s` have a meaning.
-  std::string damage;
-  /// The frame has the same phases as the frame before it, and was therefore not unwrapped. Then
-  /// only `index`, `timestamp_s` and the status in `tracking` have a meaning.
-  bool repeats = false;
-  int iterations = 0;             ///< UnwrapResult::iterations
-  int curl_violations = 0;        ///< UnwrapResult::curl_violations
-  double phase_noise_cycles = 0;  ///< UnwrapResult::phase_noise_cycles
-  int valid_pixels = 0;           ///< valid pixels after unwrapping
-  int kept_pixels = 0;            ///< valid pixels after filtering
-  std::vector<FilterCount> filters;
-  TrackingResult tracking;
-  StageTimes times;
-
-  /// Whether the frame was unwrapped, filtered and tracked: it is neither damaged nor repeated.
-  bool is_prepared() const { return damage.empty() && !repeats; }
-};
-
-/// A map that could not be joined with the others of its recording, because none of their places
-/// was recognised with certainty. World coordinates are those of its first camera.
-struct SeparateMap {
-  Trajectory trajectory;  ///< world_from_camera of every frame registered in it
-  Trajectory keyframes;   ///< world_from_camera of the keyframes
-  MapCloud surface;
-};
-
-/// A map of a room, with the records of all frames. World coordinates are those of its first
-/// camera. If tracking was lost and the maps before and after could not be joined, it is the map
-/// with the most frames.
-struct RoomMap {
-  Trajectory trajectory;                   ///< world_from_camera of every registered frame
-  Trajectory keyframes;                    ///< world_from_camera of the keyframes
-  MapCloud surface;                        ///< in world coordinates
-  std::vector<SeparateMap> separate_maps;  ///< the other maps, that with the most frames first
-  std::vector<Loop> loops;                 ///< all loops that were found, used or not
-  int joins = 0;                           ///< RoomMapper::joins()
-  int blind_joins = 0;                     ///< RoomMapper::blind_joins()
-  int joins_taken_back = 0;                ///< RoomMapper::joins_taken_back()
-  PoseCertainty least_certain;             ///< RoomMapper::least_certain(); zero without keyframes
-  int registered_slowly = 0;               ///< number of frames that converged_slowly()
-  std::vector<FrameRecord> frames;         ///< all frames, in order
-  ErrorSurvey errors;                      ///< MapRun::errors at the end of the run
-  bool interrupted = false;                ///< a hook ended the run early
-
-  int damaged() const;       ///< number of frames that could not be read
-  int repeated() const;      ///< number of frames that repeat the frame before them
-  int degenerate() const;    ///< number of frames with a degenerate direction of motion
-  int separate() const;      ///< number of frames that are registered in separate maps
-  int unused_loops() const;  ///< number of loops that the poses of the keyframes do not follow
-};
-
-/// Whether nearly all frames are registered in one map, few of them slowly, and do not contradict
-/// each other, as far as its consistency measures can tell. Then wrap counts are right, apart from
-/// few.
-bool frames_agree(const RoomMap& map, const Consistency& consistency);
-
-/// The evidence for the verdict on a map without ground truth. `warnings` are those about the
-/// recording and the map.
-MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options,
-                        const Consistency& consistency, const std::vector<std::string>& warnings);
-
-/// Throws InputError if more than half of the frames are damaged. The message quotes
-/// `first_damage`.
-void refuse_mostly_damaged(int damaged, int total, const std::string& first_damage);
-void refuse_mostly_damaged(const RoomMap& map);
 
 /// Functions that a run calls. Each of them may be empty. An exception that a hook throws ends the
 /// run and is passed on.
