@@ -73,7 +73,7 @@ TEST(Verdict, SaysToCheckAMapThatIsNotTheOnlyOne) {
 
 TEST(Verdict, GoesByDirectionsThatNoSurfaceConstrained) {
   MapEvidence evidence = good_evidence();
-  evidence.position_sigma_m = 0.025;
+  evidence.position_sigma_m = 0.05;
   EXPECT_EQ(verdict_on(evidence), Verdict::good);
   evidence.position_sigma_m = 0.123;
   evidence.least_certain_frame = 17;

@@ -161,6 +161,15 @@ TEST_F(FindLoopFarOff, DoesNotBelieveInMoreDriftThanThePathAllows) {
   EXPECT_FALSE(find().edge);
 }
 
+TEST_F(FindLoopFarOff, NeedsASlipToExplainWhatDriftDoesNot) {
+  EXPECT_FALSE(find().needs_slip);
+  keyframes_.pop_back();
+  add(103, 2, moved_by({0, 0.02, 0}, {0.4, 0.3, -0.2}));
+  const LoopCandidate candidate = find();
+  EXPECT_TRUE(candidate.edge);
+  EXPECT_TRUE(candidate.needs_slip);
+}
+
 /// A camera that turns round once in a box, and a little more. It always sees a corner: before a
 /// bare wall nothing would tell of motion along it.
 class Turning : public testing::Test {
