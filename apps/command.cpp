@@ -28,9 +28,8 @@ void refuse_foreign_option(const std::string& assignment, const std::string& com
     if (option_table(other, unused).has_group(group)) owners.push_back(other);
   }
   if (owners.empty()) return;
-  throw UsageError("--set " + assignment + ": 'tofmap " + command +
-                   "' has no options of the group " + group + ", only " + joined(owners, ", ") +
-                   (owners.size() == 1 ? " has" : " have"));
+  throw UsageError("--set " + assignment + ": 'tofmap " + command + "' has no group " + group +
+                   "; it belongs to " + joined(owners, ", "));
 }
 
 }  // namespace

@@ -136,7 +136,7 @@ void print_separate_maps(const RoomMap& map, const std::filesystem::path& folder
   if (map.separate_maps.empty()) return;
   constexpr std::size_t most_named = 5;
   const std::size_t count = map.separate_maps.size();
-  std::printf("tracking was lost, and %s could not be joined with this one:\n",
+  std::printf("tracking was lost, and %s could not be joined with map.ply:\n",
               counted(count, "separate map").c_str());
   for (std::size_t i = 0; i < std::min(count, most_named); ++i) {
     std::printf("  %s: %s (%s), begun %s\n", files_of_separate_map(i).map.c_str(),
@@ -144,9 +144,9 @@ void print_separate_maps(const RoomMap& map, const std::filesystem::path& folder
                 told_extent(map, i).c_str(), told_beginning(map, i).c_str());
   }
   if (count > most_named) std::printf("  and %zu more; see report.html\n", count - most_named);
-  std::printf(
-      "  if two maps show the same place, this may join them: tofmap register %s %s --out DIR\n",
-      (folder / "map.ply").c_str(), (folder / files_of_separate_map(0).map).c_str());
+  if (map.surface.empty() || map.separate_maps.front().surface.empty()) return;
+  std::printf("  to join maps that show the same place, try: tofmap register %s %s --out DIR\n",
+              (folder / "map.ply").c_str(), (folder / files_of_separate_map(0).map).c_str());
 }
 
 void print_summary(const RoomMap& map, const std::filesystem::path& folder) {

@@ -12,6 +12,7 @@
 #include <tofmap/core/median.hpp>
 #include <tofmap/core/text.hpp>
 #include <tofmap/diagnostics/axial_depth.hpp>
+#include <tofmap/diagnostics/camera_warning.hpp>
 #include <tofmap/diagnostics/recording_survey.hpp>
 #include <tofmap/diagnostics/swapped_amplitude.hpp>
 
@@ -23,13 +24,16 @@ constexpr std::size_t enough = 12;
 
 /// The survey of the first frames of a source, without times.
 SourceSurvey survey_of(const std::vector<DualFrequencyFrame>& first, const SensorModel& sensor) {
+  SourceSurvey survey;
+  if (auto warning = camera_warning(sensor.camera)) survey.warnings.push_back(*std::move(warning));
   for (const auto& warning :
        {frequency_pair_warning(sensor.modulation), swapped_amplitude_warning(first),
         axial_depth_warning(first, sensor)}) {
-    if (warning) return {.warnings = {*warning}, .residual = {}, .times_s = {}};
+    if (!warning) continue;
+    survey.warnings.push_back(*warning);
+    return survey;
   }
-  SourceSurvey survey{.warnings = {}, .residual = survey_residual(first, sensor), .times_s = {}};
-  if (auto warning = camera_warning(sensor.camera)) survey.warnings.push_back(*std::move(warning));
+  survey.residual = survey_residual(first, sensor);
   return survey;
 }
 

@@ -4,12 +4,14 @@
 #include "output/coverage.hpp"
 
 #include <algorithm>
-#include <array>
+#include <map>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <tofmap/core/median.hpp>
 #include <tofmap/core/text.hpp>
 
 namespace tofmap::app {
@@ -17,24 +19,30 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Reason {
-  Absence absence;
-  const char* why;
-  const char* remedy;
-};
+const char* remedy_for(Absence absence) {
+  switch (absence) {
+    case Absence::damaged:
+      return "restore the files that are named below, or remove their lines from frames.txt";
+    case Absence::repeated:
+      return "the camera or its software stalled: record again";
+    case Absence::without_range:
+      return "do not cover the camera; if it was not covered, look at its exposure";
+    case Absence::without_surface:
+      return "keep more of the room in view, within the range of the camera";
+    case Absence::unregistered:
+      return "move more slowly; keep what was mapped before in view";
+  }
+  return "";
+}
 
-constexpr std::array<Reason, 5> reasons{{
-    {Absence::damaged, "damaged",
-     "restore the files that are named below, or remove their lines from frames.txt"},
-    {Absence::repeated, "repeating the frame before",
-     "record again if they are many; the camera or its software stalled"},
-    {Absence::no_return, "without any return",
-     "do not cover the camera; look at its exposure if it was not covered"},
-    {Absence::no_surface, "with too little surface",
-     "keep more of the room in view, within the range of the camera"},
-    {Absence::unregistered, "not registered",
-     "move more slowly; keep what was mapped before in view"},
-}};
+/// The median time between consecutive frames. 0 if there are fewer than two.
+double median_period_s(const RoomMap& map) {
+  std::vector<double> periods_s;
+  for (std::size_t i = 1; i < map.frames.size(); ++i) {
+    periods_s.push_back(map.frames[i].timestamp_s - map.frames[i - 1].timestamp_s);
+  }
+  return periods_s.empty() ? 0 : median(periods_s);
+}
 
 /// The records of the frames of a separate map, from the first to the last, with those in between.
 struct Extent {
@@ -53,15 +61,18 @@ Extent extent_of(const RoomMap& map, std::size_t index) {
 }  // namespace
 
 std::vector<AbsentFrames> absent_frames(const RoomMap& map) {
-  std::vector<AbsentFrames> absent;
-  for (const Reason& reason : reasons) {
-    AbsentFrames frames{reason.why, reason.remedy, {}};
-    for (const FrameRecord& record : map.frames) {
-      if (absence_of(record) == reason.absence) frames.indices.push_back(record.index);
-    }
-    if (!frames.indices.empty()) absent.push_back(std::move(frames));
+  std::map<Absence, AbsentFrames> absent;
+  for (const FrameRecord& record : map.frames) {
+    const std::optional<Absence> absence = absence_of(record);
+    if (!absence) continue;
+    AbsentFrames& frames = absent[*absence];
+    frames.why = told(*absence);
+    frames.remedy = remedy_for(*absence);
+    frames.indices.push_back(record.index);
   }
-  return absent;
+  std::vector<AbsentFrames> by_reason;
+  for (auto& [absence, frames] : absent) by_reason.push_back(std::move(frames));
+  return by_reason;
 }
 
 std::string told_indices(const std::vector<int>& indices) {
@@ -93,7 +104,7 @@ SeparateMapFiles files_of_separate_map(std::size_t index) {
 std::string told_extent(const RoomMap& map, std::size_t index) {
   const auto [first, last] = extent_of(map, index);
   const double start_s = map.frames.front().timestamp_s;
-  return fmt::format("frames {} to {}, {:.2f} to {:.2f} s after the first", first->index,
+  return fmt::format("frames {} to {}, {:.2f} to {:.2f} s after the first frame", first->index,
                      last->index, first->timestamp_s - start_s, last->timestamp_s - start_s);
 }
 
@@ -102,17 +113,21 @@ std::string told_beginning(const RoomMap& map, std::size_t index) {
   const auto before = std::find_if(std::make_reverse_iterator(first), map.frames.rend(),
                                    [](const FrameRecord& record) { return record.map > 0; });
   if (before == map.frames.rend()) return "with the recording";
-  const auto between = std::distance(before.base(), first);
+  const auto missed = static_cast<std::size_t>(std::distance(before.base(), first));
+  constexpr double most_periods = 3.5;  // as odometry counts a gap
   const double gap_s = first->timestamp_s - before->timestamp_s;
-  if (between == 0) {
-    constexpr double long_gap_s = 0.5;  // cameras take several frames a second
-    return gap_s > long_gap_s
-               ? fmt::format("after a gap of {:.2f} s", gap_s)
-               : fmt::format("because frame {} does not fit the frames before it", first->index);
+  const double frames_s = static_cast<double>(missed) * median_period_s(map);
+  const bool has_gap = gap_s - frames_s > most_periods * median_period_s(map);
+  std::string told;
+  if (missed > 0) {
+    told = "after " + counted(missed, "frame") + (missed == 1 ? " that is" : " that are") +
+           " in no map";
   }
-  return fmt::format("after {} that {} in no map",
-                     counted(static_cast<std::size_t>(between), "frame"),
-                     between == 1 ? "is" : "are");
+  if (has_gap) told += fmt::format("{}a gap of {:.2f} s", missed > 0 ? " and " : "after ", gap_s);
+  if (told.empty()) {
+    told = fmt::format("because frame {} does not fit the frames before it", first->index);
+  }
+  return told;
 }
 
 Json separate_maps_json(const RoomMap& map) {
@@ -133,12 +148,12 @@ Json separate_maps_json(const RoomMap& map) {
 }
 
 Json missing_json(const RoomMap& map) {
-  const MissingFrames missing = missing_frames(map);
-  return {{"damaged", missing.damaged},
-          {"repeated", missing.repeated},
-          {"without_return", missing.without_return},
-          {"without_surface", missing.without_surface},
-          {"unregistered", missing.unregistered}};
+  MissingFrames missing = missing_frames(map);
+  Json json;
+  for (const NamedValue<Absence>& absence : named_values(Absence{})) {
+    json[std::string(absence.name)] = missing[absence.value];
+  }
+  return json;
 }
 
 }  // namespace tofmap::app

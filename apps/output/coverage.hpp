@@ -11,11 +11,12 @@
 
 namespace tofmap::app {
 
-// Which frames of a recording are in which of its maps, in words.
+// Which frames of a recording are in which of its maps, in words. The run of the map must be
+// finished, so that FrameRecord::map is set.
 
 /// Frames that are in no map for the same reason.
 struct AbsentFrames {
-  std::string why;           ///< after "frames", for instance "without any return"
+  std::string why;           ///< after "frames", for instance "without any range"
   std::string remedy;        ///< what to do about it
   std::vector<int> indices;  ///< in order
 };
@@ -38,7 +39,7 @@ struct SeparateMapFiles {
 SeparateMapFiles files_of_separate_map(std::size_t index);
 
 /// Which frames RoomMap::separate_maps[index] has, and when they were recorded: "frames 30 to 49,
-/// 2.00 to 3.27 s after the first".
+/// 2.00 to 3.27 s after the first frame".
 std::string told_extent(const RoomMap& map, std::size_t index);
 
 /// When and why RoomMap::separate_maps[index] began, to follow "it began": "after a gap of 1.70 s".

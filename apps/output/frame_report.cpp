@@ -79,7 +79,9 @@ void add_filter_counts(Json& frame, const std::vector<FilterCount>& counts) {
 }
 
 Json frame_json(const FrameRecord& record) {
-  Json json = {{"index", record.index}, {"timestamp", record.timestamp_s}};
+  Json json = {{"index", record.index},
+               {"timestamp", record.timestamp_s},
+               {"map", record.map > 0 ? Json(record.map) : Json(nullptr)}};
   if (!record.damage.empty()) {
     json["damage"] = record.damage;
     return json;
@@ -94,7 +96,6 @@ Json frame_json(const FrameRecord& record) {
   json["valid_pixels"] = record.valid_pixels;
   json["kept_pixels"] = record.kept_pixels;
   add_filter_counts(json, record.filters);
-  json["map"] = record.map > 0 ? Json(record.map) : Json(nullptr);
   json["tracking"] = tracking_json(record.tracking);
   json["milliseconds"] = times_json(record.times);
   return json;

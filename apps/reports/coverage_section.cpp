@@ -25,9 +25,7 @@ PageFigure figure_of(const RoomMap& map, std::size_t index) {
   const GravityAlignedFrame frame = gravity_aligned_frame(one.surface, one.trajectory);
   return {map_from_above(one.surface, one.trajectory, frame, color_by_height(one.surface, frame),
                          picture_width_px),
-          fmt::format("{}, coloured by height: {} ({}); it began {}",
-                      files_of_separate_map(index).map, counted(one.trajectory.size(), "frame"),
-                      told_extent(map, index), told_beginning(map, index))};
+          files_of_separate_map(index).map + ", coloured by height"};
 }
 
 void add_separate_maps(ReportPage& page, const RoomMap& map) {
@@ -36,8 +34,15 @@ void add_separate_maps(ReportPage& page, const RoomMap& map) {
   page.add_text(
       "Tracking was lost, and these maps could not be joined with map.ply, which has the " +
       counted(map.trajectory.size(), "frame") + " " + told_indices(map.frames_in(1)) +
-      ". If two maps show the same place, 'tofmap register' may join them: it takes the "
-      "PLY files.");
+      ". If two maps show the same place, 'tofmap register' may join them: it takes the PLY "
+      "files.");
+  PageTable table{{"", "frames", "which", "it began"}, {}};
+  for (std::size_t i = 0; i < map.separate_maps.size(); ++i) {
+    table.rows.push_back({files_of_separate_map(i).map,
+                          std::to_string(map.separate_maps[i].trajectory.size()),
+                          told_extent(map, i), told_beginning(map, i)});
+  }
+  page.add_table(table);
   add_drawn(page, [&] {
     std::vector<PageFigure> figures;
     for (std::size_t i = 0; i < map.separate_maps.size(); ++i) {

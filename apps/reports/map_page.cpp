@@ -97,7 +97,7 @@ std::string sentence_of(const MapPageSubject& subject, const MapScores& scores,
                         counted(map.separate_maps.size(), "separate map"));
   }
   text += ". ";
-  if (map.interrupted) text += "Then the run was interrupted. ";
+  if (map.interrupted) text += "The run was interrupted. ";
   if (subject.options.pipeline.unwrap.method == UnwrapMethod::none) {
     text += "Nothing was unwrapped. ";
   } else {

@@ -42,7 +42,7 @@ TEST(AbsentFrames, HaveTheReasonThatExcludedThem) {
     told.push_back(absent.why + ": " + told_indices(absent.indices));
   }
   EXPECT_EQ(told, (std::vector<std::string>{"damaged: 1", "repeating the frame before: 2",
-                                            "without any return: 3", "with too little surface: 4",
+                                            "without any range: 3", "with too little surface: 4",
                                             "not registered: 5 to 6"}));
 }
 
@@ -53,11 +53,15 @@ TEST(SeparateMaps, SayWhenAndWhyTheyBegan) {
   for (int i = 3; i < 5; ++i) map.frames.push_back(frame(i, 2));
   map.frames.push_back(frame(5, 0));
   for (int i = 6; i < 8; ++i) map.frames.push_back(frame(i, 3));
-  EXPECT_EQ(told_extent(map, 0), "frames 3 to 4, 0.75 to 1.00 s after the first");
+  EXPECT_EQ(told_extent(map, 0), "frames 3 to 4, 0.75 to 1.00 s after the first frame");
   EXPECT_EQ(told_beginning(map, 0), "because frame 3 does not fit the frames before it");
   EXPECT_EQ(told_beginning(map, 1), "after 1 frame that is in no map");
   for (std::size_t i = 3; i < map.frames.size(); ++i) map.frames[i].timestamp_s += 2;
   EXPECT_EQ(told_beginning(map, 0), "after a gap of 2.25 s");
+  for (std::size_t i = 6; i < map.frames.size(); ++i) map.frames[i].timestamp_s += 60;
+  EXPECT_EQ(told_beginning(map, 1), "after 1 frame that is in no map and a gap of 60.50 s");
+  for (FrameRecord& record : map.frames) record.timestamp_s = 4 * record.index;
+  EXPECT_EQ(told_beginning(map, 0), "because frame 3 does not fit the frames before it");
 }
 
 TEST(SeparateMaps, MayHoldTheFirstFramesOfARecording) {

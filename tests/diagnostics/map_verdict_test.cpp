@@ -77,9 +77,11 @@ TEST(Verdict, GoesByDirectionsThatNoSurfaceConstrained) {
   EXPECT_EQ(verdict_on(evidence), Verdict::good);
   evidence.position_sigma_m = 0.123;
   evidence.least_certain_frame = 17;
-  EXPECT_EQ(reason_to_check(evidence),
-            "the position at frame 17 is uncertain by 0.12 m (one standard deviation), since "
-            "what the camera saw on the way there, or a gap in it, leaves its motion open");
+  EXPECT_EQ(
+      reason_to_check(evidence),
+      "the position at frame 17 is uncertain by 0.12 m (one standard deviation): the surfaces "
+      "seen on the way there, or a gap in the recording, did not determine all directions of "
+      "motion");
 }
 
 TEST(Verdict, GoesByFramesThatWereRegisteredSlowly) {
@@ -88,8 +90,8 @@ TEST(Verdict, GoesByFramesThatWereRegisteredSlowly) {
   EXPECT_EQ(verdict_on(evidence), Verdict::good);
   evidence.registered_slowly = 5;
   EXPECT_EQ(reason_to_check(evidence),
-            "5 % of the frames took many iterations to register, since their surfaces, or noise, "
-            "left some directions of motion open");
+            "5 % of the frames took many iterations to register: their surfaces, or noise, hardly "
+            "determined some directions of motion");
 }
 
 TEST(Verdict, SaysToCheckAMapThatRecognisedPlacesContradict) {
@@ -155,10 +157,11 @@ TEST(Verdict, TellsItsReasons) {
   MapEvidence evidence = good_evidence();
   EXPECT_EQ(told_reasons(judge(evidence)), "");
   evidence.registered = 90;
-  evidence.missing = {.damaged = 2, .without_return = 7, .unregistered = 1};
+  evidence.missing = {
+      {Absence::damaged, 2}, {Absence::without_range, 7}, {Absence::unregistered, 1}};
   evidence.is_interrupted = true;
   EXPECT_EQ(told_reasons(judge(evidence)),
-            " Reasons: 10 % of the frames are in no map (2 damaged, 7 without any return, 1 not "
+            " Reasons: 10 % of the frames are in no map (2 damaged, 7 without any range, 1 not "
             "registered); the run was interrupted.");
 }
 

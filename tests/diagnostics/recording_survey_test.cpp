@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tofmap/diagnostics/camera_warning.hpp>
 #include <tofmap/diagnostics/recording_survey.hpp>
 #include <tofmap/simulation/simulator.hpp>
 
@@ -151,6 +152,28 @@ CameraErrors camera_of(double offset_m) {
   return camera;
 }
 
+TEST(CameraWarning, IsOfUnequalFocalLengths) {
+  CameraModel camera;
+  camera.fx_px = 64;
+  camera.fy_px = 70;
+  EXPECT_FALSE(camera_warning(camera));
+  camera.fy_px = 640;
+  EXPECT_THAT(camera_warning(camera).value_or(""), HasSubstr("fx 64.0 px and fy 640.0 px"));
+}
+
+TEST(ErrorTally, LeavesOutFlowsThatAreNoMotion) {
+  MeasuredFrame frame;
+  frame.returns.phase_a = ImageF::Zero(72, 88);
+  frame.errors.pixels = 1000;
+  ErrorTally tally;
+  for (const double flow_px : {2.0, 3.0, 4.0, 60.0, 60.0, 60.0, 60.0}) {
+    frame.errors.flow_px = flow_px;
+    tally.add(frame);
+  }
+  EXPECT_EQ(tally.survey().flow_px, 3);
+  EXPECT_EQ(tally.survey().frames, 7);
+}
+
 TEST(OffsetWarning, IsThereWhereUnwrappingDidNotFindTheSameSmallOffset) {
   const CameraErrors small = camera_of(0.05);
   EXPECT_FALSE(offset_warning(residual_of(0.06), &small)) << "both agree";
@@ -230,6 +253,29 @@ TEST_F(Survey, CountsFramesWithoutAnyReturn) {
   });
   EXPECT_EQ(survey().without_return, 1);
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("camera covered")));
+}
+
+TEST_F(Survey, DoesNotTakeACoveredCameraForOneThatRepeats) {
+  record([](DualFrequencyFrame& frame) {
+    if (frame.index < 2) return;
+    frame.phase_a.setConstant(NAN);
+    frame.phase_b.setConstant(NAN);
+  });
+  EXPECT_EQ(survey().repeated, 0);
+  EXPECT_EQ(survey().without_return, 4);
+}
+
+TEST_F(Survey, TellsPhasesFromAmplitudes) {
+  constexpr float full_scale = 60000;
+  record([&](DualFrequencyFrame& frame) {
+    const DualFrequencyFrame recorded = frame;
+    frame.phase_a = recorded.amplitude_a / full_scale;
+    frame.phase_b = recorded.amplitude_b / full_scale;
+    frame.amplitude_a = recorded.phase_a.isNaN().select(0.0F, recorded.phase_a * full_scale);
+    frame.amplitude_b = recorded.phase_b.isNaN().select(0.0F, recorded.phase_b * full_scale);
+  });
+  survey();
+  EXPECT_THAT(warnings_, Contains(HasSubstr("phases and amplitudes are mixed up")));
 }
 
 TEST_F(Survey, TellsHowMuchIsSaturated) {

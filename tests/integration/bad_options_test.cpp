@@ -66,7 +66,14 @@ TEST(BadCommand, IsNamed) {
   EXPECT_THAT(finished.err, HasSubstr("no command 'foo'"));
 }
 
-TEST_F(BadOptions, UnknownArgumentIsRefused) { expect_bad_use({"--fast"}, {"--fast"}); }
+TEST_F(BadOptions, UnknownArgumentIsRefused) {
+  expect_bad_use({"--fast"}, {"tofmap: ", "--fast", " --help' lists what can be given"});
+}
+
+TEST_F(BadOptions, OptionOfAnotherCommandIsRefusedWithItsName) {
+  expect_bad_use({"--set", "simulator.people=1"},
+                 {"simulator.people=1", "has no group simulator; it belongs to simulate"});
+}
 
 TEST_F(BadOptions, NumberOfThreadsIsChecked) { expect_bad_use({"--threads", "-1"}, {"--threads"}); }
 

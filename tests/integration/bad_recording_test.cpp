@@ -58,6 +58,13 @@ class BadRecording : public WithRecording {
       EXPECT_THAT(report["frames"][1]["damage"], HasSubstr(damage)) << command;
       EXPECT_THAT(report["frames"][1]["damage"], HasSubstr("000001.png")) << command;
       EXPECT_FALSE(report["frames"][2].contains("damage")) << command;
+      if (command == "map") {
+        EXPECT_EQ(report["frames"][1]["map"], nullptr);
+        EXPECT_EQ(report["frames"][2]["map"], 1);
+        EXPECT_EQ(report["summary"]["missing"]["damaged"], 1);
+        EXPECT_THAT(finished.out, HasSubstr("1 frame in no map, damaged: 1\n"));
+        EXPECT_THAT(read_text(out_ / "report.html"), HasSubstr(damage));
+      }
     }
     const Finished info = run("info");
     EXPECT_EQ(info.status, 0);
@@ -177,6 +184,7 @@ TEST_F(BadRecording, ThatStandsStillForAWhileGetsAWarning) {
   EXPECT_EQ(report["summary"]["repeated"], 1);
   EXPECT_FALSE(report["frames"][2].contains("repeats"));
   EXPECT_EQ(report["frames"][3]["repeats"], true);
+  EXPECT_EQ(report["frames"][3]["map"], nullptr);
 }
 
 TEST_F(BadRecording, WithTimesInMillisecondsGetsAWarning) {

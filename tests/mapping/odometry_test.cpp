@@ -157,14 +157,16 @@ TEST(Odometry, MovesWithItsKeyframes) {
   EXPECT_LT(error_m(next, 15, elsewhere), 2e-3);
 }
 
-/// How a camera is followed that stands still for `still` frames and then makes these motions, one
-/// per frame.
-void expect_followed(int still, const std::vector<Pose>& motions) {
+/// How a camera is followed that stands still for `still` frames in a box and then makes these
+/// motions, one per frame.
+void expect_followed(int still, const std::vector<Pose>& motions,
+                     const Vector3d& box_min = odometry_room_min,
+                     const Vector3d& box_max = odometry_room_max) {
   FollowedCamera camera;
   Pose pose = Pose::Identity();
   const auto seen = [&] {
     return std::make_shared<const SurfaceCloud>(
-        test::box_cloud(test::small_camera(), odometry_room_min, odometry_room_max, pose));
+        test::box_cloud(test::small_camera(), box_min, box_max, pose));
   };
   for (int frame = 0; frame < still; ++frame) camera.track(frame, seen());
   int frame = still;
@@ -197,6 +199,14 @@ TEST(Odometry, FollowsAStandingCameraThatTurnsBy20DegreesAndMovesBy30Centimetres
     expect_followed(5, {turned_by_deg(axis, 20, {0.2, -0.1, 0.2}),
                         turned_by_deg(axis, -20, {-0.2, 0.1, -0.2})});
   }
+}
+
+TEST(Odometry, FollowsATurnBeforeAWallAlongWhichNothingShowsTheMotion) {
+  const Vector3d corridor_min(-60, -1, -1);
+  const Vector3d corridor_max(60, 1.2, 4);
+  const Vector3d still(0, 0, 0);
+  expect_followed(8, {turned_by_deg({0, 1, 0}, 18, still), turned_by_deg({0, 1, 0}, -18, still)},
+                  corridor_min, corridor_max);
 }
 
 TEST(Odometry, DoesNotBelieveALeap) {

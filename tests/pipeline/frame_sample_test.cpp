@@ -112,7 +112,7 @@ TEST(FrameSample, IsTheSameAfterItWasPutAside) {
   sample.save(aside);
 
   FrameSample resumed(camera, 3, 9);
-  resumed.load(aside);
+  resumed.load(aside, 2);
   add(resumed, {2, 3, 4, 5, 6, 7, 8});
   ASSERT_THAT(indices_of(resumed), ElementsAre(1, 4, 7));
   const SampledFrame& first = resumed.frames().front();
@@ -120,6 +120,17 @@ TEST(FrameSample, IsTheSameAfterItWasPutAside) {
   EXPECT_EQ(first.unwrapped.curl_violations, 7);
   EXPECT_EQ(first.unwrapped.converged, false);
   EXPECT_TRUE((first.filtered.reason == prepared.filtered.image.reason).all());
+}
+
+TEST(FrameSample, ThatWantsFewerFramesLoadsFewer) {
+  const CameraModel camera = camera_of(4);
+  FrameSample sample(camera, 20, 20);
+  add(sample, up_to(10));
+  std::stringstream aside;
+  sample.save(aside);
+  FrameSample resumed(camera, 4, 20);
+  resumed.load(aside, 10);
+  EXPECT_THAT(indices_of(resumed), ElementsAre(2, 7)) << "two of the four are to come";
 }
 
 TEST(FrameSample, OfKnownLengthKeepsFramesSpreadOverTheRun) {

@@ -73,21 +73,22 @@ void Judge::judge_accuracy() {
 /// Whether the surfaces constrained the path.
 void Judge::judge_certainty() {
   // Motion that surfaces do not constrain is mostly steadier than its prior: half of the paths are
-  // off by less than a quarter of a standard deviation. Of the maps of benchmarks/troubled_rooms.py,
-  // seeds 11 to 15 and 21 to 24, that are off by more than 5 cm, none has less than 9 cm.
+  // off by less than a quarter of a standard deviation. Of the maps of
+  // benchmarks/troubled_rooms.py, seeds 11 to 15 and 21 to 24, none that is off by more than 5 cm
+  // has a standard deviation below 9 cm.
   constexpr double most_sigma_m = 0.05;
   if (evidence_.position_sigma_m > most_sigma_m) {
     hold_against(Verdict::check,
                  fmt::format("the position at frame {} is uncertain by {:.2f} m (one standard "
-                             "deviation), since what the camera saw on the way there, or a gap in "
-                             "it, leaves its motion open",
+                             "deviation): the surfaces seen on the way there, or a gap in the "
+                             "recording, did not determine all directions of motion",
                              evidence_.least_certain_frame, evidence_.position_sigma_m));
   }
   const double slow_percent = percent_of_frames(evidence_, evidence_.registered_slowly);
   if (slow_percent > most_slow_percent) {
     hold_against(Verdict::check,
-                 fmt::format("{:.0f} % of the frames took many iterations to register, since their "
-                             "surfaces, or noise, left some directions of motion open",
+                 fmt::format("{:.0f} % of the frames took many iterations to register: their "
+                             "surfaces, or noise, hardly determined some directions of motion",
                              slow_percent));
   }
 }
@@ -136,19 +137,6 @@ Judgement judge(const MapEvidence& evidence) {
     judge.hold_against(Verdict::check, number_of(evidence.warnings, "warning"));
   }
   return std::move(judge).judgement();
-}
-
-std::string told(const MissingFrames& missing) {
-  std::vector<std::string> parts;
-  const auto add = [&](int count, const char* what) {
-    if (count > 0) parts.push_back(fmt::format("{} {}", count, what));
-  };
-  add(missing.damaged, "damaged");
-  add(missing.repeated, "repeated");
-  add(missing.without_return, "without any return");
-  add(missing.without_surface, "with too little surface");
-  add(missing.unregistered, "not registered");
-  return joined(parts, ", ");
 }
 
 std::string told_reasons(const Judgement& judgement) {

@@ -12,6 +12,7 @@
 #include <tofmap/core/median.hpp>
 #include <tofmap/core/text.hpp>
 #include <tofmap/diagnostics/axial_depth.hpp>
+#include <tofmap/diagnostics/camera_warning.hpp>
 #include <tofmap/diagnostics/swapped_amplitude.hpp>
 
 namespace tofmap {
@@ -52,10 +53,6 @@ bool same_returns(const ImageF& phase, const ImageF& other) {
     ++returns;
   }
   return returns >= least_returns;
-}
-
-bool is_without_return(const DualFrequencyFrame& frame) {
-  return (frame.phase_a.isNaN() || frame.phase_b.isNaN()).all();
 }
 
 /// Pixel counts, summed over all frames.

@@ -259,24 +259,6 @@ std::optional<std::string> offset_warning(const ResidualSurvey& residual,
   return "A measures " + offset_text(residual) + remedy;
 }
 
-std::optional<std::string> camera_warning(const CameraModel& camera) {
-  constexpr double most_unequal = 1.25;  // pixels of cameras are square, or nearly
-  const double ratio = camera.fx_px / camera.fy_px;
-  if (!(ratio < most_unequal && ratio > 1 / most_unequal)) {
-    return fmt::format(
-        "the focal lengths differ: fx {:.1f}, fy {:.1f} px; are fx and fy right in sequence.yaml?",
-        camera.fx_px, camera.fy_px);
-  }
-  if (!(camera.cx_px >= 0 && camera.cx_px < camera.width_px && camera.cy_px >= 0 &&
-        camera.cy_px < camera.height_px)) {
-    return fmt::format(
-        "the principal point {:.1f}, {:.1f} px is outside the image; are cx and cy right in "
-        "sequence.yaml?",
-        camera.cx_px, camera.cy_px);
-  }
-  return std::nullopt;
-}
-
 std::optional<std::string> frequency_pair_warning(const Modulation& modulation) {
   constexpr double least_wavelengths = 1.5;
   const double combined_m = combined_range_m(modulation);

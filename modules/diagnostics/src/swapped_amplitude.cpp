@@ -54,7 +54,7 @@ bool looks_like_swapped_amplitude(const std::vector<DualFrequencyFrame>& frames)
     phases.add(frame.phase_a, frame.phase_b);
     amplitudes.add(frame.amplitude_a, frame.amplitude_b);
   }
-  // At 29 and 31 MHz, one phase of two has wrapped in a share of 1 / 15 of the ranges.
+  // At 29 and 31 MHz, B has wrapped once more than A in up to a tenth of the pixels of a room.
   constexpr double some = 0.005;
   constexpr double hardly_any = 0.001;
   return amplitudes.wrapped_share() > some && phases.wrapped_share() < hardly_any;
@@ -64,8 +64,7 @@ std::optional<std::string> swapped_amplitude_warning(
     const std::vector<DualFrequencyFrame>& frames) {
   if (!looks_like_swapped_amplitude(frames)) return std::nullopt;
   return "phases and amplitudes are mixed up: the amplitude images wrap as phases do, and the "
-         "phase "
-         "images do not; exchange the folders, or their names in frames.txt";
+         "phase images do not; exchange their folders, or the images of a device (device.layout)";
 }
 
 }  // namespace tofmap

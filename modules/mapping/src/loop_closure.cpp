@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 namespace tofmap {
@@ -144,20 +145,26 @@ std::optional<LoopCandidate> find_where_alike(const LoopSearch& search,
   });
   if (earlier.empty()) return std::nullopt;
   const auto before = search.keyframes.first(static_cast<std::size_t>(keyframe.id));
+  const auto has_drifted_to = [&](const Recognition& place) {
+    return search.can_have_drifted_to(place.registration.world_from_camera,
+                                      search.keyframes[static_cast<std::size_t>(place.from)]);
+  };
   const auto is_possible = [&](const Keyframe& other, const Pose& pose) {
     return search.can_have_drifted_to(pose, other) ||
            are_near(pose, keyframe.world_from_camera, farthest_slip_m,
                     search.options.max_rotation_rad);
   };
-  const auto found = recognise(keyframe, std::move(earlier), is_possible, before, search.camera,
-                               search.options, search.registration);
+  std::vector<Recognition> places = find_places(keyframe, std::move(earlier), is_possible, before,
+                                                search.camera, search.options, search.registration);
+  // Drift is the likelier cause: places that only a slip explains count if it explains none.
+  const bool needs_slip = std::ranges::none_of(places, has_drifted_to);
+  if (!needs_slip) std::erase_if(places, std::not_fn(has_drifted_to));
+  const auto found = surest_place(std::move(places), before);
   if (!found) return std::nullopt;
-  const Keyframe& from = search.keyframes[static_cast<std::size_t>(found->from)];
-  return LoopCandidate{
-      .from = found->from,
-      .registration = found->registration,
-      .edge = {},
-      .needs_slip = !search.can_have_drifted_to(found->registration.world_from_camera, from)};
+  return LoopCandidate{.from = found->from,
+                       .registration = found->registration,
+                       .edge = {},
+                       .needs_slip = needs_slip};
 }
 
 }  // namespace

@@ -236,7 +236,7 @@ std::optional<Odometry::Attempt> Odometry::register_turned(
         choose_targets(cloud, attempt.prior, around, camera_, options_, registration_);
     attempt.registration = register_from_afar(cloud, targets_of(attempt.targets), camera_,
                                               attempt.prior, registration_);
-    if (is_verified(attempt.registration, recognition_) && !contradicts_targets(attempt, cloud)) {
+    if (is_turn(attempt.registration) && !contradicts_targets(attempt, cloud)) {
       verified.push_back(std::move(attempt));
     }
   }
@@ -248,6 +248,14 @@ std::optional<Odometry::Attempt> Odometry::register_turned(
            is_elsewhere(best->registration, other.registration);
   });
   return is_ambiguous ? std::nullopt : std::optional(*best);
+}
+
+/// Whether a result after a turn can be right: it is verified as a loop is, except that the prior
+/// may determine one direction, such as along the wall that the camera looked at before it turned.
+bool Odometry::is_turn(const RegistrationResult& result) const {
+  RegistrationResult in_other_directions = result;
+  if (result.degenerate_directions == 1) in_other_directions.degenerate_directions = 0;
+  return is_verified(in_other_directions, recognition_);
 }
 
 /// Whether the camera may have moved otherwise than expected: registration failed or did not

@@ -40,7 +40,7 @@ RegistrationResult register_near(const Keyframe& keyframe, const SurfaceCloud& c
                             registration);
 }
 
-std::optional<Recognition> recognise(const Keyframe& keyframe,
+std::vector<Recognition> find_places(const Keyframe& keyframe,
                                      std::vector<const Keyframe*> candidates,
                                      const IsPossiblePlace& is_possible,
                                      std::span<const Keyframe> keyframes, const CameraModel& camera,
@@ -56,14 +56,30 @@ std::optional<Recognition> recognise(const Keyframe& keyframe,
       found.push_back({candidate->id, result});
     }
   }
-  if (found.empty()) return std::nullopt;
-  std::ranges::stable_sort(found, std::ranges::greater(), support_of);
-  const Recognition& best = found.front();
-  const bool is_ambiguous = std::ranges::any_of(found, [&](const Recognition& other) {
+  return found;
+}
+
+std::optional<Recognition> surest_place(std::vector<Recognition> places,
+                                        std::span<const Keyframe> keyframes) {
+  if (places.empty()) return std::nullopt;
+  std::ranges::stable_sort(places, std::ranges::greater(), support_of);
+  const Recognition& best = places.front();
+  const bool is_ambiguous = std::ranges::any_of(places, [&](const Recognition& other) {
     return support_of(other) > sure_share * support_of(best) &&
            !is_same_place(best, other, keyframes);
   });
   return is_ambiguous ? std::nullopt : std::optional(best);
+}
+
+std::optional<Recognition> recognise(const Keyframe& keyframe,
+                                     std::vector<const Keyframe*> candidates,
+                                     const IsPossiblePlace& is_possible,
+                                     std::span<const Keyframe> keyframes, const CameraModel& camera,
+                                     const LoopOptions& options,
+                                     const RegistrationOptions& registration) {
+  return surest_place(find_places(keyframe, std::move(candidates), is_possible, keyframes, camera,
+                                  options, registration),
+                      keyframes);
 }
 
 }  // namespace tofmap

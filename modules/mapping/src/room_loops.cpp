@@ -29,7 +29,12 @@ void RoomMapper::close_loops() {
   const LoopCandidate candidate =
       find_loop(keyframe, keyframes_.all(), keyframes_.spreads_from(keyframe.id), camera_,
                 loop_options_, registration_);
-  if (candidate.edge && (!candidate.needs_slip || is_slip(*candidate.edge))) {
+  if (candidate.edge && candidate.needs_slip) {
+    if (const auto slip = slip_behind(*candidate.edge)) {
+      add_loop(*candidate.edge);
+      mend(*slip);
+    }
+  } else if (candidate.edge) {
     add_loop(*candidate.edge);
   }
   if (unfitted_loops_ > 0 &&
@@ -38,14 +43,13 @@ void RoomMapper::close_loops() {
   }
 }
 
-/// Whether a slip explains a loop that drift does not explain. The search takes long, so there is
+/// The slip that explains a loop which drift does not explain. The search takes long, so there is
 /// none for some keyframes after one that found no slip.
-bool RoomMapper::is_slip(const PoseEdge& loop) {
-  if (loop.to - last_slip_search_ < keyframes_between_fits) return false;
-  const bool is_found =
-      find_slip(loop, keyframes_.all(), edges_, camera_, loop_options_, registration_).has_value();
-  if (!is_found) last_slip_search_ = loop.to;
-  return is_found;
+std::optional<Slip> RoomMapper::slip_behind(const PoseEdge& loop) {
+  if (loop.to - last_slip_search_ < keyframes_between_fits) return std::nullopt;
+  auto slip = find_slip(loop, keyframes_.all(), edges_, camera_, loop_options_, registration_);
+  if (!slip) last_slip_search_ = loop.to;
+  return slip;
 }
 
 /// Adds a loop to those that the next fit decides on. One that would move the path waits for
@@ -87,11 +91,15 @@ void RoomMapper::mend_slips() {
   for (auto loop = loops.end() - unfitted_loops_; loop != loops.end(); ++loop) {
     const auto slip =
         find_slip(*loop, keyframes_.all(), edges_, camera_, loop_options_, registration_);
-    if (!slip) continue;
-    edges_ = without_slip(edges_, *slip);
-    set_poses(fit_loops(keyframes_.all(), edges_, loop_options_).poses);
-    rebuild_submaps(slip->at);
+    if (slip) mend(*slip);
   }
+}
+
+/// Replaces the edges across a slip, and moves what is behind it.
+void RoomMapper::mend(const Slip& slip) {
+  edges_ = without_slip(edges_, slip);
+  set_poses(fit_loops(keyframes_.all(), edges_, loop_options_).poses);
+  rebuild_submaps(slip.at);
 }
 
 /// Separates the submaps that have keyframes on both sides of a slip, which have moved relative to

@@ -90,6 +90,7 @@ std::vector<LateFrame> RoomMapper::drop_fragment() {
   submap_of_.resize(static_cast<std::size_t>(kept));
   keyframes_.shrink(kept);
   searched_ = std::min(searched_, kept);
+  last_slip_search_ = std::min(last_slip_search_, kept - 1);
   return dropped;
 }
 

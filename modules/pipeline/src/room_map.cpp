@@ -12,12 +12,12 @@
 
 namespace tofmap {
 
-Absence absence_of(const FrameRecord& record) {
-  if (record.map > 0) return Absence::none;
+std::optional<Absence> absence_of(const FrameRecord& record) {
+  if (record.map > 0) return std::nullopt;
   if (!record.damage.empty()) return Absence::damaged;
   if (record.repeats) return Absence::repeated;
-  if (record.valid_pixels == 0) return Absence::no_return;
-  return record.tracking.status == TrackingStatus::no_surface ? Absence::no_surface
+  if (record.valid_pixels == 0) return Absence::without_range;
+  return record.tracking.status == TrackingStatus::no_surface ? Absence::without_surface
                                                               : Absence::unregistered;
 }
 
@@ -64,14 +64,11 @@ bool frames_agree(const RoomMap& map, const Consistency& consistency) {
 }
 
 MissingFrames missing_frames(const RoomMap& map) {
-  const auto number_of = [&](Absence why) {
-    return static_cast<int>(std::ranges::count(map.frames, why, absence_of));
-  };
-  return {.damaged = number_of(Absence::damaged),
-          .repeated = number_of(Absence::repeated),
-          .without_return = number_of(Absence::no_return),
-          .without_surface = number_of(Absence::no_surface),
-          .unregistered = number_of(Absence::unregistered)};
+  MissingFrames missing;
+  for (const FrameRecord& record : map.frames) {
+    if (const auto absence = absence_of(record)) ++missing[*absence];
+  }
+  return missing;
 }
 
 MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options,

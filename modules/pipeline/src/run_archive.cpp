@@ -6,9 +6,14 @@
 #include "tofmap/pipeline/frame_sample.hpp"
 #include "tofmap/pipeline/pipeline.hpp"
 
+#include <algorithm>
+#include <optional>
+#include <type_traits>
+
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
 #include <boost/serialization/array_wrapper.hpp>
+#include <boost/serialization/binary_object.hpp>
 #include <boost/serialization/string.hpp>
 #include <boost/serialization/vector.hpp>
 
@@ -61,11 +66,11 @@ void serialize(Archive& archive, tofmap::SampledFrame& frame, unsigned) {
   tofmap::UnwrapResult& unwrapped = frame.unwrapped;
   archive& frame.recorded& frame.returns& frame.filtered& unwrapped.image& unwrapped.iterations;
   archive& unwrapped.curl_violations& unwrapped.phase_noise_cycles& unwrapped.regions;
-  bool has_jumps = unwrapped.converged.has_value();
+  bool is_known = unwrapped.converged.has_value();
   bool is_converged = unwrapped.converged.value_or(false);
-  archive& has_jumps& is_converged;
+  archive& is_known& is_converged;
   if constexpr (Archive::is_loading::value) {
-    if (has_jumps) unwrapped.converged = is_converged;
+    unwrapped.converged = is_known ? std::optional(is_converged) : std::nullopt;
   }
 }
 
@@ -73,20 +78,30 @@ void serialize(Archive& archive, tofmap::SampledFrame& frame, unsigned) {
 
 namespace tofmap {
 
+template <class Archive>
+void ErrorTally::serialize(Archive& archive, unsigned) {
+  static_assert(std::is_trivially_copyable_v<CameraErrors>);
+  archive& boost::serialization::make_binary_object(&camera_, sizeof camera_);
+  archive& frames_& flows_px_& pixels_& ambient_pixels_& ambient_factors_& has_amplitudes_;
+}
+
 void FrameSample::save(std::ostream& out) const {
   boost::archive::binary_oarchive archive(out);
   archive << frames_;
 }
 
-void FrameSample::load(std::istream& in) {
+void FrameSample::load(std::istream& in, int frames_done) {
   boost::archive::binary_iarchive archive(in);
   archive >> frames_;
+  const auto wanted = static_cast<int>(std::ranges::lower_bound(wanted_indices_, frames_done) -
+                                       wanted_indices_.begin());
+  thin_out(wanted);
 }
 
 void MapRun::save(std::ostream& out) const {
   {
     boost::archive::binary_oarchive archive(out);
-    archive << frames_ << last_.phase_a << last_.phase_b;
+    archive << frames_ << last_.phase_a << last_.phase_b << errors_;
   }
   std::vector<TrackingResult> tracking;
   for (const FrameRecord& frame : frames_) tracking.push_back(frame.tracking);
@@ -98,7 +113,7 @@ void MapRun::save(std::ostream& out) const {
 void MapRun::load(std::istream& in) {
   {
     boost::archive::binary_iarchive archive(in);
-    archive >> frames_ >> last_.phase_a >> last_.phase_b;
+    archive >> frames_ >> last_.phase_a >> last_.phase_b >> errors_;
   }
   std::vector<TrackingResult> tracking = load_tracking(in);
   if (tracking.size() != frames_.size()) throw InputError("map state: frames and tracking differ");

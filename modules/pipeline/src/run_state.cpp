@@ -144,7 +144,7 @@ void resume_run(const std::filesystem::path& folder, MapRun& run, FrameSample& s
   check_recording(line, source, folder);
   try {
     run.load(in);
-    sample.load(in);
+    sample.load(in, static_cast<int>(run.frames().size()));
   } catch (const std::exception&) {
     throw InputError(file.string() +
                      ": was written by another build of tofmap; start anew without --resume");

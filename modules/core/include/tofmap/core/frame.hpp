@@ -38,11 +38,16 @@ struct DualFrequencyFrame {
   bool has_amplitude() const { return amplitude_a.size() > 0; }
 };
 
+/// Whether no pixel has a return at both frequencies.
+inline bool is_without_return(const DualFrequencyFrame& frame) {
+  return (frame.phase_a.isNaN() || frame.phase_b.isNaN()).all();
+}
+
 /// Whether a frame has the same phases as the frame `last` before it, at both frequencies. Frames
 /// without any return do not repeat each other: the camera may be covered.
 inline bool repeats(const DualFrequencyFrame& frame, const DualFrequencyFrame& last) {
   return same_values(frame.phase_a, last.phase_a) && same_values(frame.phase_b, last.phase_b) &&
-         !frame.phase_a.isNaN().all();
+         !is_without_return(frame);
 }
 
 }  // namespace tofmap

@@ -7,12 +7,18 @@
 
 #include <tofmap/unwrap/errors/measured_frame.hpp>
 
+namespace boost::serialization {
+class access;
+}
+
 namespace tofmap {
 
 /// The errors of a camera, as the frames of a recording show them.
 struct ErrorSurvey {
   CameraErrors camera;  ///< systematic errors, as estimated up to the last frame
-  double flow_px = 0;   ///< median over the frames of the image motion from A's exposure to B's
+  /// Median over the frames of the image motion from A's exposure to B's. Frames with more than a
+  /// quarter of the image are left out: their A and B do not belong together. 0 if none is left.
+  double flow_px = 0;
   /// Share of the valid pixels whose noise is at least 1.4 times what their amplitudes predict,
   /// 0 … 1. Ambient light raises the noise in this way.
   double ambient_share = 0;
@@ -35,6 +41,10 @@ class ErrorTally {
   ErrorSurvey survey() const;
 
  private:
+  friend class boost::serialization::access;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned version);  // tofmap/pipeline saves runs
+
   CameraErrors camera_;          ///< of the last frame
   int frames_ = 0;               ///< number of frames whose errors could be estimated
   std::vector<float> flows_px_;  ///< of those frames whose images A and B belong together

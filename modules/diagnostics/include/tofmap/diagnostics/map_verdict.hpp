@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <tofmap/core/verdict.hpp>
+#include <tofmap/diagnostics/absence.hpp>
 
 namespace tofmap {
 
@@ -17,23 +18,10 @@ inline constexpr double nearly_all_percent = 95;
 /// right path have as many (benchmarks/troubled_rooms.py, seeds 11 to 15).
 inline constexpr double most_slow_percent = 4;
 
-/// Numbers of frames that are in no map, by the reason.
-struct MissingFrames {
-  int damaged = 0;          ///< could not be read
-  int repeated = 0;         ///< repeat the frame before them
-  int without_return = 0;   ///< no pixel has a range
-  int without_surface = 0;  ///< too few points have a normal
-  int unregistered = 0;     ///< could not be registered
-};
-
-/// The numbers with their reasons as words, for instance "3 damaged, 20 without any return". Empty
-/// if no frame is missing.
-std::string told(const MissingFrames& missing);
-
 /// The facts by which a map is judged.
 struct MapEvidence {
   int frames = 0;              ///< frames of the recording, including damaged ones
-  int registered = 0;          ///< frames whose pose was found
+  int registered = 0;          ///< frames that are registered in this map
   MissingFrames missing = {};  ///< frames that are in no map
   int separate = 0;            ///< frames that are registered in separate maps
   int separate_maps = 0;       ///< maps that could not be joined with this one

@@ -44,10 +44,6 @@ std::optional<std::string> pairing_warning(const ResidualSurvey& residual, bool 
 std::optional<std::string> offset_warning(const ResidualSurvey& residual,
                                           const CameraErrors* camera, bool map_agrees = false);
 
-/// A warning if focal lengths differ by more than a quarter, or if the principal point is outside
-/// the image; both are possible, but unusual. Otherwise empty.
-std::optional<std::string> camera_warning(const CameraModel& camera);
-
 /// A warning if the pair of frequencies cannot tell wrap counts apart. Otherwise empty.
 std::optional<std::string> frequency_pair_warning(const Modulation& modulation);
 

@@ -18,8 +18,9 @@ namespace tofmap {
 /// such a distance is independent of that of the next patch but one, and thus absent, on average,
 /// from the product of both; what remains is the variance of what both patches share. Distances of
 /// more than three robust standard deviations are clipped, so that neither things that move nor
-/// wrong wrap counts decide. The images must be those after filters. NaN if frames overlap too
-/// little.
+/// wrong wrap counts decide. Distances of surfaces at a range r beyond 8 m are multiplied by 8 m /
+/// r: small rotations of a frame move them in proportion to r. The images must be those after
+/// filters. NaN if frames overlap too little.
 double view_disagreement_m(const std::vector<RangedFrame>& frames, const CameraModel& camera);
 
 }  // namespace tofmap

@@ -37,7 +37,8 @@ struct LoopCandidate {
 /// its current pose with a prior of drift. If that is wider than ICP reaches, or if the result is
 /// not verified, the place is recognised (recognise()) among those keyframes with an id that is
 /// smaller by at least `min_keyframes` that look alike, and the result is accepted if it is within
-/// two standard deviations of drift, or at most `farthest_slip_m` away. A loop is found if the
+/// two standard deviations of drift; if there is none, also if it is at most `farthest_slip_m` and
+/// `max_rotation_rad` away. A loop is found if the
 /// candidate confirms the result (confirms_place()), and if the surfaces of the candidate alone
 /// determine the relative pose (to KeyframeGraph::well_connected_sigma_m). `keyframes` are in the
 /// order of their ids, from 0, and hold all earlier keyframes; later ones are ignored.

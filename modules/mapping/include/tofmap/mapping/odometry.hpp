@@ -112,10 +112,10 @@ struct TrackingResult {
 /// The camera may move faster than the prior allows. With `check_poses`, if registration fails,
 /// ends far from the predicted pose, or fits the surfaces clearly worse than the frames before, the
 /// frame is also registered from the rotations around the last pose that search_rotations() finds.
-/// The best of these results replaces the first one if it is verified as for a loop, no result at
-/// another place fits about as well, and the first one failed or fits clearly worse. If none does,
-/// and the first one fits the surfaces far worse than is usual or contradicts the free space of the
-/// keyframes, the frame is lost.
+/// The best of these results replaces the first one if it is verified as for a loop, except that
+/// one direction of motion may be degenerate, no result at another place fits about as well, and
+/// the first one failed or fits clearly worse. If none does, and the first one fits the surfaces
+/// far worse than is usual or contradicts the free space of the keyframes, the frame is lost.
 class Odometry {
  public:
   /// `recognition` has the limits for trusting a registration that does not follow from the motion
@@ -177,6 +177,7 @@ class Odometry {
                                 std::span<const Keyframe* const> around) const;
   std::optional<Attempt> register_turned(double periods, const SurfaceCloud& cloud,
                                          std::span<const Keyframe* const> around) const;
+  bool is_turn(const RegistrationResult& result) const;
   bool is_suspect(const Attempt& attempt) const;
   bool is_credible(const RegistrationResult& result) const;
   bool contradicts_targets(const Attempt& attempt, const SurfaceCloud& cloud) const;

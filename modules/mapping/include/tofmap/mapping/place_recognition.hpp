@@ -35,14 +35,25 @@ struct Recognition {
 /// Whether the camera of a keyframe can have been at a pose in the map of a candidate.
 using IsPossiblePlace = std::function<bool(const Keyframe& candidate, const Pose& pose)>;
 
-/// Recognises the place that a keyframe sees among other keyframes.
+/// The places among other keyframes that a keyframe may see.
 ///
 /// The keyframe is registered with each of the five candidates that look most similar, from the
 /// pose of that candidate (register_near()). A result counts if the place is possible and the
-/// candidate confirms it (confirms_place()). Of these results, the one with the largest product of
-/// overlap and inlier ratio is returned. Empty if no result counts, or if one of another place
-/// reaches more than 90 % of that product. `keyframes` are all keyframes in the order of their ids,
-/// from 0, and must outlive the candidates, which are some of them.
+/// candidate confirms it (confirms_place()). `keyframes` are all keyframes in the order of their
+/// ids, from 0, and must outlive the candidates, which are some of them.
+std::vector<Recognition> find_places(const Keyframe& keyframe,
+                                     std::vector<const Keyframe*> candidates,
+                                     const IsPossiblePlace& is_possible,
+                                     std::span<const Keyframe> keyframes, const CameraModel& camera,
+                                     const LoopOptions& options,
+                                     const RegistrationOptions& registration);
+
+/// The place with the largest product of overlap and inlier ratio. Empty if there is none, or if
+/// another place reaches more than 90 % of that product.
+std::optional<Recognition> surest_place(std::vector<Recognition> places,
+                                        std::span<const Keyframe> keyframes);
+
+/// Recognises the place that a keyframe sees: the surest_place() of find_places().
 std::optional<Recognition> recognise(const Keyframe& keyframe,
                                      std::vector<const Keyframe*> candidates,
                                      const IsPossiblePlace& is_possible,

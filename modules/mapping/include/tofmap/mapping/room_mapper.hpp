@@ -4,6 +4,7 @@
 
 #include <iosfwd>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,8 @@ class access;
 }
 
 namespace tofmap {
+
+struct Slip;
 
 /// A loop: a place that was recognised.
 struct Loop {
@@ -108,7 +111,7 @@ class RoomMapper {
   std::vector<int> maps() const;
   /// Poses of all registered frames of a map, from the current poses of their keyframes.
   Trajectory trajectory(int map) const;
-  /// Indices of these frames in the recording, in the same order.
+  /// Indices (NewFrame::index) of the frames registered in a map, in the order of trajectory().
   std::vector<int> frames(int map) const;
   /// Current poses of all keyframes of a map.
   Trajectory keyframe_trajectory(int map) const;
@@ -207,7 +210,8 @@ class RoomMapper {
   bool is_own(const Keyframe& keyframe) const { return keyframe.taken_in == newest_map(); }
   std::vector<const Keyframe*> own(std::span<const Keyframe* const> keyframes) const;
   const Keyframe* keyframe_near(const Pose& pose, int map) const;
-  bool is_slip(const PoseEdge& loop);
+  std::optional<Slip> slip_behind(const PoseEdge& loop);
+  void mend(const Slip& slip);
   void add_loop(const PoseEdge& edge);
   bool loop_awaits_others() const;
   KeyframeSpacing keyframe_spacing() const;

@@ -33,10 +33,10 @@ inline constexpr double farthest_slip_m = 0.75;
 /// (confirms_place()), and either fits clearly better (by 10 %) than a registration at the believed
 /// pose, or that registration moves away from it. Of several slips, the one that fits best is
 /// returned. Corrections of less than KeyframeGraph::well_connected_sigma_m, which are drift, and
-/// of more than `farthest_slip_m` at the keyframe, which odometry would not have accepted, are
-/// none. A keyframe has not slipped either if a later one was registered only with keyframes before
-/// it. Empty as well if both ends of the loop were taken in different maps. `keyframes` are in the
-/// order of their ids, from 0.
+/// of more than `farthest_slip_m` at the keyframe, which odometry would not have accepted, are not
+/// slips. A keyframe has not slipped either if a later one was registered only with keyframes
+/// before it. Empty as well if both ends of the loop were taken in different maps. `keyframes` are
+/// in the order of their ids, from 0.
 std::optional<Slip> find_slip(const PoseEdge& loop, std::span<const Keyframe> keyframes,
                               std::span<const PoseEdge> edges, const CameraModel& camera,
                               const LoopOptions& options, const RegistrationOptions& registration);

@@ -49,12 +49,14 @@ class FrameSample {
   /// Keeps `count` of the frames, spread evenly, and frees the memory of the others.
   void thin_out(int count);
 
-  /// Saves the frames kept so far, and replaces them by saved ones. The sample of a resumed run is
-  /// then the same as without the interruption, provided that its length is known and that both
-  /// samples were constructed with the same arguments. Only the build that wrote the data can read
-  /// it. load() throws std::exception if the data is damaged.
+  /// Saves the frames kept so far. Only the build that wrote the data can read it.
   void save(std::ostream& out) const;
-  void load(std::istream& in);
+
+  /// Replaces the frames by saved ones. The sample of a resumed run, whose first `frames_done`
+  /// frames are processed, is then the same as without the interruption. If it was constructed with
+  /// other arguments, it has at most as many of the saved frames as it wants of these. The length
+  /// of the run must be known. Throws std::exception if the data is damaged.
+  void load(std::istream& in, int frames_done);
 
   /// The frames kept so far, in ascending order of their indices.
   const std::vector<SampledFrame>& frames() const { return frames_; }

@@ -96,15 +96,15 @@ class MapRun {
   /// Whether a hook ended the last call of advance().
   bool is_interrupted() const { return is_interrupted_; }
 
-  /// The camera's errors, surveyed over the frames since the run was started or resumed.
+  /// The camera's errors, surveyed over the frames so far.
   ErrorSurvey errors() const { return errors_.survey(); }
 
   /// The map so far.
   const RoomMapper& mapper() const { return mapper_; }
 
   /// Saves what is needed to resume the run. A run with the same sensor and options that loads it
-  /// continues to the same map, to the bit; errors() starts again without frames. Only the build
-  /// that wrote the data can read it. load() throws std::exception if the data is damaged.
+  /// continues to the same map, to the bit. Only the build that wrote the data can read it. load()
+  /// throws std::exception if the data is damaged.
   void save(std::ostream& out) const;
   void load(std::istream& in);
 

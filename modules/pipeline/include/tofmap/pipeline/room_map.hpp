@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <tofmap/cloud/cloud_file.hpp>
 #include <tofmap/core/trajectory.hpp>
+#include <tofmap/diagnostics/absence.hpp>
 #include <tofmap/diagnostics/consistency.hpp>
 #include <tofmap/diagnostics/error_survey.hpp>
 #include <tofmap/diagnostics/map_verdict.hpp>
@@ -35,11 +37,11 @@ struct StageTimes {
 struct FrameRecord {
   int index = 0;
   double timestamp_s = 0;
-  /// Why the frame could not be read; empty if it could. If it is not empty, only `damage`, `index`
-  /// and `timestamp_s` have a meaning.
+  /// Why the frame could not be read; empty if it could. If it is not empty, only `damage`,
+  /// `index`, `timestamp_s` and `map` have a meaning.
   std::string damage;
   /// The frame has the same phases as the frame before it, and was therefore not unwrapped. Then
-  /// only `index`, `timestamp_s` and the status in `tracking` have a meaning.
+  /// only `index`, `timestamp_s`, `map` and the status in `tracking` have a meaning.
   bool repeats = false;
   int iterations = 0;             ///< UnwrapResult::iterations
   int curl_violations = 0;        ///< UnwrapResult::curl_violations
@@ -57,18 +59,8 @@ struct FrameRecord {
   bool is_prepared() const { return damage.empty() && !repeats; }
 };
 
-/// Why a frame is in no map.
-enum class Absence {
-  none,          ///< it is in a map
-  damaged,       ///< it could not be read
-  repeated,      ///< it repeats the frame before it
-  no_return,     ///< no pixel has a range: the camera saw nothing
-  no_surface,    ///< too few points have a normal
-  unregistered,  ///< it could not be registered with the frames around it, and began no map
-};
-
-/// Why a frame of a finished run is in no map.
-Absence absence_of(const FrameRecord& record);
+/// Why a frame of a finished run is in no map. Empty if it is in one.
+std::optional<Absence> absence_of(const FrameRecord& record);
 
 /// A map that could not be joined with the others of its recording, because none of their places
 /// was recognised with certainty. World coordinates are those of its first camera.
