@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -61,18 +60,15 @@ Extent extent_of(const RoomMap& map, std::size_t index) {
 }  // namespace
 
 std::vector<AbsentFrames> absent_frames(const RoomMap& map) {
-  std::map<Absence, AbsentFrames> absent;
+  std::map<Absence, std::vector<int>> indices;
   for (const FrameRecord& record : map.frames) {
-    const std::optional<Absence> absence = absence_of(record);
-    if (!absence) continue;
-    AbsentFrames& frames = absent[*absence];
-    frames.why = told(*absence);
-    frames.remedy = remedy_for(*absence);
-    frames.indices.push_back(record.index);
+    if (const auto absence = absence_of(record)) indices[*absence].push_back(record.index);
   }
-  std::vector<AbsentFrames> by_reason;
-  for (auto& [absence, frames] : absent) by_reason.push_back(std::move(frames));
-  return by_reason;
+  std::vector<AbsentFrames> absent;
+  for (auto& [absence, frames] : indices) {
+    absent.push_back({std::string(told(absence)), remedy_for(absence), std::move(frames)});
+  }
+  return absent;
 }
 
 std::string told_indices(const std::vector<int>& indices) {
@@ -116,8 +112,7 @@ std::string told_beginning(const RoomMap& map, std::size_t index) {
   const auto missed = static_cast<std::size_t>(std::distance(before.base(), first));
   constexpr double most_periods = 3.5;  // as odometry counts a gap
   const double gap_s = first->timestamp_s - before->timestamp_s;
-  const double frames_s = static_cast<double>(missed) * median_period_s(map);
-  const bool has_gap = gap_s - frames_s > most_periods * median_period_s(map);
+  const bool has_gap = gap_s > (most_periods + static_cast<double>(missed)) * median_period_s(map);
   std::string told;
   if (missed > 0) {
     told = "after " + counted(missed, "frame") + (missed == 1 ? " that is" : " that are") +

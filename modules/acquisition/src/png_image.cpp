@@ -18,6 +18,7 @@
 
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/input_file.hpp>
+#include <tofmap/core/text.hpp>
 
 namespace tofmap {
 namespace {
@@ -135,10 +136,9 @@ Image<Pixel> read_png(const std::filesystem::path& path) {
   }
   const int file_bits = png_get_bit_depth(reader.png, reader.info);
   if (file_bits != bits || png_get_color_type(reader.png, reader.info) != PNG_COLOR_TYPE_GRAY) {
-    const int channels = png_get_channels(reader.png, reader.info);
+    const std::size_t channels = png_get_channels(reader.png, reader.info);
     fail("must be a gray PNG of " + std::to_string(bits) + " bits, but has " +
-         std::to_string(file_bits) + " bits and " + std::to_string(channels) +
-         (channels == 1 ? " channel" : " channels"));
+         std::to_string(file_bits) + " bits and " + counted(channels, "channel"));
   }
 
   Image<Pixel> image(png_get_image_height(reader.png, reader.info),

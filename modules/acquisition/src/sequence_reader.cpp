@@ -15,6 +15,7 @@
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/input_file.hpp>
+#include <tofmap/core/text.hpp>
 
 namespace tofmap {
 namespace {
@@ -35,8 +36,7 @@ SequenceFrameFiles parse_line(const std::vector<std::string>& words, const std::
   constexpr const char* expected =
       ": expected 'timestamp phase_a phase_b [amplitude_a amplitude_b]'";
   if (words.size() < 3 || words.size() > 5) {
-    throw InputError(place + expected + ", got " + std::to_string(words.size()) +
-                     (words.size() == 1 ? " column" : " columns"));
+    throw InputError(place + expected + ", got " + counted(words.size(), "column"));
   }
   SequenceFrameFiles files;
   const char* end = words[0].data() + words[0].size();

@@ -17,6 +17,7 @@
 
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/input_file.hpp>
+#include <tofmap/core/text.hpp>
 
 namespace tofmap {
 namespace {
@@ -46,10 +47,7 @@ void check_size(const std::filesystem::path& file, std::streamoff header_end, st
                 std::int64_t bytes_per_point) {
   const auto size = static_cast<std::int64_t>(std::filesystem::file_size(file));
   const std::int64_t stored = (size - header_end) / std::max<std::int64_t>(1, bytes_per_point);
-  if (stored < points) {
-    throw InputError("is cut off: it should have " + std::to_string(points) +
-                     " points; copy or export it again");
-  }
+  if (stored < points) fail_as_cut_off(static_cast<std::size_t>(points));
 }
 
 /// The lines of a PCD header by their keyword, without it.
@@ -139,8 +137,9 @@ PlyHeader read_ply_header(std::istream& in) {
   PlyHeader header;
   std::string element;
   std::string line;
-  if (!std::getline(in, line) || !line.starts_with("ply"))
+  if (!std::getline(in, line) || !line.starts_with("ply")) {
     throw InputError("is no PLY file: it does not begin with the word ply");
+  }
   for (int number = 0; number < most_header_lines && std::getline(in, line); ++number) {
     const std::vector<std::string> words = words_of_line(line);
     if (words.empty()) continue;
@@ -192,6 +191,11 @@ void check_ply_header(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   const PlyHeader header = read_ply_header(in);
   if (header.is_binary) check_size(file, in.tellg(), header.points, header.bytes_per_point);
+}
+
+void fail_as_cut_off(std::size_t points) {
+  throw InputError("is cut off: it should have " + counted(points, "point") +
+                   "; copy or export it again");
 }
 
 }  // namespace tofmap

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 
 namespace tofmap {
@@ -16,5 +17,8 @@ void check_pcd_header(const std::filesystem::path& file);
 /// Throws unless a file has the header of a PLY file whose points have no lists, and, if it is
 /// binary, is as large as its points.
 void check_ply_header(const std::filesystem::path& file);
+
+/// Throws since a file ends before the last of its `points`.
+[[noreturn]] void fail_as_cut_off(std::size_t points);
 
 }  // namespace tofmap

@@ -3,6 +3,8 @@
 
 #include "legacy_vtk.hpp"
 
+#include "cloud_headers.hpp"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -59,11 +61,6 @@ struct PointsHeader {
   std::size_t count;
   std::string type;
 };
-
-[[noreturn]] void fail_as_cut_off(std::size_t count) {
-  throw InputError("is cut off: it should have " + std::to_string(count) +
-                   " points; copy or export it again");
-}
 
 /// Reads on to the POINTS section. Empty if there is none.
 std::optional<PointsHeader> find_points(std::istream& in) {

@@ -38,10 +38,10 @@ struct LoopCandidate {
 /// not verified, the place is recognised (recognise()) among those keyframes with an id that is
 /// smaller by at least `min_keyframes` that look alike, and the result is accepted if it is within
 /// two standard deviations of drift; if there is none, also if it is at most `farthest_slip_m` and
-/// `max_rotation_rad` away. A loop is found if the
-/// candidate confirms the result (confirms_place()), and if the surfaces of the candidate alone
-/// determine the relative pose (to KeyframeGraph::well_connected_sigma_m). `keyframes` are in the
-/// order of their ids, from 0, and hold all earlier keyframes; later ones are ignored.
+/// `max_rotation_rad` away. A loop is found if the candidate confirms the result
+/// (confirms_place()), and if the surfaces of the candidate alone determine the relative pose (to
+/// KeyframeGraph::well_connected_sigma_m). `keyframes` are in the order of their ids, from 0, and
+/// hold all earlier keyframes; later ones are ignored.
 LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyframes,
                         std::span<const std::optional<PoseSpread>> spreads,
                         const CameraModel& camera, const LoopOptions& options,
