@@ -9,8 +9,10 @@
 #include "output/frame_report.hpp"
 #include "output/output_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -59,18 +61,18 @@ CalibrationReference reference_of(const CalibrationOptions& options, const Seque
 ReferenceRanges reference_ranges(CalibrationReference reference, const SequenceReader& source,
                                  const RecordedTruth& truth, const ProgramOptions& options) {
   if (reference == CalibrationReference::truth) {
-    return [&truth](const DualFrequencyFrame& frame) { return truth.range_m(frame.index); };
+    return [&truth](const Frame& frame) { return truth.range_m(frame.index); };
   }
   if (reference == CalibrationReference::residual) {
     const auto unwrapper = std::make_shared<Unwrapper>(source.sensor(), options.pipeline.unwrap);
-    return [unwrapper](const DualFrequencyFrame& frame) {
+    return [unwrapper](const Frame& frame) {
       return std::make_optional(unwrapper->unwrap(frame).image.range_m);
     };
   }
   WallDistances distances_m = read_wall_distances(options.calibration.wall_file);
   check_wall_distances(distances_m, options.calibration.wall_file, source);
   return [distances_m = std::move(distances_m),
-          &source](const DualFrequencyFrame& frame) -> std::optional<ImageF> {
+          &source](const Frame& frame) -> std::optional<ImageF> {
     const auto distance = distances_m.find(frame.index);
     if (distance == distances_m.end()) return std::nullopt;
     auto range_m = wall_range(frame, source.sensor(), distance->second);
@@ -80,7 +82,7 @@ ReferenceRanges reference_ranges(CalibrationReference reference, const SequenceR
   };
 }
 
-void print_error(const char* name, const PhaseError& error, double offset_sigma_m) {
+void print_error(const std::string& name, const PhaseError& error, double offset_sigma_m) {
   std::vector<std::string> parts;
   if (offset_sigma_m > 0) {
     parts.push_back(fmt::format("offset {:+.1f} mm (within {:.1f} mm)", 1000 * error.offset_m,
@@ -91,11 +93,11 @@ void print_error(const char* name, const PhaseError& error, double offset_sigma_
                                 1000 * std::hypot(harmonic.cosine_m, harmonic.sine_m)));
   }
   if (error.harmonics.empty()) parts.emplace_back("no periodic error above its uncertainty");
-  std::printf("%s: %s\n", name, joined(parts, ", ").c_str());
+  std::printf("%s: %s\n", name.c_str(), joined(parts, ", ").c_str());
 }
 
 void print_samples(const RecordingSamples& collected, const SensorModel& sensor) {
-  std::printf("from %zu pixels of %s\n", collected.samples.size(),
+  std::printf("from %zu pixels of %s\n", collected.samples.front().size(),
               counted(collected.frames, "frame").c_str());
   if (collected.damaged > 0) {
     std::printf("warning: %d of %s were damaged, the first: %s\n", collected.damaged,
@@ -106,9 +108,9 @@ void print_samples(const RecordingSamples& collected, const SensorModel& sensor)
     std::printf("warning: %s left out for repeating the frame before\n",
                 counted(collected.repeated, "frame").c_str());
   }
-  const std::optional<ResidualSurvey> residual = survey_residual(collected.first_frames, sensor);
-  if (const auto warning = residual ? pairing_warning(*residual) : std::nullopt)
-    print_warnings({*warning});
+  for (const ResidualSurvey& residual : survey_residuals(collected.first_frames, sensor)) {
+    if (const auto warning = pairing_warning(residual)) print_warnings({*warning});
+  }
   constexpr std::size_t some = 5;
   if (collected.frames < some) {
     std::printf("warning: with so few frames, errors of single surfaces do not average out\n");
@@ -130,20 +132,37 @@ const char* remark_on_motion(CalibrationReference reference) {
   return "";
 }
 
-void print_fit(const PhaseErrorFit& fit, CalibrationReference reference) {
-  print_error("A", fit.error_a, fit.offset_sigma_a_m);
-  print_error("B", fit.error_b, fit.offset_sigma_b_m);
-  std::printf("A measures %.1f mm %s than B (within %.1f mm)%s\n",
-              1000 * std::abs(fit.offset_m.value), fit.offset_m.value < 0 ? "less" : "more",
-              1000 * fit.offset_m.sigma, remark_on_motion(reference));
+/// The errors of a camera, from the comparisons of its first frequency with the others.
+struct CameraFit {
+  std::vector<std::size_t> others;  ///< RecordingSamples::others
+  std::vector<PhaseErrorFit> fits;  ///< for each of `others`
+  std::size_t of_first = 0;         ///< the fit that gives the error of the first frequency
+};
+
+void print_fit(const CameraFit& fit, CalibrationReference reference) {
+  const PhaseErrorFit& first = fit.fits[fit.of_first];
+  print_error(frequency_name(0), first.error_a, first.offset_sigma_a_m);
+  for (std::size_t i = 0; i < fit.others.size(); ++i) {
+    if (fit.others[i] == 0) continue;
+    print_error(frequency_name(fit.others[i]), fit.fits[i].error_b, fit.fits[i].offset_sigma_b_m);
+  }
+  for (std::size_t i = 0; i < fit.others.size(); ++i) {
+    if (fit.others[i] == 0) continue;
+    const Estimate& offset_m = fit.fits[i].offset_m;
+    std::printf("A measures %.1f mm %s than %s (within %.1f mm)%s\n",
+                1000 * std::abs(offset_m.value), offset_m.value < 0 ? "less" : "more",
+                frequency_name(fit.others[i]).c_str(), 1000 * offset_m.sigma,
+                remark_on_motion(reference));
+  }
 }
 
 /// Throws InputError if the phases have nothing to do with the reference ranges.
 void refuse_unrelated(const RecordingSamples& collected, CalibrationReference reference,
                       const SequenceReader& source) {
   constexpr double least_agreement = 0.6;
-  if (reference == CalibrationReference::residual || collected.samples.empty()) return;
-  if (agreement_with_references(collected.samples, source.sensor().modulation) > least_agreement) {
+  const std::vector<RangeSample>& samples = collected.samples.front();
+  if (reference == CalibrationReference::residual || samples.empty()) return;
+  if (agreement_with_references(samples, source.sensor().modulation) > least_agreement) {
     return;
   }
   throw InputError(source.folder().string() +
@@ -154,14 +173,35 @@ void refuse_unrelated(const RecordingSamples& collected, CalibrationReference re
                           "to this recording, and are the frequencies right?"));
 }
 
-PhaseErrorFit fit_samples(const std::vector<RangeSample>& samples, CalibrationReference reference,
-                          const SequenceReader& source, const PhaseErrorFitOptions& options) {
-  const Modulation& modulation = source.sensor().modulation;
-  return naming(source.folder().string(), [&] {
-    return reference == CalibrationReference::residual
-               ? fit_to_residual(samples, modulation, options)
-               : fit_to_references(samples, modulation, options);
-  });
+CameraFit fit_samples(const RecordingSamples& collected, CalibrationReference reference,
+                      const SequenceReader& source, const PhaseErrorFitOptions& options) {
+  const SensorModel& sensor = source.sensor();
+  CameraFit fit;
+  fit.others = collected.others;
+  double least_ratio = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < fit.others.size(); ++i) {
+    const std::size_t b = fit.others[i];
+    const Modulation pair = frequency_pair(sensor, 0, b).modulation;
+    fit.fits.push_back(naming(source.folder().string(), [&] {
+      return reference == CalibrationReference::residual
+                 ? fit_to_residual(collected.samples[i], pair, options)
+                 : fit_to_references(collected.samples[i], pair, options);
+    }));
+    // The residual tells most of the first frequency if the other one has nearly its wavelength.
+    const double ratio = std::abs(std::log(pair.wavelength_m(0) / pair.wavelength_m(1)));
+    if (ratio < least_ratio) fit.of_first = i;
+    least_ratio = std::min(least_ratio, ratio);
+  }
+  return fit;
+}
+
+/// The errors of all frequencies.
+std::vector<PhaseError> errors_of(const CameraFit& fit) {
+  std::vector<PhaseError> errors{fit.fits[fit.of_first].error_a};
+  for (std::size_t i = 0; i < fit.others.size(); ++i) {
+    if (fit.others[i] > 0) errors.push_back(fit.fits[i].error_b);
+  }
+  return errors;
 }
 
 /// Whether a file is a calibration with nothing in it but what `calibrate` writes, so that it may
@@ -183,6 +223,11 @@ int run_calibrate(const CalibrateArguments& arguments) {
   const SequenceReader source(arguments.sequence);
   const RecordedTruth truth(source);
   const CalibrationReference reference = reference_of(options.calibration, source, truth);
+  if (reference == CalibrationReference::residual && source.sensor().modulation.count() == 1) {
+    throw UsageError("calibration.reference=residual compares frequencies, but " +
+                     source.folder().string() +
+                     " has one; give known ranges (calibration.wall_file)");
+  }
   OutputFile out(arguments.out, holds_nothing_else);
   const PhaseErrorFitOptions fit_options{
       .orders = harmonic_orders(options.calibration, reference != CalibrationReference::residual),
@@ -199,20 +244,20 @@ int run_calibrate(const CalibrateArguments& arguments) {
   if (reference == CalibrationReference::truth) print_remarks(truth);
   refuse_mostly_damaged(collected.damaged, collected.read, collected.first_damage);
   refuse_unrelated(collected, reference, source);
-  const PhaseErrorFit fit = fit_samples(collected.samples, reference, source, fit_options);
+  const CameraFit fit = fit_samples(collected, reference, source, fit_options);
   if (is_interrupted()) return exit_status::interrupted;
   CameraCalibration calibration;
   const SensorModel& sensor = source.sensor();
   calibration.with =
       CalibratedWith{sensor.camera.width_px, sensor.camera.height_px, sensor.modulation};
-  calibration.error_a = fit.error_a;
-  calibration.error_b = fit.error_b;
+  calibration.errors = errors_of(fit);
   if (!quiet) print_fit(fit, reference);
   if (!quiet) print_samples(collected, source.sensor());
   write_calibration(out.path(), calibration,
                     "found by " + std::string(name_of(reference)) + " in " +
-                        source.folder().string() + ", " + std::to_string(collected.samples.size()) +
-                        " pixels of " + counted(collected.frames, "frame"));
+                        source.folder().string() + ", " +
+                        std::to_string(collected.samples.front().size()) + " pixels of " +
+                        counted(collected.frames, "frame"));
   out.commit();
   if (!quiet) std::printf("calibration: %s\n", arguments.out.c_str());
   return exit_status::done;

@@ -29,10 +29,10 @@ void print_sensor(const SensorModel& sensor) {
   std::printf("camera: %d x %d px, f %.1f x %.1f px, centre %.1f, %.1f px\n", camera.width_px,
               camera.height_px, camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px);
   const Modulation& modulation = sensor.modulation;
-  std::printf("A: %.3f MHz, non-ambiguity range %.3f m\n", modulation.frequency_a_hz / 1e6,
-              modulation.wavelength_a_m());
-  std::printf("B: %.3f MHz, non-ambiguity range %.3f m\n", modulation.frequency_b_hz / 1e6,
-              modulation.wavelength_b_m());
+  std::printf("A: %.3f MHz, non-ambiguity range %.3f m\n", modulation.frequencies_hz[0] / 1e6,
+              modulation.wavelength_m(0));
+  std::printf("B: %.3f MHz, non-ambiguity range %.3f m\n", modulation.frequencies_hz[1] / 1e6,
+              modulation.wavelength_m(1));
   std::printf("combined unambiguous range: %.2f m\n", combined_range_m(modulation));
   if (sensor.max_range_m > 0)
     std::printf("largest range of the scene: %.2f m\n", sensor.max_range_m);
@@ -50,6 +50,19 @@ void print_truth(const SequenceReader& source) {
   for (const std::string& remark : truth.remarks()) std::printf("  %s\n", remark.c_str());
 }
 
+void print_residuals(const std::vector<ResidualSurvey>& residuals, std::size_t frequencies) {
+  for (const ResidualSurvey& residual : residuals) {
+    const std::string which =
+        frequencies > 2 ? " of A and " + frequency_name(residual.frequency) : "";
+    std::printf("inter-frequency residual%s: standard deviation %.0f mm per pixel\n", which.c_str(),
+                1000 * residual.spread_m);
+  }
+  if (residuals.size() + 1 < frequencies) {
+    std::printf(
+        "inter-frequency residual: unknown, too few pixels have returns at all frequencies\n");
+  }
+}
+
 void print_frames(const SequenceReader& source, const RecordingSurvey& survey) {
   const auto& files = source.files();
   std::printf("frames: %zu over %.2f s\n", files.size(),
@@ -61,13 +74,7 @@ void print_frames(const SequenceReader& source, const RecordingSurvey& survey) {
     std::printf("frames without amplitudes: %d (noise is assumed to be uniform)\n",
                 survey.without_amplitude);
   }
-  if (survey.residual) {
-    std::printf("inter-frequency residual: standard deviation %.0f mm per pixel\n",
-                1000 * survey.residual->spread_m);
-  } else {
-    std::printf(
-        "inter-frequency residual: unknown, too few pixels have returns at both frequencies\n");
-  }
+  print_residuals(survey.residuals, source.sensor().modulation.count());
   for (const std::string& remark : remarks_about(survey.errors)) {
     std::printf("  %s\n", remark.c_str());
   }

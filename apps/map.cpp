@@ -294,7 +294,7 @@ void map_frames(MapRun& run, MapInput& input, FrameSample& sample, bool quiet, L
     if (view) view->update(run, std::to_string(done) + " frames, " + status);
     return !is_interrupted();
   };
-  hooks.on_frame = [&](const DualFrequencyFrame& frame, const PreparedFrame& prepared) {
+  hooks.on_frame = [&](const Frame& frame, const PreparedFrame& prepared) {
     sample.add(frame, prepared);
   };
   hooks.on_motion = [&](int index, const SurfaceCloud& still) { sample.drop_moving(index, still); };

@@ -80,7 +80,7 @@ Written write_wrapped(const TumRecording& source, int count, const std::filesyst
   Written written;
   written.left_out = source.left_out();
   for (int i = 0; i < count && keep_going(i); ++i) {
-    std::optional<TumRecording::Frame> frame;
+    std::optional<TumRecording::FrameWithTruth> frame;
     try {
       frame = source.read(i);
     } catch (const InputError& error) {

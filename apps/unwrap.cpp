@@ -88,7 +88,7 @@ struct UnwrappedRecording {
 /// A frame that is kept in memory for the pictures.
 struct KeptFrame {
   std::filesystem::path stem;
-  DualFrequencyFrame recorded;
+  Frame recorded;
   RangeImage unwrapped;
 };
 
@@ -150,7 +150,7 @@ class FrameWriter {
     UnwrappedFrame frame =
         unwrap_frame(source, source_.sensor().modulation, unwrapper, rays_, options);
     frame.name = names_[static_cast<std::size_t>(index)];
-    if (frame.name != source_.files()[static_cast<std::size_t>(index)].phase_a.filename()) {
+    if (frame.name != image_name(source_.files()[static_cast<std::size_t>(index)])) {
       frame.report["image"] = frame.name.string();
     }
     return frame;

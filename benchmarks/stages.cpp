@@ -18,7 +18,7 @@ struct Example {
   Simulator simulator;
   PixelRays rays;
   PipelineOptions options;
-  DualFrequencyFrame frame;
+  Frame frame = blank_frame(2);
   PreparedFrame prepared;
   PreparedFrame next;
 

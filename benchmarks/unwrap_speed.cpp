@@ -28,7 +28,7 @@ constexpr std::array<Size, 3> sizes{{{176, 144}, {320, 240}, {640, 480}}};
 
 struct Example {
   SensorModel sensor;
-  DualFrequencyFrame frame;
+  Frame frame = blank_frame(2);
 };
 
 /// A frame of the simulated room. The sensor does not state its largest range, so that there are
@@ -69,7 +69,7 @@ void pass_count_messages(benchmark::State& state, const Size& size) {
   const Example& e = example(size);
   WrapCountModel model;
   model.assign(e.frame, unwrap_limits(e.sensor, 0),
-               PhaseSigma(e.frame, estimate_phase_noise(e.frame)), 0, {});
+               PhaseSigma(e.frame, estimate_phase_noise(e.frame)), {0, 0}, {});
   WrapCountPropagation propagation;
   for ([[maybe_unused]] auto _ : state)
     benchmark::DoNotOptimize(propagation.run(model, iterations));
@@ -82,9 +82,9 @@ void pass_jump_messages(benchmark::State& state, const Size& size) {
   UnwrapOptions options;
   options.method = UnwrapMethod::jump;
   JumpEstimator estimator;
-  const JumpEstimate& jumps =
-      estimator.estimate(e.frame, PhaseSigma(e.frame, estimate_phase_noise(e.frame)),
-                         unwrap_limits(e.sensor, 0), jump_method(UnwrapMethod::jump), options);
+  const JumpEstimate& jumps = estimator.estimate(
+      e.frame, PhaseSigma(e.frame, estimate_phase_noise(e.frame)),
+      unwrap_limits(e.sensor, 0).pair(0, 1), jump_method(UnwrapMethod::jump), options);
   JumpPropagation propagation;
   JumpBeliefs beliefs;
   for ([[maybe_unused]] auto _ : state) {

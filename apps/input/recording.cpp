@@ -25,11 +25,15 @@ CameraCalibration calibration_of(const CameraOptions& options) {
   return read_calibration(options.calibration_file);
 }
 
+std::filesystem::path image_name(const SequenceFrameFiles& files) {
+  return files.phases.empty() ? std::filesystem::path() : files.phases.front().filename();
+}
+
 std::vector<std::filesystem::path> image_names(const SequenceReader& recording) {
   std::vector<std::filesystem::path> names;
   std::set<std::filesystem::path> taken;
   for (const SequenceFrameFiles& files : recording.files()) {
-    std::filesystem::path name = files.phase_a.filename();
+    std::filesystem::path name = image_name(files);
     const std::string number = "_frame_" + std::to_string(names.size());
     while (!name.empty() && !taken.insert(name).second) {
       name = name.stem().string() + number + name.extension().string();

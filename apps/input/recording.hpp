@@ -34,9 +34,12 @@ struct RecordingArguments {
 /// it cannot be read.
 CameraCalibration calibration_of(const CameraOptions& options);
 
-/// The file name of each frame's images in a result: that of its phase_a image. If an earlier frame
-/// has a phase_a image of the same name in another folder, the frame's number is added. Empty for a
-/// frame without a phase_a image.
+/// The file name of a frame's first phase image; empty for a frame without one.
+std::filesystem::path image_name(const SequenceFrameFiles& files);
+
+/// The file name of each frame's images in a result: that of its first phase image. If an earlier
+/// frame has one of the same name in another folder, the frame's number is added. Empty for a frame
+/// without a phase image.
 std::vector<std::filesystem::path> image_names(const SequenceReader& recording);
 
 /// Prints each warning on a line of stdout.

@@ -23,17 +23,17 @@ namespace {
 constexpr std::size_t enough = 12;
 
 /// The survey of the first frames of a source, without times.
-SourceSurvey survey_of(const std::vector<DualFrequencyFrame>& first, const SensorModel& sensor) {
+SourceSurvey survey_of(const std::vector<Frame>& first, const SensorModel& sensor) {
   SourceSurvey survey;
   if (auto warning = camera_warning(sensor.camera)) survey.warnings.push_back(*std::move(warning));
   for (const auto& warning :
-       {frequency_pair_warning(sensor.modulation), swapped_amplitude_warning(first),
+       {frequency_warning(sensor.modulation), swapped_amplitude_warning(first),
         axial_depth_warning(first, sensor)}) {
     if (!warning) continue;
     survey.warnings.push_back(*warning);
     return survey;
   }
-  survey.residual = survey_residual(first, sensor);
+  survey.residuals = survey_residuals(first, sensor);
   return survey;
 }
 
@@ -82,11 +82,12 @@ std::optional<std::string> residual_warning(const ResidualSurvey& residual,
 
 }  // namespace
 
-std::vector<std::string> warnings_about(const SourceSurvey& survey, const CameraErrors* camera,
+std::vector<std::string> warnings_about(const SourceSurvey& survey, const ErrorSurvey* errors,
                                         bool map_agrees) {
   std::vector<std::string> warnings = survey.warnings;
-  if (survey.residual) {
-    if (auto warning = residual_warning(*survey.residual, camera, map_agrees)) {
+  for (const ResidualSurvey& residual : survey.residuals) {
+    const CameraErrors* camera = errors ? camera_at(*errors, residual.frequency) : nullptr;
+    if (auto warning = residual_warning(residual, camera, map_agrees)) {
       warnings.push_back(*std::move(warning));
     }
   }
@@ -95,7 +96,7 @@ std::vector<std::string> warnings_about(const SourceSurvey& survey, const Camera
 }
 
 SourceSurvey survey_source(const SequenceReader& recording) {
-  std::vector<DualFrequencyFrame> first;
+  std::vector<Frame> first;
   std::vector<double> times_s;
   for (int i = 0; i < *recording.frame_count(); ++i) {
     const SequenceFrameFiles& files = recording.files()[static_cast<std::size_t>(i)];

@@ -7,23 +7,24 @@
 #include <vector>
 
 #include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/diagnostics/error_survey.hpp>
 #include <tofmap/diagnostics/residual_survey.hpp>
 
 namespace tofmap::app {
 
 /// What the frames of a source tell about it.
 struct SourceSurvey {
-  std::vector<std::string> warnings;       ///< about the first frames
-  std::optional<ResidualSurvey> residual;  ///< empty if there are warnings, or too few returns
-  std::vector<double> times_s;             ///< timestamps of all undamaged frames
+  std::vector<std::string> warnings;      ///< about the first frames
+  std::vector<ResidualSurvey> residuals;  ///< none if there are warnings, or too few returns
+  std::vector<double> times_s;            ///< timestamps of all undamaged frames
 };
 
-/// Warnings about a source, with what is known from mapping it: `camera` holds the systematic
+/// Warnings about a source, with what is known from mapping it: `errors` holds the systematic
 /// errors that unwrapping has estimated, or is null, and `map_agrees` says whether the frames agree
 /// on a map (frames_agree() of tofmap/pipeline). If they do, noise or a large offset between the
 /// frequencies is no reason for a warning.
 std::vector<std::string> warnings_about(const SourceSurvey& survey,
-                                        const CameraErrors* camera = nullptr,
+                                        const ErrorSurvey* errors = nullptr,
                                         bool map_agrees = false);
 
 /// Surveys a recording, of which only the first frames are read.
@@ -47,7 +48,7 @@ class WatchedSource final : public FrameSource {
   void survey_first();
 
   FrameSource& source_;
-  std::vector<DualFrequencyFrame> first_;
+  std::vector<Frame> first_;
   std::optional<SourceSurvey> survey_;  ///< without times; empty until enough frames were read
   std::vector<double> times_s_;         ///< SourceSurvey::times_s
 };

@@ -112,16 +112,32 @@ StageTimes mean_times(const RoomMap& map) {
   return mean;
 }
 
+namespace {
+
+Json camera_json(const CameraErrors& camera) {
+  return {{"offset_m", camera.offset_m()},
+          {"periodic_rms_m", camera.periodic_rms_m},
+          {"per_decade_m", camera.per_decade_m()},
+          {"systematic_m", camera.systematic_m}};
+}
+
+}  // namespace
+
 Json errors_json(const ErrorSurvey& survey) {
-  return {{"offset_m", survey.camera.offset_m()},
-          {"periodic_rms_m", survey.camera.periodic_rms_m},
-          {"per_decade_m", survey.camera.per_decade_m()},
-          {"systematic_m", survey.camera.systematic_m},
-          {"exposure_flow_px", survey.flow_px},
-          {"ambient_share", survey.ambient_share},
-          {"ambient_factor", survey.ambient_factor},
-          {"frames", survey.frames},
-          {"remarks", remarks_about(survey)}};
+  // Those of the second frequency; with more of them, a list follows.
+  Json json = camera_json(survey.cameras.size() > 1 ? survey.cameras[1] : CameraErrors());
+  if (survey.cameras.size() > 2) {
+    json["frequencies"] = Json::array();
+    for (const CameraErrors& camera : survey.cameras) {
+      json["frequencies"].push_back(camera_json(camera));
+    }
+  }
+  json["exposure_flow_px"] = survey.flow_px;
+  json["ambient_share"] = survey.ambient_share;
+  json["ambient_factor"] = survey.ambient_factor;
+  json["frames"] = survey.frames;
+  json["remarks"] = remarks_about(survey);
+  return json;
 }
 
 Json summary_json(const RoomMap& map) {

@@ -26,20 +26,24 @@ namespace {
 
 /// The jump probabilities by each term alone, fused, and after propagation. They sum to one in each
 /// of these stages.
-Picture jump_stages_picture(const DualFrequencyFrame& frame, const SensorModel& sensor,
+Picture jump_stages_picture(const Frame& recorded, const SensorModel& sensor,
                             const UnwrapOptions& options) {
   const JumpMethod method = jump_method(options.method);
+  const auto a = static_cast<std::size_t>(options.pair_first - 1);
+  // `single` has no second frequency.
+  const auto b = method.has_frequency_term ? static_cast<std::size_t>(options.pair_second - 1) : a;
+  const Frame frame = frequency_pair(recorded, a, b);
   JumpEstimator estimator;
   const JumpEstimate& jumps =
       estimator.estimate(frame, PhaseSigma(frame, estimate_phase_noise(frame)),
-                         unwrap_limits(sensor, options.max_range_m), method, options);
+                         unwrap_limits(sensor, options.max_range_m).pair(a, b), method, options);
   const JumpInputs& inputs = jumps.inputs;
   const auto evidence = [&](double trust_discontinuity, double trust_frequency) {
     JumpTerms terms = inputs.terms;
     terms.trust_discontinuity = trust_discontinuity;
     terms.trust_frequency = trust_frequency;
     JumpProbabilities out;
-    find_jump_evidence(frame.phase_a, inputs.noise_cycles, inputs.reconstruction_cycles, terms,
+    find_jump_evidence(frame.phases[0], inputs.noise_cycles, inputs.reconstruction_cycles, terms,
                        out);
     return out;
   };
@@ -59,9 +63,9 @@ Picture jump_stages_picture(const DualFrequencyFrame& frame, const SensorModel& 
 void write_pictures_of(const PicturedFrame& frame, const SensorModel& sensor, const PixelRays& rays,
                        const UnwrapOptions& options, const std::filesystem::path& folder) {
   const RangeImage& unwrapped = *frame.unwrapped;
-  const auto wavelength_m = static_cast<float>(sensor.modulation.wavelength_a_m());
+  const auto wavelength_m = static_cast<float>(sensor.modulation.wavelength_m(0));
   const ImageF wrapped_m =
-      (unwrapped.reason == 0).select(frame.recorded->phase_a * wavelength_m, NAN);
+      (unwrapped.reason == 0).select(frame.recorded->phases[0] * wavelength_m, NAN);
   const auto write = [&](const char* what, const Picture& picture) {
     write_picture(folder / (frame.stem + "_" + what + ".png"), picture);
   };
@@ -111,8 +115,8 @@ std::vector<const SampledFrame*> frame_of_all(const std::vector<MethodResult>& r
 }
 
 /// The frame with method `none`, which does not unwrap, and filters.
-PreparedFrame wrapped_frame(const DualFrequencyFrame& frame, const SensorModel& sensor,
-                            const PixelRays& rays, PipelineOptions pipeline) {
+PreparedFrame wrapped_frame(const Frame& frame, const SensorModel& sensor, const PixelRays& rays,
+                            PipelineOptions pipeline) {
   pipeline.unwrap.method = UnwrapMethod::none;
   FrameMeasurer measurer(sensor, pipeline.unwrap);
   Unwrapper unwrapper(sensor, pipeline.unwrap);
@@ -149,7 +153,7 @@ void write_method_pictures(const std::filesystem::path& folder,
                            const SensorModel& sensor, const PipelineOptions& pipeline,
                            const PictureOptions& options, bool quiet) {
   const PixelRays rays = pixel_rays(sensor.camera);
-  const double wavelength_m = sensor.modulation.wavelength_a_m();
+  const double wavelength_m = sensor.modulation.wavelength_m(0);
   const std::vector<SampledFrame>& sample = results.back().sample;
   const std::vector<int> chosen = spread_indices(static_cast<int>(sample.size()), options.frames);
   Progress progress("drawing methods, frame", static_cast<int>(chosen.size()), quiet);

@@ -19,7 +19,7 @@ namespace tofmap::app {
 /// A frame to be drawn, with its unwrapped ranges. Both images must outlive this.
 struct PicturedFrame {
   std::string stem;  ///< first part of the file names of its pictures
-  const DualFrequencyFrame* recorded = nullptr;
+  const Frame* recorded = nullptr;
   const RangeImage* unwrapped = nullptr;
 };
 

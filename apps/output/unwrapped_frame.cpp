@@ -53,6 +53,7 @@ UnwrappedFrame unwrap_frame(const MeasuredSource& source, const Modulation& modu
   if (options.keep_unfiltered) out.unfiltered = result.image;
   out.image = drop_low_confidence(result.image, options.min_confidence);
   out.out_of_range = drop_out_of_range(out.image);
+  const FrameErrors second = result.errors.size() > 1 ? result.errors[1] : FrameErrors();
   out.report = {{"index", sourced.index},
                 {"timestamp", sourced.timestamp_s},
                 {"milliseconds", milliseconds},
@@ -60,9 +61,9 @@ UnwrappedFrame unwrap_frame(const MeasuredSource& source, const Modulation& modu
                 {"converged", result.converged ? Json(*result.converged) : Json(nullptr)},
                 {"curl_violations", result.curl_violations},
                 {"phase_noise_cycles", result.phase_noise_cycles},
-                {"frequency_offset_m", result.errors.camera.offset_m()},
-                {"systematic_m", result.errors.camera.systematic_m},
-                {"exposure_flow_px", result.errors.flow_px},
+                {"frequency_offset_m", second.camera.offset_m()},
+                {"systematic_m", second.camera.systematic_m},
+                {"exposure_flow_px", second.flow_px},
                 {"regions", result.regions},
                 {"ambiguous_pixels", count_reason(result.image, InvalidReason::ambiguous)},
                 {"saturated_pixels", count_reason(result.image, InvalidReason::saturated)},

@@ -34,7 +34,7 @@ nlohmann::ordered_json judgement_json(const Judgement& judgement) {
 std::vector<std::string> all_warnings(const SourceSurvey& source, const RoomMap& map,
                                       const Consistency& consistency) {
   const bool map_agrees = frames_agree(map, consistency);
-  std::vector<std::string> warnings = warnings_about(source, &map.errors.camera, map_agrees);
+  std::vector<std::string> warnings = warnings_about(source, &map.errors, map_agrees);
   if (auto warning = repetition_warning(map.repeated())) warnings.push_back(*std::move(warning));
   std::ranges::move(warnings_about(map.errors, map_agrees), std::back_inserter(warnings));
   std::ranges::move(warnings_about(consistency), std::back_inserter(warnings));

@@ -51,7 +51,7 @@ UnwrappedSample unwrapped_sample(const MapPageSubject& subject) {
     moved += static_cast<double>((image.reason == 0 && image.wrap_count > 0).count());
     sample.frames.push_back(record_of(frame.unwrapped, frame.recorded.timestamp_s, 0,
                                       range_truth(subject, frame.recorded.index),
-                                      subject.sensor.modulation.wavelength_a_m()));
+                                      subject.sensor.modulation.wavelength_m(0)));
   }
   sample.moved_percent = percent(moved, valid);
   return sample;
@@ -79,7 +79,7 @@ WrappedSample wrapped_sample(const MapPageSubject& subject, bool quiet) {
                                                  subject.sensor, rays, options);
     sample.frames.push_back(record_of(prepared.unwrapped, prepared.timestamp_s, 0,
                                       range_truth(subject, prepared.index),
-                                      subject.sensor.modulation.wavelength_a_m()));
+                                      subject.sensor.modulation.wavelength_m(0)));
     const auto pose = pose_at(subject.map.trajectory, prepared.timestamp_s);
     if (pose) map.integrate(*prepared.cloud, *pose);
   }
@@ -104,7 +104,7 @@ std::string sentence_of(const MapPageSubject& subject, const MapScores& scores,
     text += fmt::format(
         "Unwrapping moved {:.0f} % of the ranges beyond the non-ambiguity range of frequency A, "
         "{:.2f} m. ",
-        moved_percent, subject.sensor.modulation.wavelength_a_m());
+        moved_percent, subject.sensor.modulation.wavelength_m(0));
   }
   if (scores.surface) {
     text += fmt::format(

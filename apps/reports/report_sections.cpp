@@ -24,8 +24,8 @@ StagedFrame staged_frame(const SampledFrame& frame, const Modulation& modulation
   StagedFrame staged;
   staged.title =
       fmt::format("Frame {}, {:.2f} s", frame.recorded.index, frame.recorded.timestamp_s);
-  staged.amplitude = frame.recorded.amplitude_a;
-  staged.wrapped_m = frame.recorded.phase_a * static_cast<float>(modulation.wavelength_a_m());
+  staged.amplitude = frame.recorded.amplitudes[0];
+  staged.wrapped_m = frame.recorded.phases[0] * static_cast<float>(modulation.wavelength_m(0));
   staged.unwrapped = frame.unwrapped.image;
   staged.filtered = frame.filtered;
   return staged;
@@ -52,7 +52,7 @@ void add_frames(ReportPage& page, const std::vector<SampledFrame>& sample,
     staged.push_back(staged_frame(frame, modulation));
     if (auto truth = truth_m(frame.recorded.index)) staged.back().truth_m = *std::move(truth);
   }
-  const FrameStrip strip = frame_strip(staged, modulation.wavelength_a_m());
+  const FrameStrip strip = frame_strip(staged, modulation.wavelength_m(0));
   page.add_heading("Frames, from measured phases to filtered ranges");
   page.add_text("Use the buttons, the slider or the arrow keys to step through the frames.");
   page.add_strip(strip.frames, strip.legends);

@@ -119,8 +119,8 @@ class ViewedRecording final : public Viewed {
     const Modulation& modulation = source_.sensor().modulation;
     unwrapped_ = unwrapper_.unwrap(*sourced.frame).image;
     filtered_ = apply_filters(unwrapped_, *sourced.frame, modulation, rays_, filters_).image;
-    wrapped_m_ = sourced.frame->phase_a * static_cast<float>(modulation.wavelength_a_m());
-    amplitude_ = sourced.frame->amplitude_a;
+    wrapped_m_ = sourced.frame->phases[0] * static_cast<float>(modulation.wavelength_m(0));
+    amplitude_ = sourced.frame->amplitudes[0];
   }
 
   const RangeImage& image() const { return is_filtered_ ? filtered_ : unwrapped_; }

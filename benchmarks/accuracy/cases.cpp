@@ -155,7 +155,7 @@ Case recorded_case(const std::filesystem::path& folder, int divisor) {
     for (int i = start; i < std::min(total, start + plan.frames); ++i) {
       SourcedFrame sourced = source.read(i);
       if (!sourced.frame) continue;
-      const auto name = source.files()[static_cast<std::size_t>(i)].phase_a.filename();
+      const auto name = source.files()[static_cast<std::size_t>(i)].phases.front().filename();
       run.frames.push_back(std::move(*sourced.frame));
       run.truth_m.push_back(metres(read_png_16(folder / "range_truth" / name)));
     }
@@ -174,7 +174,7 @@ std::string describe_runs(int divisor) {
 
 void score_run(const Run& run, const SensorModel& sensor, const Variant& variant, Score& score) {
   const UnwrapFrame unwrap_frame = unwrapper_of(variant, sensor, run.frames);
-  const double wavelength_m = sensor.modulation.wavelength_a_m();
+  const double wavelength_m = sensor.modulation.wavelength_m(0);
   for (std::size_t i = 0; i < run.frames.size(); ++i) {
     const auto start = std::chrono::steady_clock::now();
     const UnwrapResult result = unwrap_frame(run.frames[i]);

@@ -16,7 +16,7 @@ namespace tofmap::accuracy {
 /// Consecutive frames of one camera, to be unwrapped by one Unwrapper, since methods may use
 /// earlier frames.
 struct Run {
-  std::vector<DualFrequencyFrame> frames;
+  std::vector<Frame> frames;
   std::vector<ImageF> truth_m;  ///< true radial ranges of each frame
 };
 

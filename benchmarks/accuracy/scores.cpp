@@ -114,12 +114,12 @@ double Score::milliseconds() const {
   return mean_over(frames, [](const FrameScore& f) { return f.milliseconds; });
 }
 
-void add_frame(const DualFrequencyFrame& frame, const RangeImage& image, const ImageF& truth_m,
+void add_frame(const Frame& frame, const RangeImage& image, const ImageF& truth_m,
                double wavelength_a_m, Score& score) {
   std::vector<Pixel> pixels;
   FrameScore added;
   for (Eigen::Index i = 0; i < truth_m.size(); ++i) {
-    const bool has_return = !std::isnan(frame.phase_a.data()[i] + frame.phase_b.data()[i]);
+    const bool has_return = !std::isnan(frame.phases[0].data()[i] + frame.phases[1].data()[i]);
     if (!has_return || std::isnan(truth_m.data()[i])) continue;
     added.returns += 1;
     if (image.reason.data()[i] != 0) continue;

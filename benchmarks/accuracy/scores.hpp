@@ -87,7 +87,7 @@ struct Score {
 
 /// Adds one frame to `score`. Pixels without a true range do not count. The caller sets time and
 /// convergence.
-void add_frame(const DualFrequencyFrame& frame, const RangeImage& image, const ImageF& truth_m,
+void add_frame(const Frame& frame, const RangeImage& image, const ImageF& truth_m,
                double wavelength_a_m, Score& score);
 
 /// Adds the frames of `other`.

@@ -12,14 +12,14 @@ namespace tofmap::accuracy {
 
 namespace {
 
-std::span<const DualFrequencyFrame> first_of(const std::vector<DualFrequencyFrame>& frames) {
+std::span<const Frame> first_of(const std::vector<Frame>& frames) {
   return {frames.data(), std::min<std::size_t>(frames.size(), FrameMeasurer::frames_ahead)};
 }
 
 }  // namespace
 
 UnwrapFrame unwrapper_of(const Variant& variant, const SensorModel& sensor,
-                         const std::vector<DualFrequencyFrame>& frames) {
+                         const std::vector<Frame>& frames) {
   if (!variant.jumps) {
     const auto unwrapper = std::make_shared<Unwrapper>(sensor, variant.options);
     unwrapper->look_ahead(first_of(frames));
@@ -28,7 +28,7 @@ UnwrapFrame unwrapper_of(const Variant& variant, const SensorModel& sensor,
   FrameMeasurer informed(sensor, variant.options);
   informed.look_ahead(first_of(frames));
   return [variant, measurer = std::move(informed),
-          limits = unwrap_limits(sensor, variant.options.max_range_m),
+          limits = unwrap_limits(sensor, variant.options.max_range_m).pair(0, 1),
           estimator = JumpEstimator()](const auto& frame) mutable {
     return unwrap_by_jumps(estimator, measurer.measure(frame), limits, *variant.jumps,
                            variant.options);

@@ -25,12 +25,12 @@ struct Variant {
 };
 
 /// A function that unwraps the frames of one run, to be called in order.
-using UnwrapFrame = std::function<UnwrapResult(const DualFrequencyFrame&)>;
+using UnwrapFrame = std::function<UnwrapResult(const Frame&)>;
 
 /// Returns the function for a variant, after it has looked ahead at the first frames as the program
 /// does.
 UnwrapFrame unwrapper_of(const Variant& variant, const SensorModel& sensor,
-                         const std::vector<DualFrequencyFrame>& frames);
+                         const std::vector<Frame>& frames);
 
 /// Every method, under its name.
 std::vector<Variant> methods();

@@ -129,10 +129,9 @@ std::vector<Sample> samples_of(const std::string& scene, int seed, int frames, i
 }
 
 /// The most likely ranges for phasors smoothed by a Gaussian.
-ImageF blurred_ranges(const DualFrequencyFrame& frame, const Modulation& modulation,
-                      double sigma_px) {
-  const auto rows = frame.phase_a.rows();
-  const auto cols = frame.phase_a.cols();
+ImageF blurred_ranges(const Frame& frame, const Modulation& modulation, double sigma_px) {
+  const auto rows = frame.phases[0].rows();
+  const auto cols = frame.phases[0].cols();
   const int reach = static_cast<int>(std::ceil(3 * sigma_px));
   using Plane = Image<std::complex<double>>;
   const auto blurred = [&](const ImageF& phase) {
@@ -157,16 +156,16 @@ ImageF blurred_ranges(const DualFrequencyFrame& frame, const Modulation& modulat
     };
     return along(along(plane, 1, 0), 0, 1);
   };
-  const Plane a = blurred(frame.phase_a);
-  const Plane b = blurred(frame.phase_b);
+  const Plane a = blurred(frame.phases[0]);
+  const Plane b = blurred(frame.phases[1]);
   constexpr double step_m = 0.04;  // much smaller than the error limit of 0.3 m
   const auto steps = static_cast<int>(std::ceil(combined_range_m(modulation) / step_m));
   std::vector<std::complex<double>> turn_a;
   std::vector<std::complex<double>> turn_b;
   for (int step = 0; step < steps; ++step) {
     const double range_m = step * step_m;
-    turn_a.push_back(std::polar(1.0, -two_pi * range_m / modulation.wavelength_a_m()));
-    turn_b.push_back(std::polar(1.0, -two_pi * range_m / modulation.wavelength_b_m()));
+    turn_a.push_back(std::polar(1.0, -two_pi * range_m / modulation.wavelength_m(0)));
+    turn_b.push_back(std::polar(1.0, -two_pi * range_m / modulation.wavelength_m(1)));
   }
   ImageF range_m(rows, cols);
   for (Eigen::Index i = 0; i < range_m.size(); ++i) {
@@ -192,7 +191,7 @@ struct Tally {
 
   void add(const RangeImage& image, const Sample& sample) {
     constexpr float near_m = 0.3F;
-    const auto half_m = static_cast<float>(sample.sensor.modulation.wavelength_a_m() / 2);
+    const auto half_m = static_cast<float>(sample.sensor.modulation.wavelength_m(0) / 2);
     for (Eigen::Index i = 0; i < image.range_m.size(); ++i) {
       const float truth_m = sample.truth_m.data()[i];
       if (!std::isfinite(truth_m)) continue;
@@ -256,11 +255,11 @@ RangeImage ranges_alone(const ImageF& range_m) {
   return image;
 }
 
-DualFrequencyFrame noisy_frame(const Sample& sample, const Noise& noise, std::mt19937_64& random) {
-  DualFrequencyFrame frame;
+Frame noisy_frame(const Sample& sample, const Noise& noise, std::mt19937_64& random) {
+  Frame frame = blank_frame(2);
   const Modulation& modulation = sample.sensor.modulation;
-  frame.phase_a = noisy_phase(sample.truth_m, modulation.wavelength_a_m(), noise, random);
-  frame.phase_b = noisy_phase(sample.truth_m, modulation.wavelength_b_m(), noise, random);
+  frame.phases[0] = noisy_phase(sample.truth_m, modulation.wavelength_m(0), noise, random);
+  frame.phases[1] = noisy_phase(sample.truth_m, modulation.wavelength_m(1), noise, random);
   return frame;
 }
 
@@ -290,7 +289,7 @@ void compare(const Sample& sample, const Noise& noise, unsigned seed,
              const std::filesystem::path& picture, Tallies& tallies) {
   std::mt19937_64 random(seed);
   const Modulation& modulation = sample.sensor.modulation;
-  const DualFrequencyFrame frame = noisy_frame(sample, noise, random);
+  const Frame frame = noisy_frame(sample, noise, random);
   UnwrapOptions pixelwise;
   pixelwise.method = UnwrapMethod::pixel;
   const RangeImage joint = unwrap(frame, sample.sensor, {}).image;

@@ -139,7 +139,7 @@ void write_plots(const std::filesystem::path& folder, const std::vector<NamedSco
 
 /// The share of pixels that are off by more than half a wavelength of A.
 Share wrong_wraps(const RangeImage& image, const Sample& sample, const Case& example) {
-  const auto half_m = static_cast<float>(example.sensor.modulation.wavelength_a_m() / 2);
+  const auto half_m = static_cast<float>(example.sensor.modulation.wavelength_m(0) / 2);
   Share wrong;
   for (Eigen::Index i = 0; i < image.range_m.size(); ++i) {
     const float error_m = image.range_m.data()[i] - sample.simulated.range_truth_m.data()[i];

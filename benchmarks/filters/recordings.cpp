@@ -49,8 +49,8 @@ CameraPath step_near_wall(const Scene& scene, const RayScene& rays, std::mt19937
 }
 
 /// Adds an offset to all phases of B.
-void shift_b(DualFrequencyFrame& frame, double cycles) {
-  for (float& phase : frame.phase_b.reshaped()) {
+void shift_b(Frame& frame, double cycles) {
+  for (float& phase : frame.phases[1].reshaped()) {
     phase += static_cast<float>(cycles);
     phase -= std::floor(phase);
   }
@@ -87,7 +87,7 @@ class SampleTaker {
     }
     Sample sample;
     sample.simulated = simulator.simulate(index);
-    const double wavelength_b_m = simulator.sensor().modulation.wavelength_b_m();
+    const double wavelength_b_m = simulator.sensor().modulation.wavelength_m(1);
     shift_b(sample.simulated.frame, recording_.b_offset_m / wavelength_b_m);
     sample.unwrapped = unwrap(sample.simulated.frame, simulator.sensor(), {}).image;
     example_.samples.push_back(std::move(sample));

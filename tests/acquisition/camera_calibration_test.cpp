@@ -35,25 +35,25 @@ TEST(PhaseError, IsOffsetHarmonicsAndTable) {
 TEST(Calibration, TakesTheErrorOutOfBothPhases) {
   const Modulation modulation{29e6, 31e6};
   CameraCalibration calibration;
-  calibration.error_a = wiggle();
-  calibration.error_b = {.offset_m = -0.3};
-  DualFrequencyFrame frame;
-  frame.phase_a.resize(1, 1000);
-  frame.phase_b.resize(1, 1000);
+  calibration.errors[0] = wiggle();
+  calibration.errors[1] = {.offset_m = -0.3};
+  Frame frame = blank_frame(2);
+  frame.phases[0].resize(1, 1000);
+  frame.phases[1].resize(1, 1000);
   for (int i = 0; i < 1000; ++i) {
-    frame.phase_a(0, i) = static_cast<float>(i) / 1000;
-    frame.phase_b(0, i) = static_cast<float>(i) / 1000;
+    frame.phases[0](0, i) = static_cast<float>(i) / 1000;
+    frame.phases[1](0, i) = static_cast<float>(i) / 1000;
   }
-  frame.phase_a(0, 7) = NAN;
+  frame.phases[0](0, 7) = NAN;
   calibrate(frame, modulation, calibration);
-  EXPECT_TRUE(std::isnan(frame.phase_a(0, 7)));
+  EXPECT_TRUE(std::isnan(frame.phases[0](0, 7)));
   for (int i = 8; i < 1000; ++i) {
     const double measured = i / 1000.0;
-    const double wanted = measured - wiggle().at_m(measured) / modulation.wavelength_a_m();
-    const double off = frame.phase_a(0, i) - wanted;
+    const double wanted = measured - wiggle().at_m(measured) / modulation.wavelength_m(0);
+    const double off = frame.phases[0](0, i) - wanted;
     EXPECT_NEAR(off - std::round(off), 0, 1e-5) << i;
-    EXPECT_GE(frame.phase_b(0, i), 0);
-    EXPECT_LT(frame.phase_b(0, i), 1);
+    EXPECT_GE(frame.phases[1](0, i), 0);
+    EXPECT_LT(frame.phases[1](0, i), 1);
   }
 }
 
@@ -82,8 +82,8 @@ TEST_F(CalibrationFile, ReadsBackAsTheSameBits) {
                                    .cx_px = 1.5,
                                    .cy_px = 1,
                                    .distortion = {0.1, 0, 0, 0, 0.01}};
-  calibration.error_a = wiggle();
-  calibration.error_b = {.offset_m = 1.0 / 3, .harmonics = {}, .table_m = {0.1, 1e-7, -0.3}};
+  calibration.errors[0] = wiggle();
+  calibration.errors[1] = {.offset_m = 1.0 / 3, .harmonics = {}, .table_m = {0.1, 1e-7, -0.3}};
   calibration.saturation_amplitude = 4000;
   calibration.with = CalibratedWith{4, 3, {29e6, 30.9999e6}};
   const auto file = folder_.path() / "camera.yaml";
@@ -92,14 +92,14 @@ TEST_F(CalibrationFile, ReadsBackAsTheSameBits) {
   ASSERT_TRUE(read.camera);
   EXPECT_EQ(read.camera->distortion, calibration.camera->distortion);
   EXPECT_EQ(read.camera->fy_px, 2.2);
-  ASSERT_EQ(read.error_a.harmonics.size(), 2U);
-  EXPECT_EQ(read.error_a.harmonics[0].sine_m, -0.01);
-  EXPECT_EQ(read.error_b.offset_m, 1.0 / 3);
-  EXPECT_EQ(read.error_b.table_m, calibration.error_b.table_m);
+  ASSERT_EQ(read.errors[0].harmonics.size(), 2U);
+  EXPECT_EQ(read.errors[0].harmonics[0].sine_m, -0.01);
+  EXPECT_EQ(read.errors[1].offset_m, 1.0 / 3);
+  EXPECT_EQ(read.errors[1].table_m, calibration.errors[1].table_m);
   EXPECT_EQ(read.saturation_amplitude, 4000);
   ASSERT_TRUE(read.with);
   EXPECT_EQ(read.with->height_px, 3);
-  EXPECT_EQ(read.with->modulation.frequency_b_hz, 30.9999e6);
+  EXPECT_EQ(read.with->modulation.frequencies_hz[1], 30.9999e6);
 }
 
 TEST_F(CalibrationFile, ThatIsWrongIsNamedWithItsKey) {
@@ -137,12 +137,12 @@ TEST(Calibration, ThatNoCameraCouldHaveIsRefused) {
   sensor.modulation = {29e6, 31e6};
   CameraCalibration calibration;
   // Of order 4, this much rises as fast as the range where it is steepest.
-  const double steepest_m = sensor.modulation.wavelength_b_m() / (8 * pi);
-  calibration.error_b.harmonics = {{4, 0, 0.98 * steepest_m}};
+  const double steepest_m = sensor.modulation.wavelength_m(1) / (8 * pi);
+  calibration.errors[1].harmonics = {{4, 0, 0.98 * steepest_m}};
   EXPECT_NO_THROW(calibrated(sensor, calibration));
-  calibration.error_b.harmonics = {{4, 0, 1.02 * steepest_m}};
+  calibration.errors[1].harmonics = {{4, 0, 1.02 * steepest_m}};
   EXPECT_THROW(calibrated(sensor, calibration), InputError);
-  calibration.error_b = {.table_m = {0, 5}};
+  calibration.errors[1] = {.table_m = {0, 5}};
   EXPECT_THROW(calibrated(sensor, calibration), InputError);
 }
 

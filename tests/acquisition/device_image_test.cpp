@@ -35,13 +35,13 @@ ImageF random_phase(const CameraModel& camera, unsigned seed) {
   return phase;
 }
 
-DualFrequencyFrame random_frame(const CameraModel& camera) {
-  DualFrequencyFrame frame;
+Frame random_frame(const CameraModel& camera) {
+  Frame frame = blank_frame(2);
   frame.timestamp_s = 12.25;
-  frame.phase_a = random_phase(camera, 1);
-  frame.phase_b = random_phase(camera, 2);
-  frame.amplitude_a = 1000 * random_phase(camera, 3).isNaN().select(0, random_phase(camera, 3));
-  frame.amplitude_b = 30000 * random_phase(camera, 4).isNaN().select(0, random_phase(camera, 4));
+  frame.phases[0] = random_phase(camera, 1);
+  frame.phases[1] = random_phase(camera, 2);
+  frame.amplitudes[0] = 1000 * random_phase(camera, 3).isNaN().select(0, random_phase(camera, 3));
+  frame.amplitudes[1] = 30000 * random_phase(camera, 4).isNaN().select(0, random_phase(camera, 4));
   return frame;
 }
 
@@ -56,24 +56,24 @@ class EveryScale : public testing::TestWithParam<RangeScale> {};
 TEST_P(EveryScale, KeepsRangesWithinHalfAStep) {
   const SensorModel model = sensor();
   const DeviceImageCodec codec(model, GetParam());
-  const DualFrequencyFrame frame = random_frame(model.camera);
+  const Frame frame = random_frame(model.camera);
   const StackedImages images = codec.stack(frame, 7);
-  const DualFrequencyFrame back = codec.unstack(images.range, images.amplitude);
+  const Frame back = codec.unstack(images.range, images.amplitude);
   const ImageF ray_z = pixel_rays(model.camera).z;
-  for (Eigen::Index i = 0; i < frame.phase_a.size(); ++i) {
-    const float a = frame.phase_a.data()[i];
-    ASSERT_EQ(std::isnan(a), std::isnan(back.phase_a.data()[i]));
+  for (Eigen::Index i = 0; i < frame.phases[0].size(); ++i) {
+    const float a = frame.phases[0].data()[i];
+    ASSERT_EQ(std::isnan(a), std::isnan(back.phases[0].data()[i]));
     if (std::isnan(a)) continue;
-    EXPECT_GE(back.phase_a.data()[i], 0);
-    EXPECT_LT(back.phase_a.data()[i], 1);
+    EXPECT_GE(back.phases[0].data()[i], 0);
+    EXPECT_LT(back.phases[0].data()[i], 1);
     // A step along the axis is longer along the ray; floats hold a phase within 6e-8 cycles.
     const double along_ray = GetParam().is_z_depth ? ray_z.data()[i] : 1.0;
     const double bound_m = 0.5 * GetParam().unit_m / along_ray + 1e-6;
-    const double wavelength_m = model.modulation.wavelength_a_m();
-    EXPECT_LE(difference_m(a, back.phase_a.data()[i], wavelength_m), bound_m) << a;
+    const double wavelength_m = model.modulation.wavelength_m(0);
+    EXPECT_LE(difference_m(a, back.phases[0].data()[i], wavelength_m), bound_m) << a;
   }
-  EXPECT_LE((back.amplitude_a - frame.amplitude_a).abs().maxCoeff(), 1);
-  EXPECT_LE((back.amplitude_b - frame.amplitude_b).abs().maxCoeff(), 0.5F);
+  EXPECT_LE((back.amplitudes[0] - frame.amplitudes[0]).abs().maxCoeff(), 1);
+  EXPECT_LE((back.amplitudes[1] - frame.amplitudes[1]).abs().maxCoeff(), 0.5F);
 }
 
 INSTANTIATE_TEST_SUITE_P(DeviceImage, EveryScale,
@@ -94,12 +94,12 @@ TEST(DeviceImageCodec, RefusesUnitsThatDoNotHoldAWavelength) {
 TEST(DeviceImageCodec, TakesWhatIsLongerThanAWavelengthForNoReturn) {
   const SensorModel model = sensor();
   const DeviceImageCodec codec(model, {});
-  const auto longest = static_cast<std::uint16_t>(1e4 * model.modulation.wavelength_b_m());
+  const auto longest = static_cast<std::uint16_t>(1e4 * model.modulation.wavelength_m(1));
   ImageU16 range = ImageU16::Constant(30, 40, longest);
   range(3, 4) = longest + 2;
-  EXPECT_EQ(codec.count_beyond(range, model.modulation.wavelength_b_m()), 1);
-  EXPECT_EQ(codec.count_beyond(range, model.modulation.wavelength_a_m()), 0);
-  const ImageF phase = codec.decode_range(range, model.modulation.wavelength_b_m());
+  EXPECT_EQ(codec.count_beyond(range, model.modulation.wavelength_m(1)), 1);
+  EXPECT_EQ(codec.count_beyond(range, model.modulation.wavelength_m(0)), 0);
+  const ImageF phase = codec.decode_range(range, model.modulation.wavelength_m(1));
   EXPECT_EQ(phase.isNaN().count(), 1);
 }
 
@@ -126,7 +126,7 @@ TEST(FrameTag, SaysAllThatIsFixed) {
       EXPECT_EQ(tag->sensor.camera.fx_px, model.camera.fx_px);
       EXPECT_EQ(tag->sensor.camera.cy_px, model.camera.cy_px);
       EXPECT_EQ(tag->sensor.camera.distortion, model.camera.distortion);
-      EXPECT_EQ(tag->sensor.modulation.frequency_b_hz, 31e6);
+      EXPECT_EQ(tag->sensor.modulation.frequencies_hz[1], 31e6);
       EXPECT_EQ(tag->sensor.max_range_m, 12.5);
       EXPECT_EQ(tag->sensor.saturation_amplitude, 50000);
       EXPECT_EQ(tag->scale.unit_m, 1e-3);
@@ -138,10 +138,10 @@ TEST(FrameTag, SaysAllThatIsFixed) {
 TEST(FrameTag, HoldsNoPixelsThatOniFilesLose) {
   const SensorModel model = sensor();
   const DeviceImageCodec codec(model, {});
-  DualFrequencyFrame frame = random_frame(model.camera);
+  Frame frame = random_frame(model.camera);
   frame.timestamp_s = 4 - 1e-15;  // most of its bits are ones, so words of 16 would be 65535
   const StackedImages images = codec.stack(frame, 0xffffffff);
-  const Eigen::Index rows = tag_rows(model.camera.width_px);
+  const Eigen::Index rows = tag_rows(model.camera.width_px, 2);
   EXPECT_LE(images.range.bottomRows(rows).maxCoeff(), 255);
   EXPECT_EQ(read_tag(images.range)->timestamp_s, frame.timestamp_s);
   EXPECT_EQ(read_tag(images.range)->number, 0xffffffff);
@@ -150,7 +150,7 @@ TEST(FrameTag, HoldsNoPixelsThatOniFilesLose) {
 TEST(FrameTag, IsNotReadWhereItIsDamagedOrMissing) {
   const SensorModel model = sensor();
   StackedImages images = DeviceImageCodec(model, {}).stack(random_frame(model.camera), 1);
-  const Eigen::Index first = images.range.rows() - tag_rows(40);
+  const Eigen::Index first = images.range.rows() - tag_rows(40, 2);
   for (int column = 0; column < 40; ++column) {
     ImageU16 damaged = images.range;
     damaged(first, column) ^= 4;

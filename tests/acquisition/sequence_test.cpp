@@ -38,8 +38,8 @@ TEST(Sequence, ReadsBackTheSensorToTheBit) {
   EXPECT_EQ(read.camera.cx_px, expected.camera.cx_px);
   EXPECT_EQ(read.camera.cy_px, expected.camera.cy_px);
   EXPECT_EQ(read.camera.distortion, expected.camera.distortion);
-  EXPECT_EQ(read.modulation.frequency_a_hz, expected.modulation.frequency_a_hz);
-  EXPECT_EQ(read.modulation.frequency_b_hz, expected.modulation.frequency_b_hz);
+  EXPECT_EQ(read.modulation.frequencies_hz[0], expected.modulation.frequencies_hz[0]);
+  EXPECT_EQ(read.modulation.frequencies_hz[1], expected.modulation.frequencies_hz[1]);
   EXPECT_EQ(read.max_range_m, expected.max_range_m);
 }
 
@@ -48,16 +48,16 @@ TEST(Sequence, ReadsBackEveryFrameToTheBit) {
   SequenceReader reader(write_sample(folder.path() / "seq", 3));
   ASSERT_EQ(reader.frame_count(), 3);
   for (int i = 0; i < 3; ++i) {
-    const DualFrequencyFrame expected = test::sample_frame(i);
+    const Frame expected = test::sample_frame(i);
     const auto sourced = reader.next();
     ASSERT_TRUE(sourced && sourced->frame) << (sourced ? sourced->damage : "no frame");
     EXPECT_EQ(sourced->index, i);
     EXPECT_EQ(sourced->frame->index, i);
     EXPECT_NEAR(sourced->timestamp_s, expected.timestamp_s, 5.1e-7);  // six decimals
-    EXPECT_TRUE(same_values(sourced->frame->phase_a, expected.phase_a));
-    EXPECT_TRUE(same_values(sourced->frame->phase_b, expected.phase_b));
-    EXPECT_TRUE(same_values(sourced->frame->amplitude_a, expected.amplitude_a));
-    EXPECT_TRUE(same_values(sourced->frame->amplitude_b, expected.amplitude_b));
+    EXPECT_TRUE(same_values(sourced->frame->phases[0], expected.phases[0]));
+    EXPECT_TRUE(same_values(sourced->frame->phases[1], expected.phases[1]));
+    EXPECT_TRUE(same_values(sourced->frame->amplitudes[0], expected.amplitudes[0]));
+    EXPECT_TRUE(same_values(sourced->frame->amplitudes[1], expected.amplitudes[1]));
   }
   EXPECT_FALSE(reader.next());
 }
@@ -98,15 +98,15 @@ TEST(Sequence, WithoutTruthHasNone) {
 
 TEST(Sequence, WithoutAmplitudesReadsBackWithoutAmplitudes) {
   const test::TemporaryFolder folder;
-  DualFrequencyFrame frame = test::sample_frame(0);
-  frame.amplitude_a.resize(0, 0);
-  frame.amplitude_b.resize(0, 0);
+  Frame frame = test::sample_frame(0);
+  frame.amplitudes[0].resize(0, 0);
+  frame.amplitudes[1].resize(0, 0);
   SequenceWriter(folder.path(), test::sample_sensor()).add(frame);
   const SequenceReader reader(folder.path());
   const SourcedFrame read = reader.read(0);
   ASSERT_TRUE(read.frame) << read.damage;
   EXPECT_FALSE(read.frame->has_amplitude());
-  EXPECT_TRUE(same_values(read.frame->phase_a, frame.phase_a));
+  EXPECT_TRUE(same_values(read.frame->phases[0], frame.phases[0]));
 }
 
 TEST(Sequence, WithOneAmplitudeOnlyCountsAsWithoutAmplitudes) {
@@ -133,8 +133,8 @@ TEST(Sequence, AmplitudeZeroMeansNoReturnAtThatFrequency) {
   const SequenceReader reader(folder.path() / "seq");
   const SourcedFrame read = reader.read(0);
   ASSERT_TRUE(read.frame) << read.damage;
-  EXPECT_TRUE(std::isnan(read.frame->phase_a(4, 6)));
-  EXPECT_FALSE(std::isnan(read.frame->phase_b(4, 6)));
+  EXPECT_TRUE(std::isnan(read.frame->phases[0](4, 6)));
+  EXPECT_FALSE(std::isnan(read.frame->phases[1](4, 6)));
 }
 
 TEST(Sequence, ListMayHoldCommentsBlankLinesAndWindowsLineEnds) {
@@ -151,19 +151,18 @@ TEST(Sequence, ListMayHoldCommentsBlankLinesAndWindowsLineEnds) {
 TEST(Sequence, AcceptsALongerWavelengthAtB) {
   const test::TemporaryFolder folder;
   SensorModel sensor = test::sample_sensor();
-  std::swap(sensor.modulation.frequency_a_hz, sensor.modulation.frequency_b_hz);
+  std::swap(sensor.modulation.frequencies_hz[0], sensor.modulation.frequencies_hz[1]);
   SequenceWriter(folder.path(), sensor).add(test::sample_frame(0));
   const SequenceReader reader(folder.path());
-  EXPECT_LT(reader.sensor().modulation.wavelength_a_m(),
-            reader.sensor().modulation.wavelength_b_m());
+  EXPECT_LT(reader.sensor().modulation.wavelength_m(0), reader.sensor().modulation.wavelength_m(1));
 }
 
 TEST(SequenceWriter, RoundsPhasesToTheNearestStepOfTheCircle) {
   const test::TemporaryFolder folder;
-  DualFrequencyFrame frame = test::sample_frame(0);
-  frame.phase_a.setConstant(0.25F);
-  frame.phase_a(0, 0) = std::nextafter(1.0F, 0.0F);  // nearest is a whole cycle, not 'no return'
-  frame.amplitude_a.setConstant(1);
+  Frame frame = test::sample_frame(0);
+  frame.phases[0].setConstant(0.25F);
+  frame.phases[0](0, 0) = std::nextafter(1.0F, 0.0F);  // nearest is a whole cycle, not 'no return'
+  frame.amplitudes[0].setConstant(1);
   SequenceWriter(folder.path(), test::sample_sensor()).add(frame);
   const ImageU16 pixels = read_png_16(folder.path() / "phase_a/000000.png");
   EXPECT_EQ(pixels(0, 0), 0);
@@ -172,9 +171,9 @@ TEST(SequenceWriter, RoundsPhasesToTheNearestStepOfTheCircle) {
 
 TEST(SequenceWriter, NeverWritesAWeakReturnAsNone) {
   const test::TemporaryFolder folder;
-  DualFrequencyFrame frame = test::sample_frame(0);
-  frame.amplitude_a.setConstant(1e-3F);
-  frame.amplitude_b.setConstant(100.0F);
+  Frame frame = test::sample_frame(0);
+  frame.amplitudes[0].setConstant(1e-3F);
+  frame.amplitudes[1].setConstant(100.0F);
   SequenceWriter(folder.path(), test::sample_sensor(), 0.5).add(frame);
   EXPECT_EQ(read_png_16(folder.path() / "amplitude_a/000000.png")(0, 0), 1);
   EXPECT_EQ(read_png_16(folder.path() / "amplitude_b/000000.png")(0, 0), 50);
@@ -184,14 +183,14 @@ TEST(SequenceWriter, RefusesWhatDoesNotFit) {
   const test::TemporaryFolder folder;
   SequenceWriter writer(folder.path(), test::sample_sensor());
   const auto refused = [&](const auto& change) {
-    DualFrequencyFrame frame = test::sample_frame(0);
+    Frame frame = test::sample_frame(0);
     change(frame);
     EXPECT_THROW(writer.add(frame), UsageError);
   };
-  refused([](DualFrequencyFrame& frame) { frame.phase_a(2, 2) = 1.0F; });
-  refused([](DualFrequencyFrame& frame) { frame.phase_b(2, 2) = -0.1F; });
-  refused([](DualFrequencyFrame& frame) { frame.amplitude_b(2, 2) = -1.0F; });
-  refused([](DualFrequencyFrame& frame) { frame.phase_a.resize(5, 6); });
+  refused([](Frame& frame) { frame.phases[0](2, 2) = 1.0F; });
+  refused([](Frame& frame) { frame.phases[1](2, 2) = -0.1F; });
+  refused([](Frame& frame) { frame.amplitudes[1](2, 2) = -1.0F; });
+  refused([](Frame& frame) { frame.phases[0].resize(5, 6); });
   EXPECT_EQ(writer.count(), 0);
 }
 
@@ -211,11 +210,11 @@ TEST(SequenceWriter, WritesATrueRangeThatDoesNotFitAsUnknown) {
 TEST(SequenceWriter, WritesAnAmplitudeBeyondTheScaleAsItsEnd) {
   const test::TemporaryFolder folder;
   SequenceWriter writer(folder.path() / "seq", test::sample_sensor());
-  DualFrequencyFrame frame = test::sample_frame(0);
-  frame.amplitude_a(2, 2) = 1e6F;
+  Frame frame = test::sample_frame(0);
+  frame.amplitudes[0](2, 2) = 1e6F;
   writer.add(frame);
   const SequenceReader reader(folder.path() / "seq");
-  EXPECT_EQ(reader.read(0).frame->amplitude_a(2, 2), reader.sensor().saturation_amplitude);
+  EXPECT_EQ(reader.read(0).frame->amplitudes[0](2, 2), reader.sensor().saturation_amplitude);
 }
 
 TEST(SequenceWriter, RefusesTimesThatDoNotAdvance) {

@@ -15,7 +15,7 @@
 namespace tofmap {
 namespace {
 
-constexpr Modulation modulation{29e6, 31e6};
+const Modulation modulation{29e6, 31e6};
 constexpr int sample_count = 100000;
 constexpr double noise_m = 0.02;
 
@@ -47,9 +47,9 @@ std::vector<RangeSample> samples_of(const PhaseError& error_a, const PhaseError&
     const double range_m = ranges(random);
     const double sigma_m = noises(random);
     const double a_m =
-        measured_m(range_m, modulation.wavelength_a_m(), error_a) + sigma_m * normal(random);
+        measured_m(range_m, modulation.wavelength_m(0), error_a) + sigma_m * normal(random);
     const double b_m =
-        measured_m(range_m, modulation.wavelength_b_m(), error_b) + sigma_m * normal(random);
+        measured_m(range_m, modulation.wavelength_m(1), error_b) + sigma_m * normal(random);
     const double reference_m = sampling.ranges_are_known ? range_m : (a_m + b_m) / 2;
     constexpr double unit = 7;  // noise is known up to a factor
     const auto relative = static_cast<float>(unit * sigma_m);
@@ -101,15 +101,15 @@ double share_found(const PhaseErrorFit& found, const PhaseError& truth) {
 
 TEST(FitToReferences, IsNotMisledByDarkSurfaces) {
   // Many are farther off than what counts as wrong, 0.15 m: those that are not lean to the median.
-  const PhaseError a = in_cycles(modulation.wavelength_a_m());
-  const PhaseError b = in_cycles(modulation.wavelength_b_m());
+  const PhaseError a = in_cycles(modulation.wavelength_m(0));
+  const PhaseError b = in_cycles(modulation.wavelength_m(1));
   const auto samples = samples_of(a, b, {.least_noise_m = 0.005, .most_noise_m = 0.3});
   EXPECT_NEAR(share_found(fit_to_references(samples, modulation, orders({4})), a), 1, 0.02);
 }
 
 TEST(FitToResidual, IsNotMisledByDarkSurfaces) {
-  const PhaseError a = in_cycles(modulation.wavelength_a_m());
-  const PhaseError b = in_cycles(modulation.wavelength_b_m());
+  const PhaseError a = in_cycles(modulation.wavelength_m(0));
+  const PhaseError b = in_cycles(modulation.wavelength_m(1));
   const auto samples =
       samples_of(a, b, {.ranges_are_known = false, .least_noise_m = 0.005, .most_noise_m = 0.3});
   EXPECT_NEAR(share_found(fit_to_residual(samples, modulation, orders({4})), a), 1, 0.02);
@@ -134,8 +134,8 @@ TEST(FitToReferences, NeedsPhasesAllOverTheCycle) {
 }
 
 TEST(FitToResidual, FindsHarmonicsWithoutKnownRanges) {
-  const PhaseError a = in_cycles(modulation.wavelength_a_m());
-  const PhaseError b = in_cycles(modulation.wavelength_b_m());
+  const PhaseError a = in_cycles(modulation.wavelength_m(0));
+  const PhaseError b = in_cycles(modulation.wavelength_m(1));
   const PhaseErrorFit found =
       fit_to_residual(samples_of(a, b, unknown_ranges), modulation, orders({4, 8}));
   expect_harmonic_4(found.error_a, a);
@@ -146,8 +146,8 @@ TEST(FitToResidual, FindsAHarmonicOfSixCentimetres) {
   const auto large = [](double wavelength_m) {
     return PhaseError{.harmonics = {{4, 0.001 * wavelength_m, 0.012 * wavelength_m}}};
   };
-  const PhaseError a = large(modulation.wavelength_a_m());
-  const PhaseError b = large(modulation.wavelength_b_m());
+  const PhaseError a = large(modulation.wavelength_m(0));
+  const PhaseError b = large(modulation.wavelength_m(1));
   const PhaseErrorFit found =
       fit_to_residual(samples_of(a, b, unknown_ranges), modulation, orders({4}));
   // The noise of a phase also changes the error at that phase, which biases the harmonic by 2 %.
@@ -208,36 +208,36 @@ TEST(FitToReferences, IsAsFarOffAsItSays) { expect_consistent_offset(fit_to_refe
 TEST(FitToResidual, IsAsFarOffAsItSays) { expect_consistent_offset(fit_to_residual); }
 
 TEST(AppendRangeSamples, TakesTheWrapsThatComeNearestToTheReference) {
-  DualFrequencyFrame frame;
-  frame.phase_a = ImageF::Constant(1, 4, 0.1F);
-  frame.phase_b = ImageF::Constant(1, 4, 0.9F);
-  frame.phase_b(0, 1) = NAN;
+  Frame frame = blank_frame(2);
+  frame.phases[0] = ImageF::Constant(1, 4, 0.1F);
+  frame.phases[1] = ImageF::Constant(1, 4, 0.9F);
+  frame.phases[1](0, 1) = NAN;
   ImageF reference_m = ImageF::Constant(1, 4, 10);
   reference_m(0, 2) = NAN;
   SensorModel sensor;
   sensor.modulation = modulation;
   std::vector<RangeSample> samples;
-  append_range_samples(frame, sensor, reference_m, 0, 1, samples);
+  append_range_samples(frame, sensor, reference_m, 1, 0, 1, samples);
   ASSERT_EQ(samples.size(), 2U);
-  EXPECT_NEAR(samples[0].a_m, 2.1 * modulation.wavelength_a_m(), 1e-5);
-  EXPECT_NEAR(samples[0].b_m, 1.9 * modulation.wavelength_b_m(), 1e-5);
-  append_range_samples(frame, sensor, reference_m, 3, 2, samples);
+  EXPECT_NEAR(samples[0].a_m, 2.1 * modulation.wavelength_m(0), 1e-5);
+  EXPECT_NEAR(samples[0].b_m, 1.9 * modulation.wavelength_m(1), 1e-5);
+  append_range_samples(frame, sensor, reference_m, 1, 3, 2, samples);
   EXPECT_EQ(samples.size(), 3U);
 }
 
 TEST(AppendRangeSamples, LeavesSaturatedPixelsOut) {
-  DualFrequencyFrame frame;
-  frame.phase_a = ImageF::Constant(1, 3, 0.1F);
-  frame.phase_b = frame.phase_a;
-  frame.amplitude_a = ImageF::Constant(1, 3, 100);
-  frame.amplitude_b = frame.amplitude_a;
-  frame.amplitude_a(0, 0) = 1000;
-  frame.amplitude_b(0, 2) = 1000;
+  Frame frame = blank_frame(2);
+  frame.phases[0] = ImageF::Constant(1, 3, 0.1F);
+  frame.phases[1] = frame.phases[0];
+  frame.amplitudes[0] = ImageF::Constant(1, 3, 100);
+  frame.amplitudes[1] = frame.amplitudes[0];
+  frame.amplitudes[0](0, 0) = 1000;
+  frame.amplitudes[1](0, 2) = 1000;
   SensorModel sensor;
   sensor.modulation = modulation;
   sensor.saturation_amplitude = 1000;
   std::vector<RangeSample> samples;
-  append_range_samples(frame, sensor, ImageF::Constant(1, 3, 10), 0, 1, samples);
+  append_range_samples(frame, sensor, ImageF::Constant(1, 3, 10), 1, 0, 1, samples);
   EXPECT_EQ(samples.size(), 1U);
 }
 

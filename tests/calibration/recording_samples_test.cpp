@@ -33,7 +33,7 @@ class RecordingSamplesTest : public testing::Test {
     SequenceWriter writer(folder_.path(), test::sample_sensor());
     double timestamp_s = 1;
     for (const int index : indices) {
-      DualFrequencyFrame frame = test::sample_frame(index);
+      Frame frame = test::sample_frame(index);
       frame.timestamp_s = timestamp_s++;
       writer.add(frame);
     }
@@ -42,7 +42,7 @@ class RecordingSamplesTest : public testing::Test {
 
   /// Every frame has the same reference; records the frames that it was called for.
   ReferenceRanges reference() {
-    return [this](const DualFrequencyFrame& frame) {
+    return [this](const Frame& frame) {
       asked_.push_back(frame.index);
       return std::make_optional(test::sample_range_truth());
     };
@@ -87,7 +87,7 @@ TEST_F(RecordingSamplesTest, CountDamagedFramesAndKeepTheFirstReason) {
 }
 
 TEST_F(RecordingSamplesTest, LeaveOutFramesWithoutAReference) {
-  const ReferenceRanges only_of_frame_1 = [](const DualFrequencyFrame& frame) {
+  const ReferenceRanges only_of_frame_1 = [](const Frame& frame) {
     return frame.index == 1 ? std::make_optional(test::sample_range_truth()) : std::nullopt;
   };
   const RecordingSamples found = collect_samples(record({0, 1, 2}), only_of_frame_1, 1);
@@ -108,7 +108,7 @@ TEST_F(RecordingSamplesTest, KeepTheFirstTwelveFrames) {
 TEST_F(RecordingSamplesTest, NeedAStepOfAFrameAndReferencesOfTheImagesSize) {
   const SequenceReader recording = record({0, 1});
   EXPECT_THROW(collect_samples(recording, reference(), 0), UsageError);
-  const ReferenceRanges too_small = [](const DualFrequencyFrame&) {
+  const ReferenceRanges too_small = [](const Frame&) {
     return std::make_optional<ImageF>(ImageF::Constant(4, 7, 1));
   };
   EXPECT_THROW(collect_samples(recording, too_small, 1), UsageError);

@@ -38,17 +38,16 @@ ImageF wall_m(double distance_m, double pan_rad, double tilt_rad) {
   return range_m;
 }
 
-DualFrequencyFrame frame_of(const ImageF& range_m, double offset_m, double noise_m) {
+Frame frame_of(const ImageF& range_m, double offset_m, double noise_m) {
   std::mt19937 random(1);
   std::normal_distribution<double> noise(offset_m, noise_m);
-  DualFrequencyFrame frame;
-  frame.phase_a.resize(range_m.rows(), range_m.cols());
+  Frame frame = blank_frame(2);
+  frame.phases[0].resize(range_m.rows(), range_m.cols());
   for (Eigen::Index i = 0; i < range_m.size(); ++i) {
-    const double cycles =
-        (range_m.data()[i] + noise(random)) / sensor().modulation.wavelength_a_m();
-    frame.phase_a.data()[i] = static_cast<float>(cycles - std::floor(cycles));
+    const double cycles = (range_m.data()[i] + noise(random)) / sensor().modulation.wavelength_m(0);
+    frame.phases[0].data()[i] = static_cast<float>(cycles - std::floor(cycles));
   }
-  frame.phase_b = frame.phase_a;
+  frame.phases[1] = frame.phases[0];
   return frame;
 }
 
@@ -94,8 +93,8 @@ TEST(WallRange, IsNotFoundWhereThereIsNone) {
   std::uniform_real_distribution<float> anything(0, 5);
   const ImageF noise_m = ImageF::NullaryExpr(72, 88, [&] { return anything(random); });
   EXPECT_FALSE(wall_range(frame_of(noise_m, 0, 0), sensor(), 3));
-  DualFrequencyFrame empty = frame_of(noise_m, 0, 0);
-  empty.phase_a.setConstant(NAN);
+  Frame empty = frame_of(noise_m, 0, 0);
+  empty.phases[0].setConstant(NAN);
   EXPECT_FALSE(wall_range(empty, sensor(), 3));
 }
 

@@ -59,18 +59,18 @@ TEST(PhaseSigma, IsNaNWhereNothingWasMeasured) {
 }
 
 TEST(PhaseSigma, OfAFrameHasEachFrequencyAtItsOwnAmplitudeScaleAndStep) {
-  DualFrequencyFrame frame;
-  frame.phase_a = row_of({0.1F, NAN});
-  frame.phase_b = row_of({0.2F, 0.3F});
-  frame.amplitude_a = row_of({10.0F, 10.0F});
-  frame.amplitude_b = row_of({20.0F, 40.0F});
-  const PhaseNoise noise{
-      .scale_a = 1, .scale_b = 4, .quantisation_a_cycles = 0, .quantisation_b_cycles = 0.5};
+  Frame frame = blank_frame(2);
+  frame.phases[0] = row_of({0.1F, NAN});
+  frame.phases[1] = row_of({0.2F, 0.3F});
+  frame.amplitudes[0] = row_of({10.0F, 10.0F});
+  frame.amplitudes[1] = row_of({20.0F, 40.0F});
+  const std::vector<PhaseNoise> noise{{.scale = 1, .quantisation_cycles = 0},
+                                      {.scale = 4, .quantisation_cycles = 0.5}};
   const PhaseSigma sigma(frame, noise, row_of({2.0F, 3.0F}));
-  EXPECT_FLOAT_EQ(sigma.a_cycles(0, 0), 0.2F);
-  EXPECT_TRUE(std::isnan(sigma.a_cycles(0, 1)));
-  EXPECT_NEAR(sigma.b_cycles(0, 0), std::hypot(0.4, 0.5 / std::sqrt(12.0)), 1e-6);
-  EXPECT_NEAR(sigma.b_cycles(0, 1), std::hypot(0.3, 0.5 / std::sqrt(12.0)), 1e-6);
+  EXPECT_FLOAT_EQ(sigma.cycles[0](0, 0), 0.2F);
+  EXPECT_TRUE(std::isnan(sigma.cycles[0](0, 1)));
+  EXPECT_NEAR(sigma.cycles[1](0, 0), std::hypot(0.4, 0.5 / std::sqrt(12.0)), 1e-6);
+  EXPECT_NEAR(sigma.cycles[1](0, 1), std::hypot(0.3, 0.5 / std::sqrt(12.0)), 1e-6);
 }
 
 TEST(PhaseSigma, OfAnEmptyImageIsEmpty) { EXPECT_EQ(phase_sigma_cycles({}, {}, 2, 0.1).size(), 0); }

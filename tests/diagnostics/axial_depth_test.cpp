@@ -19,13 +19,13 @@ TEST_P(AxialDepth, IsToldFromRanges) {
   options.subpixels = 1;
   options.frames = 12;
   const Simulator simulator(make_scene(GetParam()), options);
-  std::vector<DualFrequencyFrame> frames;
+  std::vector<Frame> frames;
   for (int i = 0; i < options.frames; ++i) frames.push_back(simulator.simulate(i).frame);
   EXPECT_FALSE(looks_like_axial_depth(frames, simulator.sensor()));
   const ImageF cosine = pixel_rays(simulator.sensor().camera).z;
-  for (DualFrequencyFrame& frame : frames) {
-    frame.phase_a *= cosine;
-    frame.phase_b *= cosine;
+  for (Frame& frame : frames) {
+    frame.phases[0] *= cosine;
+    frame.phases[1] *= cosine;
   }
   EXPECT_TRUE(looks_like_axial_depth(frames, simulator.sensor()));
 }

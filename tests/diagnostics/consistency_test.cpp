@@ -26,25 +26,25 @@ const CameraModel camera{.width_px = 40,
                          .distortion = {}};
 
 /// What a camera measures at this range everywhere, without noise.
-DualFrequencyFrame frame_at(double range_m, const Modulation& frequencies = modulation) {
+Frame frame_at(double range_m, const Modulation& frequencies = modulation) {
   const auto phase = [&](double wavelength_m) {
     const double cycles = range_m / wavelength_m;
     return ImageF::Constant(camera.height_px, camera.width_px,
                             static_cast<float>(cycles - std::floor(cycles)));
   };
-  DualFrequencyFrame frame;
-  frame.phase_a = phase(frequencies.wavelength_a_m());
-  frame.phase_b = phase(frequencies.wavelength_b_m());
+  Frame frame = blank_frame(2);
+  frame.phases[0] = phase(frequencies.wavelength_m(0));
+  frame.phases[1] = phase(frequencies.wavelength_m(1));
   return frame;
 }
 
 /// A frame unwrapped with this count everywhere.
-RangeImage image_of(const DualFrequencyFrame& frame, int count) {
-  RangeImage image(frame.phase_a.rows(), frame.phase_a.cols());
+RangeImage image_of(const Frame& frame, int count) {
+  RangeImage image(frame.phases[0].rows(), frame.phases[0].cols());
   image.reason.setZero();
   image.wrap_count.setConstant(static_cast<std::uint8_t>(count));
-  image.range_m =
-      (frame.phase_a + static_cast<float>(count)) * static_cast<float>(modulation.wavelength_a_m());
+  image.range_m = (frame.phases[0] + static_cast<float>(count)) *
+                  static_cast<float>(modulation.wavelength_m(0));
   image.sigma_m.setConstant(0.01F);
   image.confidence.setOnes();
   return image;
@@ -57,7 +57,7 @@ const RangeImage* kept(RangeImage image) {
 }
 
 TEST(ResidualAgreement, IsPerfectWhereTheCountIsRight) {
-  const DualFrequencyFrame frame = frame_at(7);
+  const Frame frame = frame_at(7);
   const ResidualAgreement residual =
       residual_agreement({{&frame, kept(image_of(frame, 1)), {}}}, modulation);
   EXPECT_EQ(residual.misfit_percent, 0);
@@ -65,7 +65,7 @@ TEST(ResidualAgreement, IsPerfectWhereTheCountIsRight) {
 }
 
 TEST(ResidualAgreement, TellsWrongCountsByTheirNeighbourhood) {
-  const DualFrequencyFrame frame = frame_at(7);
+  const Frame frame = frame_at(7);
   RangeImage image = image_of(frame, 1);
   image.wrap_count.leftCols(10).setConstant(0);  // a quarter of the pixels
   const ResidualAgreement residual = residual_agreement({{&frame, &image, {}}}, modulation);
@@ -80,20 +80,20 @@ TEST(ResidualAgreement, TellsWrongCountsOfAnyPairOfFrequencies) {
     int wrong_by;  ///< the count away that is the nearest miss
   };
   for (const Pair& pair : {Pair{{80e6, 100e6}, 1}, Pair{{30e6, 72e6}, 2}, Pair{{29e6, 31e6}, 1}}) {
-    const DualFrequencyFrame frame = frame_at(1.2, pair.frequencies);
-    const int right = static_cast<int>(1.2 / pair.frequencies.wavelength_a_m());
+    const Frame frame = frame_at(1.2, pair.frequencies);
+    const int right = static_cast<int>(1.2 / pair.frequencies.wavelength_m(0));
     EXPECT_EQ(residual_agreement({{&frame, kept(image_of(frame, right)), {}}}, pair.frequencies)
                   .misfit_percent,
               0);
     const RangeImage wrong = image_of(frame, right + pair.wrong_by);
     EXPECT_EQ(residual_agreement({{&frame, &wrong, {}}}, pair.frequencies).misfit_percent, 100)
-        << pair.frequencies.frequency_b_hz;
+        << pair.frequencies.frequencies_hz[1];
   }
 }
 
 TEST(ResidualAgreement, IsNotKnownOfFrequenciesThatTellNoCounts) {
   const Modulation doubled{20e6, 40e6};
-  const DualFrequencyFrame frame = frame_at(7, doubled);
+  const Frame frame = frame_at(7, doubled);
   const ResidualAgreement residual =
       residual_agreement({{&frame, kept(image_of(frame, 0)), {}}}, doubled);
   EXPECT_TRUE(std::isnan(residual.misfit_percent)) << "every count fits as well";
@@ -101,16 +101,16 @@ TEST(ResidualAgreement, IsNotKnownOfFrequenciesThatTellNoCounts) {
 }
 
 TEST(ResidualAgreement, RefusesImagesOfAnotherSize) {
-  const DualFrequencyFrame frame = frame_at(7);
+  const Frame frame = frame_at(7);
   RangeImage image(3, 4);
   EXPECT_THROW(residual_agreement({{&frame, &image, {}}}, modulation), UsageError);
 }
 
 TEST(ResidualAgreement, AveragesNoiseOfSinglePixels) {
-  DualFrequencyFrame frame = frame_at(7);
+  Frame frame = frame_at(7);
   const RangeImage image = image_of(frame, 1);
-  for (Eigen::Index i = 0; i < frame.phase_b.size(); ++i) {
-    frame.phase_b.data()[i] += i % 2 == 0 ? 0.05F : -0.05F;  // more than half a wrap is off
+  for (Eigen::Index i = 0; i < frame.phases[1].size(); ++i) {
+    frame.phases[1].data()[i] += i % 2 == 0 ? 0.05F : -0.05F;  // more than half a wrap is off
   }
   const ResidualAgreement residual = residual_agreement({{&frame, &image, {}}}, modulation);
   EXPECT_EQ(residual.misfit_percent, 0);
@@ -118,31 +118,31 @@ TEST(ResidualAgreement, AveragesNoiseOfSinglePixels) {
 }
 
 TEST(ResidualAgreement, LeavesOutNeighbourhoodsWhoseNoiseHidesTheWrapCount) {
-  DualFrequencyFrame frame = frame_at(7);
+  Frame frame = frame_at(7);
   RangeImage image = image_of(frame, 1);
   image.wrap_count.leftCols(10).setConstant(0);
-  for (Eigen::Index row = 0; row < frame.phase_b.rows(); ++row) {
-    for (Eigen::Index col = 20; col < frame.phase_b.cols(); ++col) {
-      frame.phase_b(row, col) += (row + col) % 2 == 0 ? 0.2F : -0.2F;  // a mean is off by 0.04
+  for (Eigen::Index row = 0; row < frame.phases[1].rows(); ++row) {
+    for (Eigen::Index col = 20; col < frame.phases[1].cols(); ++col) {
+      frame.phases[1](row, col) += (row + col) % 2 == 0 ? 0.2F : -0.2F;  // a mean is off by 0.04
     }
   }
   const double misfit = residual_agreement({{&frame, &image, {}}}, modulation).misfit_percent;
   EXPECT_NEAR(misfit, 100.0 * 10 / 18, 1e-9) << "two columns are near the noise";
 
-  frame.phase_b.leftCols(20) = frame.phase_b.rightCols(20);
+  frame.phases[1].leftCols(20) = frame.phases[1].rightCols(20);
   EXPECT_TRUE(std::isnan(residual_agreement({{&frame, &image, {}}}, modulation).misfit_percent));
 }
 
 TEST(ResidualAgreement, IsNotKnownWithoutPhases) {
-  DualFrequencyFrame frame = frame_at(7);
+  Frame frame = frame_at(7);
   const RangeImage image = image_of(frame, 1);
-  frame.phase_b.setConstant(NAN);
+  frame.phases[1].setConstant(NAN);
   EXPECT_TRUE(std::isnan(residual_agreement({{&frame, &image, {}}}, modulation).misfit_percent));
   EXPECT_TRUE(std::isnan(residual_agreement({}, modulation).residual_cycles));
 }
 
 TEST(AmbiguousPercent, CountsPixelsWithAReturn) {
-  const DualFrequencyFrame frame = frame_at(7);
+  const Frame frame = frame_at(7);
   RangeImage image = image_of(frame, 1);
   for (Eigen::Index row = 0; row < 6; ++row) {
     for (Eigen::Index col = 0; col < image.cols(); ++col) {
@@ -154,8 +154,8 @@ TEST(AmbiguousPercent, CountsPixelsWithAReturn) {
 }
 
 TEST(ContradictedPercent, IsZeroForFramesThatAgreeWhereverTheCameraWas) {
-  const DualFrequencyFrame far = frame_at(7);
-  const DualFrequencyFrame near = frame_at(6);
+  const Frame far = frame_at(7);
+  const Frame near = frame_at(6);
   Pose step = Pose::Identity();
   step.translation().z() = 1;
   // A sphere around the first camera is none around the second; near its pole it almost is.
@@ -173,7 +173,7 @@ TEST(ContradictedPercent, IsZeroForFramesThatAgreeWhereverTheCameraWas) {
 }
 
 TEST(ContradictedPercent, CountsWhatOtherFramesSeeThrough) {
-  const DualFrequencyFrame frame = frame_at(7);
+  const Frame frame = frame_at(7);
   const RangedFrame right{&frame, kept(image_of(frame, 1)), Pose::Identity()};
   const RangedFrame wrapped{&frame, kept(image_of(frame, 0)), Pose::Identity()};
   // Points of the right one are hidden behind the wrapped ones, these are seen through.
@@ -182,7 +182,7 @@ TEST(ContradictedPercent, CountsWhatOtherFramesSeeThrough) {
 }
 
 TEST(ContradictedPercent, NeedsFramesThatOverlap) {
-  const DualFrequencyFrame frame = frame_at(7);
+  const Frame frame = frame_at(7);
   const RangedFrame registered{&frame, kept(image_of(frame, 1)), Pose::Identity()};
   const RangedFrame lost{&frame, kept(image_of(frame, 1)), {}};
   EXPECT_TRUE(std::isnan(contradicted_percent({registered, lost}, camera)));

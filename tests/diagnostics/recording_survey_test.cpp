@@ -37,14 +37,14 @@ class Survey : public testing::Test {
     return options;
   }
 
-  void record(const std::function<void(DualFrequencyFrame&)>& spoil,
+  void record(const std::function<void(Frame&)>& spoil,
               const std::function<void(SensorModel&)>& mislabel = {}) {
     const Simulator simulator(make_scene("room"), options());
     SensorModel sensor = simulator.sensor();
     if (mislabel) mislabel(sensor);
     SequenceWriter writer(folder_.path() / "recording", sensor);
     for (int i = 0; i < frame_count; ++i) {
-      DualFrequencyFrame frame = simulator.simulate(i).frame;
+      Frame frame = simulator.simulate(i).frame;
       if (spoil) spoil(frame);
       writer.add(frame);
     }
@@ -65,15 +65,15 @@ TEST_F(Survey, FindsNothingWrongWithAGoodRecording) {
   record({});
   const RecordingSurvey found = survey();
   EXPECT_EQ(found.frames, frame_count);
-  ASSERT_TRUE(found.residual);
-  EXPECT_NEAR(found.residual->offset_m, 0, 0.01);
+  ASSERT_EQ(found.residuals.size(), 1U);
+  EXPECT_NEAR(found.residuals.front().offset_m, 0, 0.01);
   EXPECT_NEAR(found.median_period_s, 1 / options().frame_rate_hz, 1e-3);
   EXPECT_THAT(warnings_, IsEmpty());
 }
 
 TEST_F(Survey, WarnsOfFrequenciesThatAreSwapped) {
   record({}, [](SensorModel& sensor) {
-    std::swap(sensor.modulation.frequency_a_hz, sensor.modulation.frequency_b_hz);
+    std::swap(sensor.modulation.frequencies_hz[0], sensor.modulation.frequencies_hz[1]);
   });
   survey();
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("mixed up")));
@@ -81,10 +81,10 @@ TEST_F(Survey, WarnsOfFrequenciesThatAreSwapped) {
 
 TEST_F(Survey, WarnsOfImagesThatDoNotBelongTogether) {
   // As with a device that takes A and B in turn, and is said to deliver both in one image.
-  record([](DualFrequencyFrame& frame) {
-    const Eigen::Index half = frame.phase_a.rows() / 2;
-    frame.phase_b.topRows(half) = frame.phase_a.bottomRows(half);
-    frame.phase_a.bottomRows(half).setConstant(std::nanf(""));
+  record([](Frame& frame) {
+    const Eigen::Index half = frame.phases[0].rows() / 2;
+    frame.phases[1].topRows(half) = frame.phases[0].bottomRows(half);
+    frame.phases[0].bottomRows(half).setConstant(std::nanf(""));
   });
   survey();
   EXPECT_THAT(warnings_, Contains(HasSubstr("different places")));
@@ -92,9 +92,9 @@ TEST_F(Survey, WarnsOfImagesThatDoNotBelongTogether) {
 
 TEST_F(Survey, WarnsOfDepthAlongTheAxis) {
   const ImageF cosine = pixel_rays(Simulator(make_scene("room"), options()).sensor().camera).z;
-  record([&](DualFrequencyFrame& frame) {
-    frame.phase_a *= cosine;
-    frame.phase_b *= cosine;
+  record([&](Frame& frame) {
+    frame.phases[0] *= cosine;
+    frame.phases[1] *= cosine;
   });
   survey();
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("optical axis")));
@@ -104,22 +104,22 @@ TEST_F(Survey, WarnsOfNoWallForItsNoise) {
   SimulatorOptions noisy = options();
   noisy.range_noise_m = 0.02;  // 5 cm at 8 m
   const Simulator simulator(test::facing_wall_scene(8, 0.5), noisy);
-  const auto residual = survey_residual({simulator.simulate(0).frame}, simulator.sensor());
-  ASSERT_TRUE(residual);
-  EXPECT_GT(residual->spread_m, 0.06);
-  EXPECT_FALSE(pairing_warning(*residual));
-  EXPECT_FALSE(offset_warning(*residual, nullptr));
+  const auto residuals = survey_residuals({simulator.simulate(0).frame}, simulator.sensor());
+  ASSERT_EQ(residuals.size(), 1U);
+  EXPECT_GT(residuals.front().spread_m, 0.06);
+  EXPECT_FALSE(pairing_warning(residuals.front()));
+  EXPECT_FALSE(offset_warning(residuals.front(), nullptr));
 }
 
 TEST_F(Survey, EstimatesByHowMuchThePhaseOffsetsDiffer) {
   record({});
   const Modulation modulation = Simulator(make_scene("room"), options()).sensor().modulation;
-  const double ambiguity_m = modulation.wavelength_a_m() - modulation.wavelength_b_m();
+  const double ambiguity_m = modulation.wavelength_m(0) - modulation.wavelength_m(1);
   for (const double offset_m : {0.03, 0.08, 0.15, 0.2, 0.3, -0.1}) {
     CameraCalibration wrong;
-    wrong.error_b.offset_m = offset_m;  // taken out of B, which had none
+    wrong.errors[1].offset_m = offset_m;  // taken out of B, which had none
     const RecordingSurvey found = survey(wrong);
-    EXPECT_NEAR(found.residual->offset_m, offset_m, 0.01);
+    EXPECT_NEAR(found.residuals.front().offset_m, offset_m, 0.01);
     const bool is_small = std::abs(offset_m) < ambiguity_m / 4;
     if (is_small) {
       EXPECT_THAT(warnings_, IsEmpty()) << offset_m;
@@ -130,11 +130,11 @@ TEST_F(Survey, EstimatesByHowMuchThePhaseOffsetsDiffer) {
   }
   // One wrap more of both, and A measures more: only known ranges tell that it is less.
   CameraCalibration wrong;
-  wrong.error_b.offset_m = -0.2;
+  wrong.errors[1].offset_m = -0.2;
   const RecordingSurvey found = survey(wrong);
-  EXPECT_NEAR(found.residual->offset_m, ambiguity_m - 0.2, 0.01);
-  ASSERT_FALSE(found.residual->other_offsets_m.empty());
-  EXPECT_NEAR(found.residual->other_offsets_m.front(), -0.2, 0.01);
+  EXPECT_NEAR(found.residuals.front().offset_m, ambiguity_m - 0.2, 0.01);
+  ASSERT_FALSE(found.residuals.front().other_offsets_m.empty());
+  EXPECT_NEAR(found.residuals.front().other_offsets_m.front(), -0.2, 0.01);
 }
 
 ResidualSurvey residual_of(double offset_m) {
@@ -163,11 +163,12 @@ TEST(CameraWarning, IsOfUnequalFocalLengths) {
 
 TEST(ErrorTally, LeavesOutFlowsThatAreNoMotion) {
   MeasuredFrame frame;
-  frame.returns.phase_a = ImageF::Zero(72, 88);
-  frame.errors.pixels = 1000;
+  frame.returns.phases.assign(2, ImageF::Zero(72, 88));
+  frame.errors.resize(2);
+  frame.errors[1].pixels = 1000;
   ErrorTally tally;
   for (const double flow_px : {2.0, 3.0, 4.0, 60.0, 60.0, 60.0, 60.0}) {
-    frame.errors.flow_px = flow_px;
+    frame.errors[1].flow_px = flow_px;
     tally.add(frame);
   }
   EXPECT_EQ(tally.survey().flow_px, 3);
@@ -192,33 +193,34 @@ TEST(OffsetWarning, IsThereWhereUnwrappingDidNotFindTheSameSmallOffset) {
   EXPECT_TRUE(offset_warning(residual_of(0.06), &other, map_agrees)) << "even then";
 }
 
-TEST(FrequencyPairWarning, IsThereWhereOneWavelengthIsAllThatThePairTells) {
-  EXPECT_FALSE(frequency_pair_warning({29e6, 31e6}));
-  EXPECT_FALSE(frequency_pair_warning({80e6, 100e6}));
-  EXPECT_THAT(frequency_pair_warning({29e6, 29.001e6}).value_or(""),
+TEST(FrequencyWarning, IsThereWhereOneWavelengthIsAllThatTheFrequenciesTell) {
+  EXPECT_FALSE(frequency_warning({29e6, 31e6}));
+  EXPECT_FALSE(frequency_warning({80e6, 100e6}));
+  EXPECT_THAT(frequency_warning({29e6, 29.001e6}).value_or(""),
               HasSubstr("cannot tell wrap counts apart"));
 }
 
 TEST(ErrorWarnings, BeginAtACentimetreOfPeriodicError) {
   ErrorSurvey survey;
-  survey.camera.frames = 10;
-  survey.camera.periodic_rms_m = 0.009;
+  survey.cameras.resize(2);
+  survey.cameras[1].frames = 10;
+  survey.cameras[1].periodic_rms_m = 0.009;
   EXPECT_THAT(warnings_about(survey), IsEmpty());
-  survey.camera.periodic_rms_m = 0.011;
+  survey.cameras[1].periodic_rms_m = 0.011;
   EXPECT_THAT(warnings_about(survey), ElementsAre(HasSubstr("about 11 mm")));
   constexpr bool map_agrees = true;
   EXPECT_THAT(warnings_about(survey, map_agrees), IsEmpty());
-  survey.camera.periodic_rms_m = 0.026;
+  survey.cameras[1].periodic_rms_m = 0.026;
   EXPECT_THAT(warnings_about(survey, map_agrees), ElementsAre(HasSubstr("about 26 mm")));
-  survey.camera.frames = 0;
+  survey.cameras[1].frames = 0;
   EXPECT_THAT(warnings_about(survey), IsEmpty()) << "nothing is known";
 }
 
 TEST_F(Survey, WarnsOfImagesOfOneFrequencyThatRepeat) {
   ImageF first;
-  record([&](DualFrequencyFrame& frame) {
-    if (first.size() == 0) first = frame.phase_b;
-    frame.phase_b = first;
+  record([&](Frame& frame) {
+    if (first.size() == 0) first = frame.phases[1];
+    frame.phases[1] = first;
   });
   const RecordingSurvey found = survey();
   EXPECT_EQ(found.repeated, 0);
@@ -227,20 +229,20 @@ TEST_F(Survey, WarnsOfImagesOfOneFrequencyThatRepeat) {
 }
 
 TEST_F(Survey, NamesImagesOfOnePhase) {
-  record([](DualFrequencyFrame& frame) {
-    if (frame.index == 2) frame.phase_b.setConstant(0.25F);
+  record([](Frame& frame) {
+    if (frame.index == 2) frame.phases[1].setConstant(0.25F);
   });
   EXPECT_THAT(survey().constant_images, ElementsAre(HasSubstr("phase_b/000002.png")));
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("phase_b/000002.png")));
 }
 
 TEST_F(Survey, CountsFramesThatRepeat) {
-  DualFrequencyFrame first;
-  record([&](DualFrequencyFrame& frame) {
+  Frame first = blank_frame(2);
+  record([&](Frame& frame) {
     if (frame.index == 0) first = frame;
     if (frame.index != 1 && frame.index != 2) return;
-    frame.phase_a = first.phase_a;
-    frame.phase_b = frame.index == 1 ? first.phase_b : frame.phase_b;
+    frame.phases[0] = first.phases[0];
+    frame.phases[1] = frame.index == 1 ? first.phases[1] : frame.phases[1];
   });
   EXPECT_EQ(survey().repeated, 1);
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("1 frame repeats"),
@@ -248,18 +250,18 @@ TEST_F(Survey, CountsFramesThatRepeat) {
 }
 
 TEST_F(Survey, CountsFramesWithoutAnyReturn) {
-  record([](DualFrequencyFrame& frame) {
-    if (frame.index == 3) frame.phase_a.setConstant(NAN);
+  record([](Frame& frame) {
+    if (frame.index == 3) frame.phases[0].setConstant(NAN);
   });
   EXPECT_EQ(survey().without_return, 1);
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("camera covered")));
 }
 
 TEST_F(Survey, DoesNotTakeACoveredCameraForOneThatRepeats) {
-  record([](DualFrequencyFrame& frame) {
+  record([](Frame& frame) {
     if (frame.index < 2) return;
-    frame.phase_a.setConstant(NAN);
-    frame.phase_b.setConstant(NAN);
+    frame.phases[0].setConstant(NAN);
+    frame.phases[1].setConstant(NAN);
   });
   EXPECT_EQ(survey().repeated, 0);
   EXPECT_EQ(survey().without_return, 4);
@@ -267,31 +269,31 @@ TEST_F(Survey, DoesNotTakeACoveredCameraForOneThatRepeats) {
 
 TEST_F(Survey, TellsPhasesFromAmplitudes) {
   constexpr float full_scale = 60000;
-  record([&](DualFrequencyFrame& frame) {
-    const DualFrequencyFrame recorded = frame;
-    frame.phase_a = recorded.amplitude_a / full_scale;
-    frame.phase_b = recorded.amplitude_b / full_scale;
-    frame.amplitude_a = recorded.phase_a.isNaN().select(0.0F, recorded.phase_a * full_scale);
-    frame.amplitude_b = recorded.phase_b.isNaN().select(0.0F, recorded.phase_b * full_scale);
+  record([&](Frame& frame) {
+    const Frame recorded = frame;
+    frame.phases[0] = recorded.amplitudes[0] / full_scale;
+    frame.phases[1] = recorded.amplitudes[1] / full_scale;
+    frame.amplitudes[0] = recorded.phases[0].isNaN().select(0.0F, recorded.phases[0] * full_scale);
+    frame.amplitudes[1] = recorded.phases[1].isNaN().select(0.0F, recorded.phases[1] * full_scale);
   });
   survey();
   EXPECT_THAT(warnings_, Contains(HasSubstr("phases and amplitudes are mixed up")));
 }
 
 TEST_F(Survey, TellsHowMuchIsSaturated) {
-  record([](DualFrequencyFrame& frame) { frame.amplitude_a.topRows(18).setConstant(65535); });
+  record([](Frame& frame) { frame.amplitudes[0].topRows(18).setConstant(65535); });
   EXPECT_NEAR(survey().saturated_share, 0.25, 1e-9);
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("25 % of the pixels are saturated")));
 }
 
 TEST_F(Survey, WarnsOfTimesInMilliseconds) {
-  record([](DualFrequencyFrame& frame) { frame.timestamp_s *= 1000; });
+  record([](Frame& frame) { frame.timestamp_s *= 1000; });
   survey();
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("seconds?")));
 }
 
 TEST_F(Survey, NamesAGapInTime) {
-  record([](DualFrequencyFrame& frame) { frame.timestamp_s += frame.index > 3 ? 2 : 0; });
+  record([](Frame& frame) { frame.timestamp_s += frame.index > 3 ? 2 : 0; });
   EXPECT_EQ(survey().frame_before_gap, 3);
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("after frame 3")));
 }

@@ -12,7 +12,7 @@
 namespace tofmap {
 namespace {
 
-std::vector<DualFrequencyFrame> frames_of(const char* scene, double range_noise_m) {
+std::vector<Frame> frames_of(const char* scene, double range_noise_m) {
   SimulatorOptions options;
   options.width_px = 88;
   options.height_px = 72;
@@ -20,7 +20,7 @@ std::vector<DualFrequencyFrame> frames_of(const char* scene, double range_noise_
   options.frames = 6;
   options.range_noise_m = range_noise_m;
   const Simulator simulator(make_scene(scene), options);
-  std::vector<DualFrequencyFrame> frames;
+  std::vector<Frame> frames;
   for (int i = 0; i < options.frames; ++i) frames.push_back(simulator.simulate(i).frame);
   return frames;
 }
@@ -28,11 +28,11 @@ std::vector<DualFrequencyFrame> frames_of(const char* scene, double range_noise_
 class SwappedAmplitude : public testing::TestWithParam<std::pair<const char*, double>> {};
 
 TEST_P(SwappedAmplitude, IsToldFromPhases) {
-  std::vector<DualFrequencyFrame> frames = frames_of(GetParam().first, GetParam().second);
+  std::vector<Frame> frames = frames_of(GetParam().first, GetParam().second);
   EXPECT_FALSE(looks_like_swapped_amplitude(frames));
-  for (DualFrequencyFrame& frame : frames) {
-    std::swap(frame.phase_a, frame.amplitude_a);
-    std::swap(frame.phase_b, frame.amplitude_b);
+  for (Frame& frame : frames) {
+    std::swap(frame.phases[0], frame.amplitudes[0]);
+    std::swap(frame.phases[1], frame.amplitudes[1]);
   }
   EXPECT_TRUE(looks_like_swapped_amplitude(frames));
 }
@@ -44,10 +44,10 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SwappedAmplitude,
 TEST(SwappedAmplitudeOfNothing, IsNotSeen) { EXPECT_FALSE(looks_like_swapped_amplitude({})); }
 
 TEST(SwappedAmplitudeOfNothing, NeedsAmplitudes) {
-  std::vector<DualFrequencyFrame> frames = frames_of("room", 0.01);
-  for (DualFrequencyFrame& frame : frames) {
-    frame.amplitude_a.resize(0, 0);
-    frame.amplitude_b.resize(0, 0);
+  std::vector<Frame> frames = frames_of("room", 0.01);
+  for (Frame& frame : frames) {
+    frame.amplitudes[0].resize(0, 0);
+    frame.amplitudes[1].resize(0, 0);
   }
   EXPECT_FALSE(looks_like_swapped_amplitude(frames));
 }

@@ -51,9 +51,9 @@ TEST(FilterChain, CountsWhatEachFilterRemoves) {
 TEST(FilterChain, CountsWhatAFilterCorrects) {
   RangeImage image = plane(7);
   image.wrap_count.setConstant(1);
-  const DualFrequencyFrame frame = test::frame_of(image.range_m);
+  const Frame frame = test::frame_of(image.range_m);
   image.wrap_count(7, 9) = 0;
-  image.range_m(7, 9) -= static_cast<float>(test::modulation().wavelength_a_m());
+  image.range_m(7, 9) -= static_cast<float>(test::modulation().wavelength_m(0));
   const FilterResult result =
       apply_filters(image, frame, test::modulation(), pixel_rays(camera()), {});
   EXPECT_EQ(result.counts[3].filter, Filter::isolated_wrap);

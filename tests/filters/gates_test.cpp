@@ -14,10 +14,10 @@ namespace {
 using test::plane;
 
 TEST(AmplitudeFilter, JudgesByTheWeakerFrequency) {
-  DualFrequencyFrame frame;
-  frame.amplitude_a = ImageF::Constant(16, 20, 100);
-  frame.amplitude_b = ImageF::Constant(16, 20, 100);
-  frame.amplitude_b(2, 3) = 9;
+  Frame frame = blank_frame(2);
+  frame.amplitudes[0] = ImageF::Constant(16, 20, 100);
+  frame.amplitudes[1] = ImageF::Constant(16, 20, 100);
+  frame.amplitudes[1](2, 3) = 9;
   const RangeImage out = drop_low_amplitude(plane(3), frame, 10);
   EXPECT_EQ(out.count_valid(), 20 * 16 - 1);
   EXPECT_EQ(out.reason(2, 3), static_cast<int>(InvalidReason::low_amplitude));
@@ -28,9 +28,9 @@ TEST(AmplitudeFilter, DoesNothingWithoutAmplitudes) {
 }
 
 TEST(AmplitudeFilter, RefusesAFrameOfAnotherSize) {
-  DualFrequencyFrame frame;
-  frame.amplitude_a = ImageF::Constant(16, 19, 100);
-  frame.amplitude_b = ImageF::Constant(16, 19, 100);
+  Frame frame = blank_frame(2);
+  frame.amplitudes[0] = ImageF::Constant(16, 19, 100);
+  frame.amplitudes[1] = ImageF::Constant(16, 19, 100);
   EXPECT_THROW(drop_low_amplitude(plane(3), frame, 10), UsageError);
 }
 

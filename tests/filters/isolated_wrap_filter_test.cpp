@@ -15,12 +15,12 @@ using test::frame_of;
 using test::modulation;
 using test::plane;
 
-const auto wavelength_m = static_cast<float>(modulation().wavelength_a_m());
+const auto wavelength_m = static_cast<float>(modulation().wavelength_m(0));
 
 /// A wall within the second wavelength, and what is measured of it.
 struct Wall {
   RangeImage image = plane(6);
-  DualFrequencyFrame frame;
+  Frame frame = blank_frame(2);
 
   Wall() {
     image.wrap_count = (image.range_m / wavelength_m).cast<std::uint8_t>();
@@ -104,7 +104,7 @@ TEST(IsolatedWrapFilter, LeavesAStepThatIsNoWholeWavelength) {
 
 TEST(IsolatedWrapFilter, LeavesAnImageThatWasNotUnwrapped) {
   Wall wall;
-  wall.image.range_m = wall.frame.phase_a * wavelength_m;
+  wall.image.range_m = wall.frame.phases[0] * wavelength_m;
   wall.image.wrap_count.setZero();
   EXPECT_TRUE((wall.mended().wrap_count == 0).all());
 }

@@ -22,9 +22,9 @@ const CameraModel& wide_camera() {
 }
 
 /// Their wraps repeat together after 19.9 m.
-Modulation far_apart() { return {.frequency_a_hz = 37.65e6, .frequency_b_hz = 45.18e6}; }
+Modulation far_apart() { return {37.65e6, 45.18e6}; }
 
-float wavelength_a_m() { return static_cast<float>(far_apart().wavelength_a_m()); }
+float wavelength_a_m() { return static_cast<float>(far_apart().wavelength_m(0)); }
 
 /// A wall seen aslant, its ranges from 3.4 to 7.5 m.
 ImageF slanted_wall() {
@@ -42,7 +42,7 @@ ImageF two_walls() {
 
 /// A frame, and what unwrapping made of it.
 struct Recorded {
-  DualFrequencyFrame frame;
+  Frame frame = blank_frame(2);
   RangeImage image;
 };
 
@@ -54,9 +54,9 @@ Recorded recorded(const ImageF& truth_m, const ImageF& sigma_rad, unsigned seed)
   std::normal_distribution<float> normal;
   std::uniform_int_distribution<int> one_of_twenty(0, 19);
   std::uniform_int_distribution<int> any_count(0, 4);
-  const auto wavelength_b_m = static_cast<float>(far_apart().wavelength_b_m());
+  const auto wavelength_b_m = static_cast<float>(far_apart().wavelength_m(1));
   Recorded out{{}, RangeImage(truth_m.rows(), truth_m.cols())};
-  out.frame.phase_a = out.frame.phase_b = truth_m;
+  out.frame.phases[0] = out.frame.phases[1] = truth_m;
   out.image.reason.setZero();
   out.image.confidence.setConstant(0.95F);
   for (Eigen::Index i = 0; i < truth_m.size(); ++i) {
@@ -66,8 +66,9 @@ Recorded recorded(const ImageF& truth_m, const ImageF& sigma_rad, unsigned seed)
     const float right_count = std::max(0.0F, std::round(range_m / wavelength_a_m() - a));
     const int count =
         one_of_twenty(random) == 0 ? any_count(random) : static_cast<int>(right_count);
-    out.frame.phase_a.data()[i] = a;
-    out.frame.phase_b.data()[i] = wrapped(range_m / wavelength_b_m + sigma_cycles * normal(random));
+    out.frame.phases[0].data()[i] = a;
+    out.frame.phases[1].data()[i] =
+        wrapped(range_m / wavelength_b_m + sigma_cycles * normal(random));
     out.image.wrap_count.data()[i] = static_cast<std::uint8_t>(count);
     out.image.range_m.data()[i] = (a + static_cast<float>(count)) * wavelength_a_m();
     out.image.sigma_m.data()[i] = sigma_cycles * wavelength_a_m();
@@ -186,7 +187,7 @@ TEST(PhasorMean, InventsNoRangesAndDropsNone) {
   Recorded noisy = recorded(slanted_wall(), 1.35F, 900);
   noisy.image.invalidate(7, 9, InvalidReason::low_amplitude);
   noisy.image.invalidate(0, 0, InvalidReason::no_return);
-  noisy.frame.phase_a(0, 0) = noisy.frame.phase_b(0, 0) = std::nanf("");
+  noisy.frame.phases[0](0, 0) = noisy.frame.phases[1](0, 0) = std::nanf("");
   const RangeImage out = averaged(noisy);
   EXPECT_TRUE((out.reason == noisy.image.reason).all());
   EXPECT_TRUE((out.range_m.isNaN() == noisy.image.range_m.isNaN()).all());
@@ -204,8 +205,8 @@ TEST(PhasorMean, RefusesImagesThatDifferInSize) {
   EXPECT_THROW(
       average_phasors(noisy.image, noisy.frame, far_apart(), pixel_rays(test::camera()), {}),
       UsageError);
-  DualFrequencyFrame other = noisy.frame;
-  other.phase_b = ImageF::Zero(48, 63);
+  Frame other = noisy.frame;
+  other.phases[1] = ImageF::Zero(48, 63);
   EXPECT_THROW(average_phasors(noisy.image, other, far_apart(), pixel_rays(wide_camera()), {}),
                UsageError);
 }

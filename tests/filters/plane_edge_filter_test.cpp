@@ -26,12 +26,12 @@ constexpr int pixels = 20 * 16;
 
 /// The image with the wrap counts of its ranges.
 RangeImage counted(RangeImage image) {
-  const auto wavelength_m = static_cast<float>(modulation().wavelength_a_m());
+  const auto wavelength_m = static_cast<float>(modulation().wavelength_m(0));
   image.wrap_count = (image.range_m / wavelength_m).floor().cast<std::uint8_t>();
   return image;
 }
 
-RangeImage off_planes_dropped(const RangeImage& image, const DualFrequencyFrame& frame) {
+RangeImage off_planes_dropped(const RangeImage& image, const Frame& frame) {
   return drop_off_planes(counted(image), frame, modulation(), pixel_rays(camera()), {});
 }
 
@@ -112,10 +112,10 @@ TEST(PlaneEdgeFilter, DropsSinglePixelsOffTheirSurface) {
 
 TEST(PlaneEdgeFilter, DropsPixelsWhoseFrequenciesDisagree) {
   const RangeImage image = plane(3);
-  DualFrequencyFrame frame = frame_of(image.range_m);
+  Frame frame = frame_of(image.range_m);
   // Their mean is on the surface; A alone is off by 15 cm.
-  frame.phase_a(7, 9) += static_cast<float>(0.15 / modulation().wavelength_a_m());
-  frame.phase_b(7, 9) -= static_cast<float>(0.15 / modulation().wavelength_b_m());
+  frame.phases[0](7, 9) += static_cast<float>(0.15 / modulation().wavelength_m(0));
+  frame.phases[1](7, 9) -= static_cast<float>(0.15 / modulation().wavelength_m(1));
   const RangeImage out = off_planes_dropped(image, frame);
   EXPECT_FALSE(out.valid(7, 9));
   EXPECT_EQ(out.count_valid(), pixels - 1);
@@ -123,9 +123,9 @@ TEST(PlaneEdgeFilter, DropsPixelsWhoseFrequenciesDisagree) {
 
 TEST(PlaneEdgeFilter, KeepsSurfacesOfFrequenciesThatAreOffAsAWhole) {
   const RangeImage image = slanted_plane(3, 30 * rad_per_deg);
-  DualFrequencyFrame frame = frame_of(image.range_m);
-  frame.phase_b += static_cast<float>(0.2 / modulation().wavelength_b_m());
-  frame.phase_b -= frame.phase_b.floor();
+  Frame frame = frame_of(image.range_m);
+  frame.phases[1] += static_cast<float>(0.2 / modulation().wavelength_m(1));
+  frame.phases[1] -= frame.phases[1].floor();
   EXPECT_EQ(off_planes_dropped(image, frame).count_valid(), pixels);
 }
 

@@ -37,17 +37,17 @@ inline RangeImage plane(double depth_m, float sigma_m = 0.001F) {
   return image;
 }
 
-inline Modulation modulation() { return {.frequency_a_hz = 29e6, .frequency_b_hz = 31e6}; }
+inline Modulation modulation() { return {29e6, 31e6}; }
 
 /// What a camera without noise measures of these ranges; no amplitudes.
-inline DualFrequencyFrame frame_of(const ImageF& range_m) {
+inline Frame frame_of(const ImageF& range_m) {
   const auto phase = [&](double wavelength_m) -> ImageF {
     const ImageF cycles = range_m / static_cast<float>(wavelength_m);
     return cycles - cycles.floor();
   };
-  DualFrequencyFrame frame;
-  frame.phase_a = phase(modulation().wavelength_a_m());
-  frame.phase_b = phase(modulation().wavelength_b_m());
+  Frame frame = blank_frame(2);
+  frame.phases[0] = phase(modulation().wavelength_m(0));
+  frame.phases[1] = phase(modulation().wavelength_m(1));
   return frame;
 }
 

@@ -33,7 +33,7 @@ class Calibrate : public testing::Test {
                   .status,
               0);
     CameraCalibration opposite;
-    opposite.error_a.harmonics = opposite.error_b.harmonics = {{4, 0, -swing_m}};
+    opposite.errors[0].harmonics = opposite.errors[1].harmonics = {{4, 0, -swing_m}};
     SequenceReader reader(perfect, opposite);
     SequenceWriter writer(sequence_, reader.sensor());
     while (const auto sourced = reader.next()) {
@@ -52,12 +52,12 @@ class Calibrate : public testing::Test {
   /// Of the ranges at A, the wraps of the truth given.
   double median_error_m(const CameraCalibration& calibration) const {
     SequenceReader reader(sequence_, calibration);
-    const double wavelength_m = reader.sensor().modulation.wavelength_a_m();
+    const double wavelength_m = reader.sensor().modulation.wavelength_m(0);
     std::vector<double> errors_m;
     while (const auto sourced = reader.next()) {
       const ImageF truth_m = *reader.range_truth(sourced->index);
       for (Eigen::Index i = 0; i < truth_m.size(); ++i) {
-        const double off = sourced->frame->phase_a.data()[i] - truth_m.data()[i] / wavelength_m;
+        const double off = sourced->frame->phases[0].data()[i] - truth_m.data()[i] / wavelength_m;
         if (!std::isnan(off)) errors_m.push_back(wavelength_m * std::abs(off - std::round(off)));
       }
     }
@@ -77,16 +77,16 @@ double amplitude_m(const PhaseError& error) {
 
 TEST_F(Calibrate, FindsThePeriodicErrorFromKnownRanges) {
   const CameraCalibration found = calibrate("truth");
-  EXPECT_NEAR(amplitude_m(found.error_a), swing_m, 0.1 * swing_m);
-  EXPECT_NEAR(amplitude_m(found.error_b), swing_m, 0.1 * swing_m);
-  EXPECT_NEAR(found.error_a.offset_m, 0, 0.003);
+  EXPECT_NEAR(amplitude_m(found.errors[0]), swing_m, 0.1 * swing_m);
+  EXPECT_NEAR(amplitude_m(found.errors[1]), swing_m, 0.1 * swing_m);
+  EXPECT_NEAR(found.errors[0].offset_m, 0, 0.003);
 }
 
 TEST_F(Calibrate, FindsThePeriodicErrorWithoutKnownRanges) {
   fs::remove_all(sequence_ / "range_truth");
   const CameraCalibration found = calibrate("auto");
-  EXPECT_NEAR(amplitude_m(found.error_a), swing_m, 0.15 * swing_m);
-  EXPECT_NEAR(amplitude_m(found.error_b), swing_m, 0.15 * swing_m);
+  EXPECT_NEAR(amplitude_m(found.errors[0]), swing_m, 0.15 * swing_m);
+  EXPECT_NEAR(amplitude_m(found.errors[1]), swing_m, 0.15 * swing_m);
 }
 
 TEST_F(Calibrate, MakesRangesBetter) {

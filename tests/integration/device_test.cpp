@@ -57,15 +57,15 @@ class Device : public testing::Test {
     const SequenceReader copy(out_);
     ASSERT_EQ(copy.frame_count(), count);
     const Modulation& modulation = original.sensor().modulation;
-    EXPECT_EQ(copy.sensor().modulation.frequency_a_hz, modulation.frequency_a_hz);
-    EXPECT_EQ(copy.sensor().modulation.frequency_b_hz, modulation.frequency_b_hz);
+    EXPECT_EQ(copy.sensor().modulation.frequencies_hz[0], modulation.frequencies_hz[0]);
+    EXPECT_EQ(copy.sensor().modulation.frequencies_hz[1], modulation.frequencies_hz[1]);
     for (int i = 0; i < count; ++i) {
-      const DualFrequencyFrame wanted = *original.read(first + i).frame;
-      const DualFrequencyFrame found = *copy.read(i).frame;
-      expect_same_phases(found.phase_a, wanted.phase_a, modulation.wavelength_a_m());
-      expect_same_phases(found.phase_b, wanted.phase_b, modulation.wavelength_b_m());
-      EXPECT_TRUE((found.amplitude_a == wanted.amplitude_a).all());
-      EXPECT_TRUE((found.amplitude_b == wanted.amplitude_b).all());
+      const Frame wanted = *original.read(first + i).frame;
+      const Frame found = *copy.read(i).frame;
+      expect_same_phases(found.phases[0], wanted.phases[0], modulation.wavelength_m(0));
+      expect_same_phases(found.phases[1], wanted.phases[1], modulation.wavelength_m(1));
+      EXPECT_TRUE((found.amplitudes[0] == wanted.amplitudes[0]).all());
+      EXPECT_TRUE((found.amplitudes[1] == wanted.amplitudes[1]).all());
       EXPECT_NEAR(
           found.timestamp_s - copy.files()[0].timestamp_s,
           wanted.timestamp_s - original.files()[static_cast<std::size_t>(first)].timestamp_s, 2e-6)
@@ -217,9 +217,9 @@ TEST_F(Device, MayDeliverDepthAlongItsAxis) {
   ASSERT_EQ(finished.status, 0) << finished.err;
   const SequenceReader original(recording_);
   const SequenceReader copy(out_);
-  const double wavelength_m = original.sensor().modulation.wavelength_a_m();
-  const ImageF wanted = original.read(1).frame->phase_a;
-  const ImageF found = copy.read(1).frame->phase_a;
+  const double wavelength_m = original.sensor().modulation.wavelength_m(0);
+  const ImageF wanted = original.read(1).frame->phases[0];
+  const ImageF found = copy.read(1).frame->phases[0];
   for (Eigen::Index i = 0; i < found.size(); ++i) {
     const double cycles = double{found.data()[i]} - double{wanted.data()[i]};
     if (std::isnan(cycles)) continue;

@@ -28,8 +28,8 @@ class LostWork : public WithRecording {
   /// Makes a pixel of the first row of frame 1 measure a range at both frequencies.
   void put_range(int column, double range_m) const {
     const Modulation modulation = SequenceReader(sequence_).sensor().modulation;
-    put_phase("phase_a", column, range_m / modulation.wavelength_a_m());
-    put_phase("phase_b", column, range_m / modulation.wavelength_b_m());
+    put_phase("phase_a", column, range_m / modulation.wavelength_m(0));
+    put_phase("phase_b", column, range_m / modulation.wavelength_m(1));
   }
 
   void put_phase(const std::string& kind, int column, double wavelengths) const {

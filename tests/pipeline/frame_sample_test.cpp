@@ -25,7 +25,7 @@ CameraModel camera_of(int width_px) {
 /// Adds frames of these indices that hold nothing else.
 void add(FrameSample& sample, const std::vector<int>& indices) {
   for (const int index : indices) {
-    DualFrequencyFrame frame;
+    Frame frame = blank_frame(2);
     frame.index = index;
     sample.add(frame, {});
   }
@@ -58,7 +58,7 @@ TEST(FrameSample, DropsTheRangesOfWhatMovesInAFrame) {
   prepared.filtered.image.range_m.setConstant(2);
   prepared.filtered.image.reason.setZero();
   for (const int index : {0, 1}) {
-    DualFrequencyFrame frame;
+    Frame frame = blank_frame(2);
     frame.index = index;
     sample.add(frame, prepared);
   }
@@ -98,9 +98,9 @@ TEST(SpreadIndices, OfTheLongestRecordingsStayWithin) {
 TEST(FrameSample, IsTheSameAfterItWasPutAside) {
   const CameraModel camera = camera_of(4);
   FrameSample sample(camera, 3, 9);
-  DualFrequencyFrame frame;
+  Frame frame = blank_frame(2);
   frame.index = 1;
-  frame.phase_a = ImageF::Constant(camera.height_px, camera.width_px, 0.25F);
+  frame.phases[0] = ImageF::Constant(camera.height_px, camera.width_px, 0.25F);
   PreparedFrame prepared;
   prepared.unwrapped.image = RangeImage(camera.height_px, camera.width_px);
   prepared.unwrapped.curl_violations = 7;
@@ -116,7 +116,7 @@ TEST(FrameSample, IsTheSameAfterItWasPutAside) {
   add(resumed, {2, 3, 4, 5, 6, 7, 8});
   ASSERT_THAT(indices_of(resumed), ElementsAre(1, 4, 7));
   const SampledFrame& first = resumed.frames().front();
-  EXPECT_TRUE(same_values(first.recorded.phase_a, frame.phase_a));
+  EXPECT_TRUE(same_values(first.recorded.phases[0], frame.phases[0]));
   EXPECT_EQ(first.unwrapped.curl_violations, 7);
   EXPECT_EQ(first.unwrapped.converged, false);
   EXPECT_TRUE((first.filtered.reason == prepared.filtered.image.reason).all());

@@ -26,7 +26,7 @@ TEST(EmbeddedRecording, IsUnwrappedAsBefore) {
     const SourcedFrame frame = recording.read(i);
     ASSERT_TRUE(frame.frame) << frame.damage;
     const ImageU8 counts = unwrap(*frame.frame, recording.sensor(), {}).image.wrap_count;
-    const auto name = recording.files()[static_cast<std::size_t>(i)].phase_a.filename();
+    const auto name = recording.files()[static_cast<std::size_t>(i)].phases[0].filename();
     const ImageU8 expected = read_png_8(data / "expected/wraps" / name);
     EXPECT_LE((counts != expected).count(), rounded_otherwise * static_cast<double>(counts.size()))
         << name;
@@ -57,12 +57,12 @@ TEST(EmbeddedRecording, IsSimulatedAsBefore) {
   options.frames = 8;
   const Simulator simulator(make_scene("room"), options);
   for (int i = 0; i < recording.frame_count(); ++i) {
-    const DualFrequencyFrame expected = *recording.read(i).frame;
-    const DualFrequencyFrame frame = simulator.simulate(i).frame;
-    const ImageF difference = (frame.phase_a - expected.phase_a).abs();
+    const Frame expected = *recording.read(i).frame;
+    const Frame frame = simulator.simulate(i).frame;
+    const ImageF difference = (frame.phases[0] - expected.phases[0]).abs();
     // Files hold phases in steps of 1/65535 cycle.
     const auto off =
-        (difference > 2.0F / 65535 || frame.phase_a.isNaN() != expected.phase_a.isNaN());
+        (difference > 2.0F / 65535 || frame.phases[0].isNaN() != expected.phases[0].isNaN());
     EXPECT_LE(off.count(), rounded_otherwise * static_cast<double>(difference.size()));
   }
 }

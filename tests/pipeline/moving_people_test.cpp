@@ -41,7 +41,7 @@ TEST(MovingPeople, AreErasedAndTheRoomIsNot) {
   MapHooks hooks;
   hooks.keep_going = [](int done) { return done < frames; };
   std::map<int, std::shared_ptr<const SurfaceCloud>> clouds;
-  hooks.on_frame = [&](const DualFrequencyFrame&, const PreparedFrame& frame) {
+  hooks.on_frame = [&](const Frame&, const PreparedFrame& frame) {
     clouds[frame.index] = frame.cloud;
   };
   hooks.on_motion = [&](int index, const SurfaceCloud& still) {

@@ -39,7 +39,7 @@ class DamagedSource final : public FrameSource {
     if (index_ == total_frames) return {};
     SourcedFrame out;
     out.index = index_;
-    DualFrequencyFrame frame = simulator_.simulate(index_).frame;
+    Frame frame = simulator_.simulate(index_).frame;
     out.timestamp_s = frame.timestamp_s;
     if (index_ == damaged_index_) {
       out.damage = "b/000003.png: truncated";
@@ -178,7 +178,7 @@ class StuckSource final : public FrameSource {
     if (index_ == total_frames) return {};
     SourcedFrame out;
     out.index = index_;
-    DualFrequencyFrame frame = simulator_.simulate(std::min(index_, 2)).frame;
+    Frame frame = simulator_.simulate(std::min(index_, 2)).frame;
     frame.index = index_;
     frame.timestamp_s = simulator_.simulate(index_).frame.timestamp_s;
     out.timestamp_s = frame.timestamp_s;
@@ -245,7 +245,7 @@ class FrozenSource final : public FrameSource {
 
  private:
   SensorModel sensor_;
-  DualFrequencyFrame frame_;
+  Frame frame_ = blank_frame(2);
   int copies_;
   int index_ = 0;
 };
@@ -265,7 +265,7 @@ TEST(MapRoom, CountsCopiesOfAFrameOnce) {
 
 TEST(PrepareRanges, AreThoseOfTheWholeFrame) {
   const Simulator simulator = small_room();
-  const DualFrequencyFrame frame = simulator.simulate(0).frame;
+  const Frame frame = simulator.simulate(0).frame;
   const SensorModel& sensor = simulator.sensor();
   const PixelRays rays = pixel_rays(sensor.camera);
   const PipelineOptions options;
@@ -334,7 +334,7 @@ struct SampledRun {
   void advance(Simulator& source, int end) {
     MapHooks hooks;
     hooks.keep_going = [end](int done) { return done < end; };
-    hooks.on_frame = [this](const DualFrequencyFrame& recorded, const PreparedFrame& prepared) {
+    hooks.on_frame = [this](const Frame& recorded, const PreparedFrame& prepared) {
       sample.add(recorded, prepared);
     };
     hooks.on_motion = [this](int index, const SurfaceCloud& still) {
@@ -388,7 +388,7 @@ TEST(MapRoom, ShowsEveryReadableFrameInOrder) {
   DamagedSource source(room, 2);
   std::vector<int> seen;
   MapHooks hooks;
-  hooks.on_frame = [&](const DualFrequencyFrame& recorded, const PreparedFrame& frame) {
+  hooks.on_frame = [&](const Frame& recorded, const PreparedFrame& frame) {
     EXPECT_EQ(recorded.index, frame.index);
     seen.push_back(frame.index);
   };
@@ -427,10 +427,10 @@ TEST(MapRoom, OfARecordingWithoutReturnsIsEmpty) {
     std::optional<int> frame_count() const override { return 2; }
     std::optional<SourcedFrame> next() override {
       if (index_ == 2) return {};
-      DualFrequencyFrame frame;
+      Frame frame = blank_frame(2);
       frame.index = index_;
       frame.timestamp_s = index_;
-      frame.phase_a = frame.phase_b =
+      frame.phases[0] = frame.phases[1] =
           ImageF::Constant(sensor_.camera.height_px, sensor_.camera.width_px, NAN);
       return SourcedFrame{index_++, frame.timestamp_s, frame, ""};
     }

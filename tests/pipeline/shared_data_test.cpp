@@ -26,7 +26,7 @@ double wrong_wrap_percent(const SequenceReader& recording, const std::string& me
   for (int i = 0; i < recording.frame_count(); i += step) {
     const RangeImage image = unwrap(*recording.read(i).frame, recording.sensor(), options).image;
     scores.push_back(score_ranges(image, recording.range_truth(i).value(),
-                                  recording.sensor().modulation.wavelength_a_m()));
+                                  recording.sensor().modulation.wavelength_m(0)));
   }
   return mean_score(scores).wrong_wrap_percent;
 }

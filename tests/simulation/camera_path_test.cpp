@@ -87,12 +87,12 @@ TEST(CameraPath, NeedsEnoughWaypoints) {
 }
 
 TEST(PlanMotion, KeepsWithinBothLimits) {
-  const CameraMotion motion = plan_motion(square_path(), limits, 0, 2, 15, 0.1);
-  EXPECT_LE(largest_translation_m(motion.at_a), limits.max_translation_m);
+  const CameraMotion motion = plan_motion(square_path(), limits, 0, 2, 15, {0, 0.1});
+  EXPECT_LE(largest_translation_m(motion.at[0]), limits.max_translation_m);
   double turned_rad = 0;
-  for (std::size_t i = 1; i < motion.at_a.size(); ++i) {
-    const double rotation_rad =
-        rotation_angle_rad(motion.at_a[i - 1].world_from_camera, motion.at_a[i].world_from_camera);
+  for (std::size_t i = 1; i < motion.at[0].size(); ++i) {
+    const double rotation_rad = rotation_angle_rad(motion.at[0][i - 1].world_from_camera,
+                                                   motion.at[0][i].world_from_camera);
     EXPECT_LE(rotation_rad, limits.max_rotation_rad);
     turned_rad += rotation_rad;
   }
@@ -101,44 +101,44 @@ TEST(PlanMotion, KeepsWithinBothLimits) {
 
 TEST(PlanMotion, TakesTheFramesThatTheWholePathNeeds) {
   // 10 m in steps of at most 95 % of 7 cm: 151 frames.
-  const CameraMotion motion = plan_motion(straight_path(10), limits, 0, 2, 15, 0);
-  EXPECT_NEAR(static_cast<double>(motion.at_a.size()), 10 / (0.95 * 0.07) + 1, 1.0);
-  EXPECT_NEAR(motion.at_a.back().world_from_camera.translation().x(), 10, 0.001);
-  EXPECT_EQ(plan_motion(straight_path(10), limits, 0, 300, 15, 0).at_a.size(), 300U);
+  const CameraMotion motion = plan_motion(straight_path(10), limits, 0, 2, 15, {0, 0});
+  EXPECT_NEAR(static_cast<double>(motion.at[0].size()), 10 / (0.95 * 0.07) + 1, 1.0);
+  EXPECT_NEAR(motion.at[0].back().world_from_camera.translation().x(), 10, 0.001);
+  EXPECT_EQ(plan_motion(straight_path(10), limits, 0, 300, 15, {0, 0}).at[0].size(), 300U);
 }
 
 TEST(PlanMotion, SlowsDownForMoreFramesAndStopsEarlyForFewer) {
-  const CameraMotion slow = plan_motion(straight_path(1), limits, 101, 2, 15, 0);
-  ASSERT_EQ(slow.at_a.size(), 101U);
-  EXPECT_NEAR(largest_translation_m(slow.at_a), 0.01, 1e-4);
-  EXPECT_NEAR(slow.at_a.back().world_from_camera.translation().x(), 1, 1e-6);
-  const CameraMotion part = plan_motion(straight_path(10), limits, 11, 2, 15, 0);
-  ASSERT_EQ(part.at_a.size(), 11U);
-  EXPECT_NEAR(part.at_a.back().world_from_camera.translation().x(), 10 * 0.95 * 0.07, 1e-3);
+  const CameraMotion slow = plan_motion(straight_path(1), limits, 101, 2, 15, {0, 0});
+  ASSERT_EQ(slow.at[0].size(), 101U);
+  EXPECT_NEAR(largest_translation_m(slow.at[0]), 0.01, 1e-4);
+  EXPECT_NEAR(slow.at[0].back().world_from_camera.translation().x(), 1, 1e-6);
+  const CameraMotion part = plan_motion(straight_path(10), limits, 11, 2, 15, {0, 0});
+  ASSERT_EQ(part.at[0].size(), 11U);
+  EXPECT_NEAR(part.at[0].back().world_from_camera.translation().x(), 10 * 0.95 * 0.07, 1e-3);
 }
 
 TEST(PlanMotion, PutsBBetweenItsFrameAndTheNext) {
-  const CameraMotion motion = plan_motion(straight_path(5), limits, 0, 2, 10, 0.25);
+  const CameraMotion motion = plan_motion(straight_path(5), limits, 0, 2, 10, {0, 0.25});
   const auto x = [](const StampedPose& pose) { return pose.world_from_camera.translation().x(); };
-  const double a = x(motion.at_a[20]);
-  const double next = x(motion.at_a[21]);
-  EXPECT_NEAR(x(motion.at_b[20]), a + 0.25 * (next - a), 1e-4);
-  EXPECT_DOUBLE_EQ(motion.at_a[20].timestamp_s, 2.0);
+  const double a = x(motion.at[0][20]);
+  const double next = x(motion.at[0][21]);
+  EXPECT_NEAR(x(motion.at[1][20]), a + 0.25 * (next - a), 1e-4);
+  EXPECT_DOUBLE_EQ(motion.at[0][20].timestamp_s, 2.0);
 }
 
 TEST(PlanMotion, GoesOnToTheLastB) {
   for (const double b_delay_share : {0.1, 1.0}) {
-    const CameraMotion open = plan_motion(straight_path(5), limits, 0, 2, 10, b_delay_share);
+    const CameraMotion open = plan_motion(straight_path(5), limits, 0, 2, 10, {0, b_delay_share});
     const auto x = [](const StampedPose& pose) { return pose.world_from_camera.translation().x(); };
-    const double step_m = x(open.at_a[20]) - x(open.at_a[19]);
-    EXPECT_NEAR(x(open.at_b.back()) - x(open.at_a.back()), b_delay_share * step_m, 1e-3 * step_m);
+    const double step_m = x(open.at[0][20]) - x(open.at[0][19]);
+    EXPECT_NEAR(x(open.at[1].back()) - x(open.at[0].back()), b_delay_share * step_m, 1e-3 * step_m);
   }
 }
 
 TEST(PlanMotion, StandsStillOnAPathWithoutLength) {
-  const CameraMotion motion = plan_motion(straight_path(0), limits, 3, 2, 15, 0.5);
-  ASSERT_EQ(motion.at_a.size(), 3U);
-  for (const StampedPose& pose : motion.at_b) {
+  const CameraMotion motion = plan_motion(straight_path(0), limits, 3, 2, 15, {0, 0.5});
+  ASSERT_EQ(motion.at[0].size(), 3U);
+  for (const StampedPose& pose : motion.at[1]) {
     EXPECT_TRUE(pose.world_from_camera.isApprox(look_along({0, 0, 1}, {1, 0, 0}), 1e-12));
   }
 }
@@ -148,13 +148,13 @@ TEST(ReplayMotion, PutsBBetweenPosesAndBeyondTheLast) {
   for (int i = 0; i < 3; ++i) {
     poses.push_back({1.0 * i, look_along({1.0 * i * i, 0, 0}, Vector3d::UnitX())});
   }
-  const CameraMotion motion = replay_motion(poses, 0, 0.5);
-  ASSERT_EQ(motion.at_b.size(), 3U);
-  EXPECT_NEAR(motion.at_b[0].world_from_camera.translation().x(), 0.5, 1e-12);
-  EXPECT_NEAR(motion.at_b[1].world_from_camera.translation().x(), 2.5, 1e-12);
-  EXPECT_NEAR(motion.at_b[2].world_from_camera.translation().x(), 5.5, 1e-12);
-  EXPECT_EQ(replay_motion(poses, 2, 0.5).at_a.size(), 2U);
-  EXPECT_THROW(replay_motion({}, 0, 0), UsageError);
+  const CameraMotion motion = replay_motion(poses, 0, {0, 0.5});
+  ASSERT_EQ(motion.at[1].size(), 3U);
+  EXPECT_NEAR(motion.at[1][0].world_from_camera.translation().x(), 0.5, 1e-12);
+  EXPECT_NEAR(motion.at[1][1].world_from_camera.translation().x(), 2.5, 1e-12);
+  EXPECT_NEAR(motion.at[1][2].world_from_camera.translation().x(), 5.5, 1e-12);
+  EXPECT_EQ(replay_motion(poses, 2, {0, 0.5}).at[0].size(), 2U);
+  EXPECT_THROW(replay_motion({}, 0, {0, 0}), UsageError);
 }
 
 }  // namespace

@@ -38,13 +38,13 @@ SimulatorOptions every_error() {
   return options;
 }
 
-void expect_same_bits(const DualFrequencyFrame& one, const DualFrequencyFrame& other) {
+void expect_same_bits(const Frame& one, const Frame& other) {
   EXPECT_EQ(one.index, other.index);
   EXPECT_EQ(one.timestamp_s, other.timestamp_s);
-  EXPECT_TRUE(same_values(one.phase_a, other.phase_a));
-  EXPECT_TRUE(same_values(one.phase_b, other.phase_b));
-  EXPECT_TRUE(same_values(one.amplitude_a, other.amplitude_a));
-  EXPECT_TRUE(same_values(one.amplitude_b, other.amplitude_b));
+  EXPECT_TRUE(same_values(one.phases[0], other.phases[0]));
+  EXPECT_TRUE(same_values(one.phases[1], other.phases[1]));
+  EXPECT_TRUE(same_values(one.amplitudes[0], other.amplitudes[0]));
+  EXPECT_TRUE(same_values(one.amplitudes[1], other.amplitudes[1]));
 }
 
 TEST(MeasuredFrame, HasTheBitsThatTheSimulatorMakes) {
@@ -74,8 +74,8 @@ TEST(IdealFrame, KeepsSignalsThatAreTooWeakToMeasure) {
   options.range_noise_m = 0;
   const Simulator simulator(test::facing_wall_scene(5, 0.002), options);
   const IdealFrame ideal = simulator.ideal(0);
-  EXPECT_FALSE(ideal.signal_a.real().isNaN().any());
-  EXPECT_TRUE(measured_frame(ideal, simulator.sensor(), options).phase_a.isNaN().all());
+  EXPECT_FALSE(ideal.signals[0].real().isNaN().any());
+  EXPECT_TRUE(measured_frame(ideal, simulator.sensor(), options).phases[0].isNaN().all());
 }
 
 TEST(MeasuredFrame, RefusesImagesOfAnotherSize) {

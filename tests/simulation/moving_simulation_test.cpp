@@ -58,13 +58,13 @@ TEST(MovingSimulation, PixelsThatSeeNobodyAreWhatTheyWere) {
   const Simulator empty(make_scene("room"), options);
   options.people = 2;
   const Simulator simulator(make_scene("room"), options);
-  const DualFrequencyFrame before = empty.simulate(20).frame;
+  const Frame before = empty.simulate(20).frame;
   const SimulatedFrame after = simulator.simulate(20);
   int same_a = 0;
   int same_b = 0;
   for (Eigen::Index i = 0; i < after.moving.size(); ++i) {
-    same_a += after.frame.phase_a.data()[i] == before.phase_a.data()[i] ? 1 : 0;
-    same_b += after.frame.phase_b.data()[i] == before.phase_b.data()[i] ? 1 : 0;
+    same_a += after.frame.phases[0].data()[i] == before.phases[0].data()[i] ? 1 : 0;
+    same_b += after.frame.phases[1].data()[i] == before.phases[1].data()[i] ? 1 : 0;
   }
   const auto still = static_cast<int>((after.moving == 0).count());
   ASSERT_LT(still, after.moving.size());
@@ -107,17 +107,17 @@ TEST(MovingSimulation, PeopleMoveBetweenAAndB) {
   SimulatorOptions options = with_person(8);
   options.b_delay_share = 1;
   const Simulator simulator(still_scene(), options);
-  const double wavelength_m = simulator.sensor().modulation.wavelength_b_m();
+  const double wavelength_m = simulator.sensor().modulation.wavelength_m(1);
   const SimulatedFrame now = simulator.simulate(3);
   const SimulatedFrame next = simulator.simulate(4);
   ASSERT_FALSE((now.moving == next.moving).all());
   // The camera stands still: B sees what the next frame sees at A. Rays are in single precision.
   constexpr double tolerance_m = 5e-5;
   EXPECT_LT(
-      test::range_error_m(now.frame.phase_b, next.range_truth_m, wavelength_m).abs().maxCoeff(),
+      test::range_error_m(now.frame.phases[1], next.range_truth_m, wavelength_m).abs().maxCoeff(),
       tolerance_m);
   EXPECT_GT(
-      test::range_error_m(now.frame.phase_b, now.range_truth_m, wavelength_m).abs().maxCoeff(),
+      test::range_error_m(now.frame.phases[1], now.range_truth_m, wavelength_m).abs().maxCoeff(),
       0.1);
 }
 
@@ -126,8 +126,8 @@ TEST(MovingSimulation, PeopleMoveDuringAnExposure) {
   options.exposure_share = 1;
   const Simulator simulator(still_scene(), options);
   const SimulatedFrame blurred = simulator.simulate(3);
-  const ImageF error_m = test::range_error_m(blurred.frame.phase_a, blurred.range_truth_m,
-                                             simulator.sensor().modulation.wavelength_a_m())
+  const ImageF error_m = test::range_error_m(blurred.frame.phases[0], blurred.range_truth_m,
+                                             simulator.sensor().modulation.wavelength_m(0))
                              .abs();
   // The wall stands still, and so does the camera; the person does not.
   const auto wrong = (error_m > 1e-3F).count();
@@ -151,9 +151,9 @@ TEST(MovingSimulation, SameOptionsGiveTheSameBitsForAnyNumberOfThreadsAndOrderOf
   omp_set_num_threads(threads);
   EXPECT_GT(moving_share(one), 0);
   EXPECT_TRUE((one.moving == four.moving).all());
-  EXPECT_TRUE(same_values(one.frame.phase_a, four.frame.phase_a));
-  EXPECT_TRUE(same_values(one.frame.phase_b, four.frame.phase_b));
-  EXPECT_TRUE(same_values(one.frame.amplitude_b, four.frame.amplitude_b));
+  EXPECT_TRUE(same_values(one.frame.phases[0], four.frame.phases[0]));
+  EXPECT_TRUE(same_values(one.frame.phases[1], four.frame.phases[1]));
+  EXPECT_TRUE(same_values(one.frame.amplitudes[1], four.frame.amplitudes[1]));
   EXPECT_TRUE(same_values(one.range_truth_m, four.range_truth_m));
 }
 
@@ -177,7 +177,7 @@ TEST(MovingSimulation, MultipathLightComesFromPeopleToo) {
   for (Eigen::Index i = 0; i < with.moving.size(); ++i) {
     const bool is_still = with.moving.data()[i] == 0;
     const bool has_changed =
-        with.frame.amplitude_a.data()[i] != without.frame.amplitude_a.data()[i];
+        with.frame.amplitudes[0].data()[i] != without.frame.amplitudes[0].data()[i];
     changed += is_still && has_changed ? 1 : 0;
   }
   EXPECT_GT(changed, with.moving.size() / 4);

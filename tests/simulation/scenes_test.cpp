@@ -185,7 +185,7 @@ TEST(PassageScene, HoldsBrightWallsCloseByBeforeDarkOnesFarAway) {
   for (int i = 0; i < *simulator.frame_count(); ++i) {
     const SimulatedFrame simulated = simulator.simulate(i);
     const ImageF& range_m = simulated.range_truth_m;
-    const ImageF& amplitude = simulated.frame.amplitude_a;
+    const ImageF& amplitude = simulated.frame.amplitudes[0];
     const auto is_bright = range_m < 0.4F && amplitude > 10000;
     const auto is_dark = range_m > 15 && amplitude < 5;
     if (is_bright.any() && is_dark.count() > range_m.size() / 100) ++both;

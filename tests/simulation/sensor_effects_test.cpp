@@ -15,14 +15,14 @@ namespace {
 
 /// Of the ranges of A.
 ImageF range_error_m(const SimulatedFrame& simulated, double wavelength_m) {
-  return test::range_error_m(simulated.frame.phase_a, simulated.range_truth_m, wavelength_m);
+  return test::range_error_m(simulated.frame.phases[0], simulated.range_truth_m, wavelength_m);
 }
 
 TEST(Wiggling, SwingsFourTimesAWavelengthByTheAmplitudeWanted) {
   SimulatorOptions options = test::ideal_camera();
   options.wiggle_m = 0.02;
   const Simulator simulator(test::facing_wall_scene(3, 0.5), options);
-  const double wavelength_m = simulator.sensor().modulation.wavelength_a_m();
+  const double wavelength_m = simulator.sensor().modulation.wavelength_m(0);
   const SimulatedFrame simulated = simulator.simulate(0);
   const ImageF error_m = range_error_m(simulated, wavelength_m);
   for (Eigen::Index i = 0; i < error_m.size(); ++i) {
@@ -39,13 +39,13 @@ TEST(Wiggling, SwingsAsManyDegreesAtB) {
   const Simulator simulator(test::facing_wall_scene(3, 0.5), options);
   SimulatedFrame simulated = simulator.simulate(0);
   const Modulation& modulation = simulator.sensor().modulation;
-  simulated.frame.phase_a = simulated.frame.phase_b;
-  const ImageF error_m = range_error_m(simulated, modulation.wavelength_b_m());
+  simulated.frame.phases[0] = simulated.frame.phases[1];
+  const ImageF error_m = range_error_m(simulated, modulation.wavelength_m(1));
   const double wiggle_b_m =
-      options.wiggle_m * modulation.wavelength_b_m() / modulation.wavelength_a_m();
+      options.wiggle_m * modulation.wavelength_m(1) / modulation.wavelength_m(0);
   for (Eigen::Index i = 0; i < error_m.size(); ++i) {
     const double phase =
-        2 * std::numbers::pi * simulated.range_truth_m.data()[i] / modulation.wavelength_b_m();
+        2 * std::numbers::pi * simulated.range_truth_m.data()[i] / modulation.wavelength_m(1);
     EXPECT_NEAR(error_m.data()[i], -wiggle_b_m * std::sin(4 * phase), 0.03 * wiggle_b_m);
   }
 }
@@ -67,7 +67,7 @@ TEST(Multipath, BendsACorner) {
   options.multipath_rays = 256;
   const Simulator simulator(corner_scene(), options);
   const ImageF error_m =
-      range_error_m(simulator.simulate(0), simulator.sensor().modulation.wavelength_a_m());
+      range_error_m(simulator.simulate(0), simulator.sensor().modulation.wavelength_m(0));
   EXPECT_GT(error_m.minCoeff(), 0) << "light by way of another wall has come farther";
   const Eigen::Index middle = options.width_px / 2;
   const float at_corner_m = error_m.col(middle).mean();
@@ -83,20 +83,20 @@ TEST(Multipath, IsNotThereBeforeAFlatWall) {
   options.multipath_rays = 64;
   const Simulator simulator(test::facing_wall_scene(3, 0.5), options);
   const Simulator without(test::facing_wall_scene(3, 0.5), test::ideal_camera());
-  EXPECT_TRUE((simulator.simulate(0).frame.phase_a == without.simulate(0).frame.phase_a).all());
+  EXPECT_TRUE((simulator.simulate(0).frame.phases[0] == without.simulate(0).frame.phases[0]).all());
 }
 
 TEST(FullWell, TakesAmplitudeFromWhatIsTooBright) {
   // At 1 m the amplitude is 3000, so samples hold up to 6000.
   SimulatorOptions options = test::ideal_camera();
   const Scene scene = test::facing_wall_scene(1, 0.5);
-  const float plain = Simulator(scene, options).simulate(0).frame.amplitude_a(12, 20);
+  const float plain = Simulator(scene, options).simulate(0).frame.amplitudes[0](12, 20);
   EXPECT_NEAR(plain, 3000, 5);
   float last = plain;
   for (const double full_well : {7000.0, 5000.0, 4000.0, 3000.0, 1000.0}) {
     options.full_well = full_well;
     const Simulator simulator(scene, options);
-    const float amplitude = simulator.simulate(0).frame.amplitude_a(12, 20);
+    const float amplitude = simulator.simulate(0).frame.amplitudes[0](12, 20);
     if (full_well > 6000) {
       EXPECT_EQ(amplitude, plain);
     } else {
@@ -111,7 +111,7 @@ TEST(DarkLevel, AddsItsShotNoiseAndLeavesLessRoom) {
   options.dark_level = 200;
   const Simulator simulator(test::facing_wall_scene(5, 0.5), options);
   const SimulatedFrame simulated = simulator.simulate(0);
-  const ImageF& amplitude = simulated.frame.amplitude_a;
+  const ImageF& amplitude = simulated.frame.amplitudes[0];
   const double mean = amplitude.mean();
   // Amplitudes differ over the view: neighbours in a row, by hardly anything but noise.
   const double differences =
@@ -120,12 +120,13 @@ TEST(DarkLevel, AddsItsShotNoiseAndLeavesLessRoom) {
   EXPECT_NEAR(mean,
               Simulator(test::facing_wall_scene(5, 0.5), test::ideal_camera())
                   .simulate(0)
-                  .frame.amplitude_a.mean(),
+                  .frame.amplitudes[0]
+                  .mean(),
               2)
       << "charge that all samples have is no signal";
   options.full_well = 330;  // enough for twice the amplitude of 120, but not on top of the charge
   EXPECT_LT(
-      Simulator(test::facing_wall_scene(5, 0.5), options).simulate(0).frame.amplitude_a.mean(),
+      Simulator(test::facing_wall_scene(5, 0.5), options).simulate(0).frame.amplitudes[0].mean(),
       0.95 * mean);
 }
 
@@ -148,7 +149,7 @@ TEST(Exposure, MovesRangesWhereTheSurfaceChangesBetweenSamples) {
     options.exposure_share = exposure_share;
     const Simulator simulator(two_tone_scene(), options);
     const int middle = *simulator.frame_count() / 2;
-    return range_error_m(simulator.simulate(middle), simulator.sensor().modulation.wavelength_a_m())
+    return range_error_m(simulator.simulate(middle), simulator.sensor().modulation.wavelength_m(0))
         .abs()
         .maxCoeff();
   };
@@ -161,8 +162,8 @@ TEST(Exposure, DoesNotMatterWhereTheCameraStandsStill) {
   options.exposure_share = 0.8;
   const Simulator simulator(corner_scene(), options);
   const Simulator without(corner_scene(), test::ideal_camera());
-  const ImageF phase = simulator.simulate(0).frame.phase_a;
-  EXPECT_LT((phase - without.simulate(0).frame.phase_a).abs().maxCoeff(), 1e-6F);
+  const ImageF phase = simulator.simulate(0).frame.phases[0];
+  EXPECT_LT((phase - without.simulate(0).frame.phases[0]).abs().maxCoeff(), 1e-6F);
 }
 
 }  // namespace

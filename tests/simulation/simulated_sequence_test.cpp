@@ -54,10 +54,10 @@ TEST(SimulatedSequence, ReadsBackAsItWasSimulated) {
     ASSERT_TRUE(read.frame) << read.damage;
     const double half_step = 0.5000001 / 65535;
     // On the circle: the last half step before a whole cycle is written as zero.
-    ImageF phase = read.frame->phase_a;
-    phase = (expected.frame.phase_a - phase > 0.5F).select(phase + 1, phase);
-    expect_close(phase, expected.frame.phase_a, half_step + 1e-7);
-    expect_close(read.frame->amplitude_b, expected.frame.amplitude_b, 0.5);
+    ImageF phase = read.frame->phases[0];
+    phase = (expected.frame.phases[0] - phase > 0.5F).select(phase + 1, phase);
+    expect_close(phase, expected.frame.phases[0], half_step + 1e-7);
+    expect_close(read.frame->amplitudes[1], expected.frame.amplitudes[1], 0.5);
     expect_close(*reader.range_truth(i), expected.range_truth_m, 0.000501);
     EXPECT_TRUE(poses[i].world_from_camera.isApprox(expected.world_from_camera, 1e-8));
   }

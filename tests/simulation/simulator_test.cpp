@@ -50,11 +50,11 @@ TEST(Simulator, WithoutNoisePhasesAreTrueRangesModuloTheWavelengths) {
   ASSERT_FALSE(simulated.range_truth_m.isNaN().any());
   // Rays are cast in single precision: some 1e-6 of 10 m.
   constexpr double tolerance = 5e-6;
-  EXPECT_LT(largest_phase_error(simulated.frame.phase_a, simulated.range_truth_m,
-                                modulation.wavelength_a_m()),
+  EXPECT_LT(largest_phase_error(simulated.frame.phases[0], simulated.range_truth_m,
+                                modulation.wavelength_m(0)),
             tolerance);
-  EXPECT_LT(largest_phase_error(simulated.frame.phase_b, simulated.range_truth_m,
-                                modulation.wavelength_b_m()),
+  EXPECT_LT(largest_phase_error(simulated.frame.phases[1], simulated.range_truth_m,
+                                modulation.wavelength_m(1)),
             tolerance);
 }
 
@@ -64,8 +64,8 @@ TEST(Simulator, SubpixelRaysLeaveSmoothSurfacesInPlace) {
   const Simulator simulator(test::facing_wall_scene(4, 0.5), options);
   const SimulatedFrame simulated = simulator.simulate(0);
   // Ranges curve by about the pixel's square over twice the range: below a tenth of a millimetre.
-  EXPECT_LT(largest_phase_error(simulated.frame.phase_a, simulated.range_truth_m,
-                                simulator.sensor().modulation.wavelength_a_m()),
+  EXPECT_LT(largest_phase_error(simulated.frame.phases[0], simulated.range_truth_m,
+                                simulator.sensor().modulation.wavelength_m(0)),
             1e-4 / 5.17);
 }
 
@@ -87,15 +87,15 @@ TEST(Simulator, AmplitudeFallsWithTheSquareOfRangeAndTheCosineOfIncidence) {
     const ImageF& range_m = simulated.range_truth_m;
     const ImageF cosine = static_cast<float>(wall_m) / range_m;
     const ImageF expected = static_cast<float>(amplitude_unit * 0.4) * cosine / range_m.square();
-    const ImageF ratio = simulated.frame.amplitude_a / expected;
+    const ImageF ratio = simulated.frame.amplitudes[0] / expected;
     EXPECT_LT((ratio - 1).abs().maxCoeff(), 1e-4F) << wall_m;
-    EXPECT_LT((simulated.frame.amplitude_b / expected - 1).abs().maxCoeff(), 1e-4F) << wall_m;
+    EXPECT_LT((simulated.frame.amplitudes[1] / expected - 1).abs().maxCoeff(), 1e-4F) << wall_m;
   }
 }
 
 TEST(Simulator, AmplitudeEndsWhereTheSensorSaturates) {
   const Simulator simulator(test::facing_wall_scene(0.2, 1.0), plain_options());
-  EXPECT_EQ(simulator.simulate(0).frame.amplitude_a.maxCoeff(), 65535);
+  EXPECT_EQ(simulator.simulate(0).frame.amplitudes[0].maxCoeff(), 65535);
 }
 
 /// Root mean square of (phase error × amplitude) over the pixels of a range of amplitudes; if
@@ -111,7 +111,7 @@ TEST(Simulator, RangeNoiseAtTheReferenceIsTheOption) {
   options.range_noise_m = 0.02;
   options.frames = 20;
   const Simulator simulator(test::facing_wall_scene(5, 0.5), options);
-  const double wavelength_m = simulator.sensor().modulation.wavelength_a_m();
+  const double wavelength_m = simulator.sensor().modulation.wavelength_m(0);
   NoiseSum range_noise;
   for (int frame = 0; frame < 20; ++frame) {
     const SimulatedFrame simulated = simulator.simulate(frame);
@@ -119,7 +119,8 @@ TEST(Simulator, RangeNoiseAtTheReferenceIsTheOption) {
     for (int v = 66; v < 78; ++v) {
       for (int u = 82; u < 94; ++u) {
         const double truth = simulated.range_truth_m(v, u) / wavelength_m;
-        const double error = wavelength_m * phase_difference(simulated.frame.phase_a(v, u), truth);
+        const double error =
+            wavelength_m * phase_difference(simulated.frame.phases[0](v, u), truth);
         range_noise.squares += error * error;
         ++range_noise.count;
       }
@@ -133,9 +134,9 @@ TEST(Simulator, PhaseNoiseGoesAsOneOverAmplitude) {
   SimulatorOptions options = plain_options();
   options.range_noise_m = 0.02;
   const Simulator simulator(make_scene("wall"), options);
-  const double wavelength_m = simulator.sensor().modulation.wavelength_a_m();
+  const double wavelength_m = simulator.sensor().modulation.wavelength_m(0);
   const SimulatorOptions quiet = plain_options();
-  const ImageF signal = Simulator(make_scene("wall"), quiet).simulate(0).frame.amplitude_a;
+  const ImageF signal = Simulator(make_scene("wall"), quiet).simulate(0).frame.amplitudes[0];
   NoiseSum weak;
   NoiseSum strong;
   const SimulatedFrame simulated = simulator.simulate(0);
@@ -144,7 +145,7 @@ TEST(Simulator, PhaseNoiseGoesAsOneOverAmplitude) {
     if (amplitude < 5 * simulator.noise_sigma()) continue;  // below, phase noise is not Gaussian
     const double truth = simulated.range_truth_m.data()[i] / wavelength_m;
     const double error_rad =
-        2 * std::numbers::pi * phase_difference(simulated.frame.phase_a.data()[i], truth);
+        2 * std::numbers::pi * phase_difference(simulated.frame.phases[0].data()[i], truth);
     NoiseSum& sum = amplitude < 30 * simulator.noise_sigma() ? weak : strong;
     sum.squares += error_rad * error_rad * amplitude * amplitude;
     ++sum.count;
@@ -170,12 +171,12 @@ TEST(Simulator, NoiseIsComplexGaussianAndIndependentBetweenImages) {
     return ImageF(turns * amplitude *
                   static_cast<float>(2 * std::numbers::pi / simulator.noise_sigma()));
   };
-  const ImageF radial_a = (noisy.frame.amplitude_a - clean.frame.amplitude_a) /
+  const ImageF radial_a = (noisy.frame.amplitudes[0] - clean.frame.amplitudes[0]) /
                           static_cast<float>(simulator.noise_sigma());
   const ImageF tangential_a =
-      tangential(noisy.frame.phase_a, clean.frame.phase_a, clean.frame.amplitude_a);
+      tangential(noisy.frame.phases[0], clean.frame.phases[0], clean.frame.amplitudes[0]);
   const ImageF tangential_b =
-      tangential(noisy.frame.phase_b, clean.frame.phase_b, clean.frame.amplitude_b);
+      tangential(noisy.frame.phases[1], clean.frame.phases[1], clean.frame.amplitudes[1]);
   // 25 344 pixels: means scatter by 0.0063, squares by 0.0089, fourth powers by 0.06.
   for (const ImageF& noise : {radial_a, tangential_a, tangential_b}) {
     EXPECT_NEAR(noise.mean(), 0, 0.03);
@@ -200,9 +201,9 @@ TEST(Simulator, PixelsOnAnEdgeFlyBetweenBothSurfaces) {
   const double low = 2.75 / 5.1688;
   const double high = 3.95 / 5.1688;
   const Simulator averaging(test::edge_scene(0.003), options);
-  EXPECT_GT(count_between(averaging.simulate(0).frame.phase_a, low, high), 100);
+  EXPECT_GT(count_between(averaging.simulate(0).frame.phases[0], low, high), 100);
   const Simulator pinpoint(test::edge_scene(0.003), plain_options());
-  EXPECT_EQ(count_between(pinpoint.simulate(0).frame.phase_a, low, high), 0);
+  EXPECT_EQ(count_between(pinpoint.simulate(0).frame.phases[0], low, high), 0);
 }
 
 TEST(Simulator, SameSeedGivesTheSameBitsForAnyNumberOfThreads) {
@@ -214,10 +215,10 @@ TEST(Simulator, SameSeedGivesTheSameBitsForAnyNumberOfThreads) {
   omp_set_num_threads(4);
   const SimulatedFrame four = Simulator(make_scene("room"), options).simulate(1);
   omp_set_num_threads(threads);
-  EXPECT_TRUE(same_values(one.frame.phase_a, four.frame.phase_a));
-  EXPECT_TRUE(same_values(one.frame.phase_b, four.frame.phase_b));
-  EXPECT_TRUE(same_values(one.frame.amplitude_a, four.frame.amplitude_a));
-  EXPECT_TRUE(same_values(one.frame.amplitude_b, four.frame.amplitude_b));
+  EXPECT_TRUE(same_values(one.frame.phases[0], four.frame.phases[0]));
+  EXPECT_TRUE(same_values(one.frame.phases[1], four.frame.phases[1]));
+  EXPECT_TRUE(same_values(one.frame.amplitudes[0], four.frame.amplitudes[0]));
+  EXPECT_TRUE(same_values(one.frame.amplitudes[1], four.frame.amplitudes[1]));
   EXPECT_TRUE(same_values(one.range_truth_m, four.range_truth_m));
 }
 
@@ -228,12 +229,12 @@ TEST(Simulator, NoiseDiffersBetweenSeedsFramesAndImages) {
   options.seed = 2;
   const Simulator reseeded(test::facing_wall_scene(3, 0.5), options);
   const auto noise = [](const Simulator& source, int frame) {
-    return source.simulate(frame).frame.amplitude_a;
+    return source.simulate(frame).frame.amplitudes[0];
   };
   EXPECT_FALSE(same_values(noise(simulator, 0), noise(reseeded, 0)));
   EXPECT_FALSE(same_values(noise(simulator, 0), noise(simulator, 1)));
-  const DualFrequencyFrame frame = simulator.simulate(0).frame;
-  EXPECT_FALSE(same_values(frame.amplitude_a, frame.amplitude_b));
+  const Frame frame = simulator.simulate(0).frame;
+  EXPECT_FALSE(same_values(frame.amplitudes[0], frame.amplitudes[1]));
 }
 
 TEST(Simulator, BIsTakenFromWhereTheCameraIsByThen) {
@@ -244,8 +245,8 @@ TEST(Simulator, BIsTakenFromWhereTheCameraIsByThen) {
   ASSERT_GT(*simulator.frame_count(), 10);
   const SimulatedFrame now = simulator.simulate(4);
   const ImageF next_range_m = simulator.simulate(5).range_truth_m;
-  const double wavelength_m = simulator.sensor().modulation.wavelength_b_m();
-  EXPECT_LT(largest_phase_error(now.frame.phase_b, next_range_m, wavelength_m), 5e-6);
+  const double wavelength_m = simulator.sensor().modulation.wavelength_m(1);
+  EXPECT_LT(largest_phase_error(now.frame.phases[1], next_range_m, wavelength_m), 5e-6);
   EXPECT_GT((now.range_truth_m - next_range_m).minCoeff(), 0.03F) << "the camera stood still";
 }
 
@@ -256,10 +257,10 @@ TEST(Simulator, WhereNothingIsHitThereIsNoReturn) {
   SimulatorOptions options = plain_options();
   options.range_noise_m = 0.02;
   const SimulatedFrame simulated = Simulator(std::move(scene), options).simulate(0);
-  EXPECT_FALSE(simulated.frame.phase_a.leftCols(80).isNaN().any());
-  EXPECT_TRUE(simulated.frame.phase_a.rightCols(80).isNaN().all());
-  EXPECT_TRUE(simulated.frame.phase_b.rightCols(80).isNaN().all());
-  EXPECT_TRUE((simulated.frame.amplitude_a.rightCols(80) == 0).all());
+  EXPECT_FALSE(simulated.frame.phases[0].leftCols(80).isNaN().any());
+  EXPECT_TRUE(simulated.frame.phases[0].rightCols(80).isNaN().all());
+  EXPECT_TRUE(simulated.frame.phases[1].rightCols(80).isNaN().all());
+  EXPECT_TRUE((simulated.frame.amplitudes[0].rightCols(80) == 0).all());
   EXPECT_TRUE(simulated.range_truth_m.rightCols(80).isNaN().all());
 }
 
@@ -268,7 +269,7 @@ TEST(Simulator, SurfacesBeyondTheMaximumRangeReturnNothing) {
   options.max_range_m = 4;
   const Simulator simulator(test::facing_wall_scene(5, 0.5), options);
   EXPECT_EQ(simulator.sensor().max_range_m, 4);
-  EXPECT_TRUE(simulator.simulate(0).frame.phase_a.isNaN().all());
+  EXPECT_TRUE(simulator.simulate(0).frame.phases[0].isNaN().all());
 }
 
 TEST(Simulator, DoesNotTellUnwrappingHowLargeTheSceneIs) {
@@ -281,7 +282,7 @@ TEST(Simulator, TooWeakASignalIsNoReturn) {
   // 6000 × 0.002 / 25 m² is 0.48: it rounds to zero.
   const Simulator simulator(test::facing_wall_scene(5, 0.002), plain_options());
   const SimulatedFrame simulated = simulator.simulate(0);
-  EXPECT_TRUE(simulated.frame.phase_a.isNaN().all());
+  EXPECT_TRUE(simulated.frame.phases[0].isNaN().all());
   EXPECT_FALSE(simulated.range_truth_m.isNaN().any());
 }
 
@@ -292,7 +293,7 @@ TEST(Simulator, HandsOutItsFramesInOrderAndEnds) {
     ASSERT_TRUE(sourced && sourced->frame);
     EXPECT_EQ(sourced->index, i);
     EXPECT_DOUBLE_EQ(sourced->timestamp_s, i / 15.0);
-    EXPECT_TRUE(same_values(sourced->frame->phase_a, simulator.simulate(i).frame.phase_a));
+    EXPECT_TRUE(same_values(sourced->frame->phases[0], simulator.simulate(i).frame.phases[0]));
   }
   EXPECT_FALSE(simulator.next());
 }

@@ -30,15 +30,15 @@ FrameErrors range_errors_m(const Simulator& simulator, int frame = 0) {
   const SimulatedFrame simulated = simulator.simulate(frame);
   const Modulation& modulation = simulator.sensor().modulation;
   const ImageF& truth_m = simulated.range_truth_m;
-  return {test::range_error_m(simulated.frame.phase_a, truth_m, modulation.wavelength_a_m()),
-          test::range_error_m(simulated.frame.phase_b, truth_m, modulation.wavelength_b_m())};
+  return {test::range_error_m(simulated.frame.phases[0], truth_m, modulation.wavelength_m(0)),
+          test::range_error_m(simulated.frame.phases[1], truth_m, modulation.wavelength_m(1))};
 }
 
 bool same_pixels(const SimulatedFrame& one, const SimulatedFrame& other) {
-  return (one.frame.phase_a == other.frame.phase_a).all() &&
-         (one.frame.phase_b == other.frame.phase_b).all() &&
-         (one.frame.amplitude_a == other.frame.amplitude_a).all() &&
-         (one.frame.amplitude_b == other.frame.amplitude_b).all() &&
+  return (one.frame.phases[0] == other.frame.phases[0]).all() &&
+         (one.frame.phases[1] == other.frame.phases[1]).all() &&
+         (one.frame.amplitudes[0] == other.frame.amplitudes[0]).all() &&
+         (one.frame.amplitudes[1] == other.frame.amplitudes[1]).all() &&
          (one.label == other.label).all();
 }
 
@@ -101,8 +101,8 @@ TEST(PeriodicError, HasTwoHarmonicsAndThePeakWantedForEachFrequency) {
     const ImageF range_m = simulator.simulate(0).range_truth_m;
     const FrameErrors errors = range_errors_m(simulator);
     const Modulation& modulation = simulator.sensor().modulation;
-    const HarmonicFit a = fit_harmonics(errors.a_m, range_m, modulation.wavelength_a_m());
-    const HarmonicFit b = fit_harmonics(errors.b_m, range_m, modulation.wavelength_b_m());
+    const HarmonicFit a = fit_harmonics(errors.a_m, range_m, modulation.wavelength_m(0));
+    const HarmonicFit b = fit_harmonics(errors.b_m, range_m, modulation.wavelength_m(1));
     for (const auto& [fit, error_m, peak_m] :
          {std::tuple(a, errors.a_m, 0.03), std::tuple(b, errors.b_m, 0.01)}) {
       EXPECT_LT(fit.left_m, tolerance_m) << seed;
@@ -136,7 +136,7 @@ TEST(AmplitudeError, GoesWithTheLogarithmOfTheAmplitudeOverThreeDecades) {
        {std::pair(0.25, 0.9), std::pair(1.0, 0.9), std::pair(2.0, 0.4), std::pair(10.0, 0.1)}) {
     const Simulator simulator(test::facing_wall_scene(range_m, reflectance), options);
     const FrameErrors errors = range_errors_m(simulator);
-    const ImageF amplitude = simulator.simulate(0).frame.amplitude_a;
+    const ImageF amplitude = simulator.simulate(0).frame.amplitudes[0];
     for (Eigen::Index i = 0; i < amplitude.size(); ++i) {
       const double darkness =
           std::clamp(std::log10(60000 / double{amplitude.data()[i]}) / 3, 0.0, 1.0);
@@ -211,16 +211,16 @@ TEST(AmbientLight, RaisesTheNoiseInItsPartOfTheImageAlone) {
   const Simulator simulator(scene, options);
   const SimulatedFrame lit = simulator.simulate(0);
   const auto in_light = [](const ImageF& image) { return image.block(60, 40, 60, 80); };
-  EXPECT_EQ((lit.frame.phase_a != dark.frame.phase_a).count(),
-            (in_light(lit.frame.phase_a) != in_light(dark.frame.phase_a)).count())
+  EXPECT_EQ((lit.frame.phases[0] != dark.frame.phases[0]).count(),
+            (in_light(lit.frame.phases[0]) != in_light(dark.frame.phases[0])).count())
       << "noise changed outside";
   for (const bool of_a : {true, false}) {
     const auto rms_m = [&](const SimulatedFrame& simulated) {
-      const DualFrequencyFrame& frame = simulated.frame;
+      const Frame& frame = simulated.frame;
       const Modulation& modulation = simulator.sensor().modulation;
       const ImageF error_m =
-          test::range_error_m(of_a ? frame.phase_a : frame.phase_b, simulated.range_truth_m,
-                              of_a ? modulation.wavelength_a_m() : modulation.wavelength_b_m());
+          test::range_error_m(of_a ? frame.phases[0] : frame.phases[1], simulated.range_truth_m,
+                              of_a ? modulation.wavelength_m(0) : modulation.wavelength_m(1));
       return std::sqrt(double{in_light(error_m).square().mean()});
     };
     // The same draws, five times as large: only the second order differs.
@@ -236,8 +236,8 @@ TEST(PhaseBits, RoundPhasesToSoManyLevelsACycle) {
     options.phase_bits = bits;
     const SimulatedFrame coarse = Simulator(scene, options).simulate(0);
     const auto levels = static_cast<float>(1 << bits);
-    for (const auto& [phase, exact] : {std::pair(coarse.frame.phase_a, fine.frame.phase_a),
-                                       std::pair(coarse.frame.phase_b, fine.frame.phase_b)}) {
+    for (const auto& [phase, exact] : {std::pair(coarse.frame.phases[0], fine.frame.phases[0]),
+                                       std::pair(coarse.frame.phases[1], fine.frame.phases[1])}) {
       EXPECT_TRUE((phase * levels == (phase * levels).round()).all()) << bits;
       EXPECT_LT(phase.maxCoeff(), 1);
       const ImageF off = phase - exact - (phase - exact).round();

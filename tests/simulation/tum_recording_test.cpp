@@ -63,62 +63,63 @@ TEST_F(TumFolder, IsWrappedAtTheFrequenciesWanted) {
   const SensorModel& sensor = recording.sensor();
   EXPECT_EQ(sensor.camera.width_px, 32);
   EXPECT_EQ(sensor.camera.height_px, 24);
-  EXPECT_EQ(sensor.modulation.frequency_b_hz, 100e6);
-  const TumRecording::Frame read = recording.read(1);
+  EXPECT_EQ(sensor.modulation.frequencies_hz[1], 100e6);
+  const TumRecording::FrameWithTruth read = recording.read(1);
   EXPECT_EQ(read.frame.timestamp_s, 10.5);
-  EXPECT_TRUE(std::isnan(read.frame.phase_a(3, 5))) << "there was no depth";
+  EXPECT_TRUE(std::isnan(read.frame.phases[0](3, 5))) << "there was no depth";
   EXPECT_TRUE(std::isnan(read.range_truth_m(3, 5)));
   for (const auto& [v, u] : {std::pair(10, 3), std::pair(23, 31)}) {
     // Of two by two pixels the last is taken: the ray is that of the original's pixel.
     const Eigen::Vector3d ray((2 * u + 1 - 31.5) / 60, (2 * v + 1 - 23.5) / 60, 1);
     const double range_m = 4 * ray.norm();
     EXPECT_NEAR(read.range_truth_m(v, u), range_m, 1e-5);
-    const double wraps = range_m / sensor.modulation.wavelength_a_m();
-    EXPECT_NEAR(read.frame.phase_a(v, u), wraps - std::floor(wraps), 1e-5);
-    const double wraps_b = range_m / sensor.modulation.wavelength_b_m();
-    EXPECT_NEAR(read.frame.phase_b(v, u), wraps_b - std::floor(wraps_b), 1e-5);
-    EXPECT_NEAR(read.frame.amplitude_a(v, u), amplitude_unit * 0.5 / (range_m * range_m), 0.01);
+    const double wraps = range_m / sensor.modulation.wavelength_m(0);
+    EXPECT_NEAR(read.frame.phases[0](v, u), wraps - std::floor(wraps), 1e-5);
+    const double wraps_b = range_m / sensor.modulation.wavelength_m(1);
+    EXPECT_NEAR(read.frame.phases[1](v, u), wraps_b - std::floor(wraps_b), 1e-5);
+    EXPECT_NEAR(read.frame.amplitudes[0](v, u), amplitude_unit * 0.5 / (range_m * range_m), 0.01);
   }
 }
 
 TEST_F(TumFolder, HasTheNoiseWanted) {
   simulator_.range_noise_m = 0.05;
   const TumRecording recording = open();
-  const TumRecording::Frame read = recording.read(0);
-  const double wavelength_m = recording.sensor().modulation.wavelength_a_m();
+  const TumRecording::FrameWithTruth read = recording.read(0);
+  const double wavelength_m = recording.sensor().modulation.wavelength_m(0);
   double sum = 0;
   int count = 0;
   for (Eigen::Index i = 0; i < read.range_truth_m.size(); ++i) {
     const double truth_m = read.range_truth_m.data()[i];
-    const double off = read.frame.phase_a.data()[i] - truth_m / wavelength_m;
+    const double off = read.frame.phases[0].data()[i] - truth_m / wavelength_m;
     if (std::isnan(off)) continue;
     // Noise goes as the square of the range.
     sum += std::pow(wavelength_m * (off - std::round(off)) * 25 / (truth_m * truth_m), 2);
     ++count;
   }
   EXPECT_NEAR(std::sqrt(sum / count), 0.05, 0.005) << "of 640 pixels";
-  EXPECT_FALSE((recording.read(0).frame.phase_a == recording.read(1).frame.phase_a).all());
+  EXPECT_FALSE((recording.read(0).frame.phases[0] == recording.read(1).frame.phases[0]).all());
 }
 
 TEST_F(TumFolder, HasTheSensorsEffectsWanted) {
   simulator_.range_noise_m = 0;
-  const TumRecording::Frame ideal = open().read(0);
+  const TumRecording::FrameWithTruth ideal = open().read(0);
   simulator_.wiggle_m = 0.01;
-  const TumRecording::Frame wiggling = open().read(0);
-  const double wavelength_m = open().sensor().modulation.wavelength_a_m();
+  const TumRecording::FrameWithTruth wiggling = open().read(0);
+  const double wavelength_m = open().sensor().modulation.wavelength_m(0);
   const double largest_m =
-      wavelength_m * double{(wiggling.frame.phase_a - ideal.frame.phase_a)
+      wavelength_m * double{(wiggling.frame.phases[0] - ideal.frame.phases[0])
                                 .isNaN()
-                                .select(0.F, wiggling.frame.phase_a - ideal.frame.phase_a)
+                                .select(0.F, wiggling.frame.phases[0] - ideal.frame.phases[0])
                                 .abs()
                                 .maxCoeff()};
   EXPECT_NEAR(largest_m, 0.01, 0.002) << "all phases occur from 4 to 4.9 m";
   simulator_.wiggle_m = 0;
   simulator_.full_well = 200;  // the amplitude at 4 m is 187, and a sample holds twice that
-  EXPECT_LT(open().read(0).frame.amplitude_a.maxCoeff(), ideal.frame.amplitude_a.maxCoeff() - 10);
+  EXPECT_LT(open().read(0).frame.amplitudes[0].maxCoeff(),
+            ideal.frame.amplitudes[0].maxCoeff() - 10);
   simulator_.full_well = 0;
   simulator_.max_range_m = 4.2;
-  const ImageF near_only = open().read(0).frame.phase_a;
+  const ImageF near_only = open().read(0).frame.phases[0];
   EXPECT_TRUE(
       (near_only.isNaN() == (ideal.range_truth_m > 4.2F || ideal.range_truth_m.isNaN())).all());
 }
@@ -127,13 +128,13 @@ TEST_F(TumFolder, HasTheSystematicErrorsWanted) {
   simulator_.range_noise_m = 0;
   simulator_.offset_b_m = 0.05;
   simulator_.phase_bits = 16;
-  const TumRecording::Frame shifted = open().read(0);
-  const double wavelength_m = open().sensor().modulation.wavelength_b_m();
+  const TumRecording::FrameWithTruth shifted = open().read(0);
+  const double wavelength_m = open().sensor().modulation.wavelength_m(1);
   for (const auto& [v, u] : {std::pair(10, 3), std::pair(23, 31)}) {
     const double off = (double{shifted.range_truth_m(v, u)} + 0.05) / wavelength_m -
-                       double{shifted.frame.phase_b(v, u)};
+                       double{shifted.frame.phases[1](v, u)};
     EXPECT_NEAR(off, std::round(off), 1e-5);
-    const float level = 65536 * shifted.frame.phase_b(v, u);
+    const float level = 65536 * shifted.frame.phases[1](v, u);
     EXPECT_EQ(level, std::round(level));
   }
   simulator_.phase_bits = 2;
@@ -141,11 +142,11 @@ TEST_F(TumFolder, HasTheSystematicErrorsWanted) {
 }
 
 TEST_F(TumFolder, HasAmbientLightInItsPartOfTheImageAlone) {
-  const TumRecording::Frame dark = open().read(0);
+  const TumRecording::FrameWithTruth dark = open().read(0);
   simulator_.ambient_noise = 4;
-  const TumRecording::Frame lit = open().read(0);
+  const TumRecording::FrameWithTruth lit = open().read(0);
   const auto changed = [&](Eigen::Index v, Eigen::Index u) {
-    return lit.frame.phase_b(v, u) != dark.frame.phase_b(v, u);
+    return lit.frame.phases[1](v, u) != dark.frame.phases[1](v, u);
   };
   EXPECT_TRUE(changed(11, 16)) << "the right upper quarter is lit by default";
   EXPECT_FALSE(changed(11, 15));
@@ -167,7 +168,7 @@ TEST_F(TumFolder, IsOpenedByTheFirstImageThatCanBeRead) {
   const TumRecording recording = open();
   EXPECT_EQ(recording.sensor().camera.width_px, 32);
   EXPECT_THROW(recording.read(0), InputError);
-  EXPECT_FALSE(recording.read(1).frame.phase_a.isNaN().all());
+  EXPECT_FALSE(recording.read(1).frame.phases[0].isNaN().all());
 }
 
 TEST_F(TumFolder, KeepsPosesThatAreNearInTime) {

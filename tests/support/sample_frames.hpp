@@ -19,24 +19,24 @@ inline SensorModel sample_sensor() {
 
 /// Phases on the 16-bit grid, so that they are kept to the bit; a missing return at A in
 /// pixel (0, 0), at B in pixel (1, 1).
-inline DualFrequencyFrame sample_frame(int index) {
-  DualFrequencyFrame frame;
+inline Frame sample_frame(int index) {
+  Frame frame = blank_frame(2);
   frame.index = index;
   frame.timestamp_s = 1305031229.528784 + index / 15.0;
-  frame.phase_a.resize(5, 7);
-  frame.phase_b.resize(5, 7);
-  frame.amplitude_a.resize(5, 7);
-  frame.amplitude_b.resize(5, 7);
+  frame.phases[0].resize(5, 7);
+  frame.phases[1].resize(5, 7);
+  frame.amplitudes[0].resize(5, 7);
+  frame.amplitudes[1].resize(5, 7);
   for (int i = 0; i < 35; ++i) {
-    frame.phase_a.data()[i] = static_cast<float>(1870 * i + index) / 65535.0F;
-    frame.phase_b.data()[i] = static_cast<float>(65534 - 1000 * i) / 65535.0F;
-    frame.amplitude_a.data()[i] = static_cast<float>(1 + 1900 * i);
-    frame.amplitude_b.data()[i] = static_cast<float>(65535 - 1900 * i);
+    frame.phases[0].data()[i] = static_cast<float>(1870 * i + index) / 65535.0F;
+    frame.phases[1].data()[i] = static_cast<float>(65534 - 1000 * i) / 65535.0F;
+    frame.amplitudes[0].data()[i] = static_cast<float>(1 + 1900 * i);
+    frame.amplitudes[1].data()[i] = static_cast<float>(65535 - 1900 * i);
   }
-  frame.phase_a(0, 0) = nan;
-  frame.amplitude_a(0, 0) = 0;
-  frame.phase_b(1, 1) = nan;
-  frame.amplitude_b(1, 1) = 0;
+  frame.phases[0](0, 0) = nan;
+  frame.amplitudes[0](0, 0) = 0;
+  frame.phases[1](1, 1) = nan;
+  frame.amplitudes[1](1, 1) = 0;
   return frame;
 }
 

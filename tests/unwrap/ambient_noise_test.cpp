@@ -39,14 +39,14 @@ TEST(AmbientNoise, OfARectangleOfFiveTimesTheNoiseIsFound) {
   simulation.ambient_noise = 5;
   for (const char* scene : {"flat", "hall", "room"}) {
     const Simulator simulator(make_scene(scene), simulation);
-    const DualFrequencyFrame frame = simulator.simulate(20).frame;
-    const PhaseNoise noise = estimate_phase_noise(frame);
+    const Frame frame = simulator.simulate(20).frame;
+    const std::vector<PhaseNoise> noise = estimate_phase_noise(frame);
     const ImageF ambient = find_ambient_noise(frame, noise);
     ASSERT_EQ(ambient.rows(), 144) << scene;
     ASSERT_EQ(ambient.cols(), 176) << scene;
     const auto factor = [&](Eigen::Index row, Eigen::Index col, Eigen::Index rows,
                             Eigen::Index cols) {
-      return median_factor(ambient, noise.scale_a / true_scale(simulator), row, col, rows, cols);
+      return median_factor(ambient, noise[0].scale / true_scale(simulator), row, col, rows, cols);
     };
     // Light falls on the right upper quarter. A block of 16 pixels on both sides of its border is
     // left to interpolation.
@@ -62,7 +62,7 @@ TEST(AmbientNoise, IsNotFoundOnCleanScenesWithEdges) {
     const Simulator simulator(make_scene(scene), {});
     const int total = *simulator.frame_count();
     for (int i = 3; i < total; i += total / 6) {
-      const DualFrequencyFrame frame = simulator.simulate(i).frame;
+      const Frame frame = simulator.simulate(i).frame;
       const ImageF ambient = find_ambient_noise(frame, estimate_phase_noise(frame));
       if (ambient.size() == 0) continue;
       // Chance may take one block of 16 x 16 pixels past its threshold, 1 % of an image.
@@ -73,15 +73,15 @@ TEST(AmbientNoise, IsNotFoundOnCleanScenesWithEdges) {
 }
 
 TEST(AmbientNoise, OfNoImageIsNone) {
-  const DualFrequencyFrame nothing;
-  EXPECT_EQ(find_ambient_noise(nothing, {.scale_a = 0.1, .scale_b = 0.1}).size(), 0);
+  const Frame nothing;
+  EXPECT_EQ(find_ambient_noise(nothing, {{.scale = 0.1}, {.scale = 0.1}}).size(), 0);
 }
 
 TEST(AmbientNoise, IsNotFoundWithoutReturns) {
-  DualFrequencyFrame dark;
-  dark.phase_a = dark.phase_b = ImageF::Constant(40, 50, NAN);
-  dark.amplitude_a = dark.amplitude_b = ImageF::Zero(40, 50);
-  EXPECT_EQ(find_ambient_noise(dark, {.scale_a = 0.1, .scale_b = 0.1}).size(), 0);
+  Frame dark = blank_frame(2);
+  dark.phases[0] = dark.phases[1] = ImageF::Constant(40, 50, NAN);
+  dark.amplitudes[0] = dark.amplitudes[1] = ImageF::Zero(40, 50);
+  EXPECT_EQ(find_ambient_noise(dark, {{.scale = 0.1}, {.scale = 0.1}}).size(), 0);
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ std::vector<double> count_wrong(const Recording& recording, const std::string& m
   UnwrapOptions options;
   options.method = find_named<UnwrapMethod>(method).value();
   Unwrapper unwrapper(recording.sensor, options);
-  const double half_wavelength_m = recording.sensor.modulation.wavelength_a_m() / 2;
+  const double half_wavelength_m = recording.sensor.modulation.wavelength_m(0) / 2;
   std::vector<double> wrong;
   for (const SimulatedFrame& simulated : recording.frames) {
     const RangeImage image = unwrapper.unwrap(simulated.frame).image;
@@ -129,15 +129,15 @@ double allowance(const std::vector<double>& one, const std::vector<double>& othe
 
 /// The inter-frequency residual at the true counts, median over the frames, metres.
 double median_residual_m(const Recording& recording) {
-  const double wavelength_a_m = recording.sensor.modulation.wavelength_a_m();
-  const double wavelength_b_m = recording.sensor.modulation.wavelength_b_m();
+  const double wavelength_a_m = recording.sensor.modulation.wavelength_m(0);
+  const double wavelength_b_m = recording.sensor.modulation.wavelength_m(1);
   std::vector<double> residuals_m;
   for (const SimulatedFrame& simulated : recording.frames) {
     for (Eigen::Index i = 0; i < simulated.range_truth_m.size(); ++i) {
-      const double phase_a = simulated.frame.phase_a.data()[i];
+      const double phase_a = simulated.frame.phases[0].data()[i];
       const double count = std::round(simulated.range_truth_m.data()[i] / wavelength_a_m - phase_a);
       const double residual_m = frequency_residual_m(
-          wavelength_a_m, wavelength_b_m, phase_a + count, simulated.frame.phase_b.data()[i]);
+          wavelength_a_m, wavelength_b_m, phase_a + count, simulated.frame.phases[1].data()[i]);
       if (!std::isnan(residual_m)) residuals_m.push_back(residual_m);
     }
   }
@@ -156,7 +156,7 @@ TEST_P(JointUnderCameraErrors, IsNoWorseThanTheBetterOfPixelAndJump) {
     const Recording recording = record(GetParam(), camera);
     // Where all residuals are off by half a step, other counts explain them as well: no method
     // knows (docs/unwrapping.md, 'Limitations').
-    const double step_m = residual_step_m(unwrap_limits(recording.sensor, 0));
+    const double step_m = residual_step_m(unwrap_limits(recording.sensor, 0).pair(0, 1));
     if (std::abs(median_residual_m(recording)) > step_m / 2) continue;
     ++compared;
     const std::vector<double> joint = count_wrong(recording, "joint");

@@ -15,17 +15,17 @@ namespace {
 
 constexpr ConstantPrior prior{.constant_m = 0.06, .systematic_m = 0.02, .correlated_samples = 6};
 
-UnwrapLimits limits_of(double frequency_a_hz, double frequency_b_hz) {
+PairLimits limits_of(double frequency_a_hz, double frequency_b_hz) {
   SensorModel sensor;
   sensor.modulation = {frequency_a_hz, frequency_b_hz};
-  return unwrap_limits(sensor, 15);
+  return unwrap_limits(sensor, 15).pair(0, 1);
 }
 
 constexpr int samples_of_frame = 300;
 
 /// Surfaces from `nearest_m` to 9 m, whose light falls with the square of the range; A's ranges
 /// exceed B's by `offset_m`.
-PredictedSamples samples_of(const UnwrapLimits& limits, double nearest_m, double offset_m,
+PredictedSamples samples_of(const PairLimits& limits, double nearest_m, double offset_m,
                             double noise_m) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
@@ -47,7 +47,7 @@ PredictedSamples samples_of(const UnwrapLimits& limits, double nearest_m, double
 }
 
 TEST(ConstantSearch, FindsAnOffset) {
-  const UnwrapLimits limits = limits_of(29e6, 31e6);
+  const PairLimits limits = limits_of(29e6, 31e6);
   for (const double offset_m : {-0.12, -0.05, 0.0, 0.05, 0.12}) {
     const PredictedSamples samples = samples_of(limits, 1, offset_m, 0.02);
     // Constants are a centimetre apart, and the prior pulls toward zero by less than another.
@@ -59,7 +59,7 @@ TEST(ConstantSearch, TellsAnOffsetFromItsAliasByTheLight) {
   // Another wrap count changes the residual by 21 cm, so −9 cm explain the residuals as well as
   // 11.5 cm, and are likelier. But for the same amplitudes a wavelength nearer,
   // the nearest surfaces would have to reflect much less than the others.
-  const UnwrapLimits limits = limits_of(29e6, 30.2e6);
+  const PairLimits limits = limits_of(29e6, 30.2e6);
   ASSERT_NEAR(residual_step_m(limits), 0.205, 0.001);
   PredictedSamples samples = samples_of(limits, 6, 0.115, 0.01);
   EXPECT_NEAR(likeliest_constant_m(limits, prior, samples), 0.115, 0.02);

@@ -38,21 +38,21 @@ SimulatorOptions small_camera() {
 }
 
 /// A frame whose phases are NaN at both frequencies where either has no return.
-DualFrequencyFrame returns_of(const SimulatedFrame& simulated) {
-  DualFrequencyFrame frame = simulated.frame;
-  for (Eigen::Index i = 0; i < frame.phase_a.size(); ++i) {
-    if (!std::isnan(frame.phase_a.data()[i] + frame.phase_b.data()[i])) continue;
-    frame.phase_a.data()[i] = frame.phase_b.data()[i] = NAN;
+Frame returns_of(const SimulatedFrame& simulated) {
+  Frame frame = simulated.frame;
+  for (Eigen::Index i = 0; i < frame.phases[0].size(); ++i) {
+    if (!std::isnan(frame.phases[0].data()[i] + frame.phases[1].data()[i])) continue;
+    frame.phases[0].data()[i] = frame.phases[1].data()[i] = NAN;
   }
   return frame;
 }
 
-ErrorTracker::Tracked track(ErrorTracker& tracker, const DualFrequencyFrame& frame) {
+ErrorTracker::Tracked track(ErrorTracker& tracker, const Frame& frame) {
   return tracker.track(frame, PhaseSigma(frame, estimate_phase_noise(frame)));
 }
 
 ErrorTracker tracker_of(const Simulator& simulator) {
-  return {unwrap_limits(simulator.sensor(), 0), simulator.sensor().camera};
+  return {unwrap_limits(simulator.sensor(), 0).pair(0, 1), simulator.sensor().camera};
 }
 
 /// Frames spread over the path through the scene.
@@ -83,12 +83,12 @@ bool is_smooth(const ImageF& range_m, Eigen::Index v, Eigen::Index u) {
 
 /// The residuals at the true count of pixels on smooth surfaces.
 std::vector<double> residuals_m(const SimulatedFrame& truth, const ImageF& phase_b,
-                                const UnwrapLimits& limits) {
+                                const PairLimits& limits) {
   std::vector<double> residuals_m;
   for (Eigen::Index v = 0; v < phase_b.rows(); ++v) {
     for (Eigen::Index u = 0; u < phase_b.cols(); ++u) {
       if (!is_smooth(truth.range_truth_m, v, u)) continue;
-      const double phase_a = truth.frame.phase_a(v, u);
+      const double phase_a = truth.frame.phases[0](v, u);
       const double n = std::round(truth.range_truth_m(v, u) / limits.wavelength_a_m - phase_a);
       const double residual_m = frequency_residual_m(limits.wavelength_a_m, limits.wavelength_b_m,
                                                      phase_a + n, phase_b(v, u));
@@ -128,7 +128,7 @@ double offset_after_m(double first_offset_b_m, double offset_b_m, double& step_m
   simulation.offset_b_m = offset_b_m;
   const Simulator others(make_scene("room"), simulation);
   ErrorTracker tracker = tracker_of(first);
-  step_m = residual_step_m(unwrap_limits(first.sensor(), 0));
+  step_m = residual_step_m(unwrap_limits(first.sensor(), 0).pair(0, 1));
   track(tracker, returns_of(first.simulate(0)));
   for (int i = 1; i < 20; ++i) track(tracker, returns_of(others.simulate(i)));
   return tracker.camera_errors().offset_m();
@@ -156,14 +156,14 @@ TEST(ErrorTracker, CorrectsNothingWhereThereIsNoError) {
     SimulatorOptions simulation = small_camera();
     simulation.b_delay_share = 0;
     const Simulator simulator(make_scene(scene), simulation);
-    const double wavelength_b_m = unwrap_limits(simulator.sensor(), 0).wavelength_b_m;
+    const double wavelength_b_m = unwrap_limits(simulator.sensor(), 0).wavelengths_m[1];
     ErrorTracker tracker = tracker_of(simulator);
     std::vector<double> corrections_m;
     for (const SimulatedFrame& simulated : frames_of(simulator, 12)) {
-      const DualFrequencyFrame frame = returns_of(simulated);
+      const Frame frame = returns_of(simulated);
       const ErrorTracker::Tracked tracked = track(tracker, frame);
-      for (Eigen::Index i = 0; i < frame.phase_b.size(); ++i) {
-        const double change = tracked.b.phase_b.data()[i] - frame.phase_b.data()[i];
+      for (Eigen::Index i = 0; i < frame.phases[1].size(); ++i) {
+        const double change = tracked.b.phase_b.data()[i] - frame.phases[1].data()[i];
         if (std::isnan(change) || tracked.b.sigma_b_cycles.data()[i] > 1) continue;
         corrections_m.push_back(std::remainder(change, 1) * wavelength_b_m);
       }
@@ -184,7 +184,7 @@ TEST(ErrorTracker, PredictsAPeriodicErrorAfterSomeFrames) {
     simulation.errors_seed = seed;
     simulation.range_noise_m = 0.003;  // so that what is left of the residual is not noise
     const Simulator simulator(make_scene("hall"), simulation);
-    const UnwrapLimits limits = unwrap_limits(simulator.sensor(), 0);
+    const PairLimits limits = unwrap_limits(simulator.sensor(), 0).pair(0, 1);
     ErrorTracker tracker = tracker_of(simulator);
     std::vector<double> before_m;
     std::vector<double> after_m;
@@ -192,7 +192,7 @@ TEST(ErrorTracker, PredictsAPeriodicErrorAfterSomeFrames) {
     for (const SimulatedFrame& simulated : frames_of(simulator, 12)) {
       const ErrorTracker::Tracked tracked = track(tracker, returns_of(simulated));
       if (++index <= 6) continue;
-      std::ranges::copy(residuals_m(simulated, simulated.frame.phase_b, limits),
+      std::ranges::copy(residuals_m(simulated, simulated.frame.phases[1], limits),
                         std::back_inserter(before_m));
       std::ranges::copy(residuals_m(simulated, tracked.b.phase_b, limits),
                         std::back_inserter(after_m));
@@ -207,7 +207,7 @@ TEST(ErrorTracker, PredictsAnErrorThatGrowsWithDarkness) {
   simulation.amplitude_error_b_m = 0.09;  // 3 cm a decade, and of B: A's excess falls with darkness
   simulation.range_noise_m = 0.005;
   const Simulator simulator(make_scene("hall"), simulation);
-  const UnwrapLimits limits = unwrap_limits(simulator.sensor(), 0);
+  const PairLimits limits = unwrap_limits(simulator.sensor(), 0).pair(0, 1);
   ErrorTracker tracker = tracker_of(simulator);
   std::vector<double> before_m;
   std::vector<double> after_m;
@@ -215,7 +215,7 @@ TEST(ErrorTracker, PredictsAnErrorThatGrowsWithDarkness) {
   for (const SimulatedFrame& simulated : frames_of(simulator, 12)) {
     const ErrorTracker::Tracked tracked = track(tracker, returns_of(simulated));
     if (++index <= 6) continue;
-    std::ranges::copy(residuals_m(simulated, simulated.frame.phase_b, limits),
+    std::ranges::copy(residuals_m(simulated, simulated.frame.phases[1], limits),
                       std::back_inserter(before_m));
     std::ranges::copy(residuals_m(simulated, tracked.b.phase_b, limits),
                       std::back_inserter(after_m));
@@ -261,7 +261,7 @@ class Corner {
   }
 
   /// A frame without noise, A exposed at the origin and B after this motion.
-  DualFrequencyFrame frame_of(const Pose& a_from_b) const {
+  Frame frame_of(const Pose& a_from_b) const {
     const auto phase = [&](const Pose& pose, double wavelength_m) {
       return image_from(pose, [&](const Seen& seen) {
         return seen.range_m / wavelength_m - std::floor(seen.range_m / wavelength_m);
@@ -270,15 +270,15 @@ class Corner {
     const auto amplitude = [&](const Pose& pose) {
       return image_from(pose, [](const Seen& seen) { return seen.amplitude; });
     };
-    DualFrequencyFrame frame;
-    frame.phase_a = phase(Pose::Identity(), limits.wavelength_a_m);
-    frame.phase_b = phase(a_from_b, limits.wavelength_b_m);
-    frame.amplitude_a = amplitude(Pose::Identity());
-    frame.amplitude_b = amplitude(a_from_b);
+    Frame frame = blank_frame(2);
+    frame.phases[0] = phase(Pose::Identity(), limits.wavelength_a_m);
+    frame.phases[1] = phase(a_from_b, limits.wavelength_b_m);
+    frame.amplitudes[0] = amplitude(Pose::Identity());
+    frame.amplitudes[1] = amplitude(a_from_b);
     return frame;
   }
 
-  const UnwrapLimits limits = unwrap_limits({camera, {29e6, 31e6}}, 20);
+  const PairLimits limits = unwrap_limits({camera, {29e6, 31e6}}, 20).pair(0, 1);
 
  private:
   template <class Value>
@@ -293,11 +293,11 @@ class Corner {
 };
 
 /// The noise that frames without any are said to have: 3 mm.
-PhaseSigma said_sigma(const DualFrequencyFrame& frame) {
-  const ImageF sigma = frame.phase_a.isNaN().select(
-      ImageF::Constant(frame.phase_a.rows(), frame.phase_a.cols(), NAN), 6e-4F);
+PhaseSigma said_sigma(const Frame& frame) {
+  const ImageF sigma = frame.phases[0].isNaN().select(
+      ImageF::Constant(frame.phases[0].rows(), frame.phases[0].cols(), NAN), 6e-4F);
   PhaseSigma both;
-  both.a_cycles = both.b_cycles = sigma;
+  both.cycles = {sigma, sigma};
   return both;
 }
 
@@ -312,7 +312,7 @@ Pose pose_of(const Eigen::Vector3d& translation_m, const Eigen::Vector3d& rotati
 /// A tracker that has seen the camera stand still, and knows that its frequencies agree.
 ErrorTracker acquainted(const Corner& corner) {
   ErrorTracker tracker(corner.limits, corner.camera);
-  const DualFrequencyFrame still = corner.frame_of(Pose::Identity());
+  const Frame still = corner.frame_of(Pose::Identity());
   for (int i = 0; i < 4; ++i) tracker.track(still, said_sigma(still));
   tracker.forget_last_frame();
   return tracker;
@@ -329,7 +329,7 @@ TEST(ErrorTracker, FindsTheMotionBetweenTheExposures) {
         Motion{{0.02, -0.01, 0.05}, {0.004, -0.008, 0.003}},
         Motion{{0.03, 0.01, 0.08}, {-0.01, 0.06, 0.01}}}) {
     ErrorTracker tracker = acquainted(corner);
-    const DualFrequencyFrame frame = corner.frame_of(pose_of(translation_m, rotation_rad));
+    const Frame frame = corner.frame_of(pose_of(translation_m, rotation_rad));
     const ErrorTracker::Tracked tracked = tracker.track(frame, said_sigma(frame));
     const ExposureMotion& motion = tracked.errors.motion;
     // A motion of a centimetre is likely by itself, so a third of it stays open; of a larger one a
@@ -343,7 +343,7 @@ TEST(ErrorTracker, BringsBBackToWhereAWasExposed) {
   const Corner corner;
   for (const double rotation_rad : {0.004, 0.06}) {
     ErrorTracker tracker = acquainted(corner);
-    const DualFrequencyFrame frame =
+    const Frame frame =
         corner.frame_of(pose_of({0.01, 0, 0.03 + rotation_rad}, {0, rotation_rad, 0}));
     const ErrorTracker::Tracked tracked = tracker.track(frame, said_sigma(frame));
     SimulatedFrame truth;
@@ -352,7 +352,7 @@ TEST(ErrorTracker, BringsBBackToWhereAWasExposed) {
     ImageF seen_b = tracked.b.phase_b;
     seen_b = (tracked.b.sigma_b_cycles < 1).select(seen_b, NAN);
     std::vector<double> left_m = residuals_m(truth, seen_b, corner.limits);
-    std::vector<double> without_m = residuals_m(truth, frame.phase_b, corner.limits);
+    std::vector<double> without_m = residuals_m(truth, frame.phases[1], corner.limits);
     EXPECT_LT(rms(left_m), 0.2 * rms(without_m)) << rotation_rad;
     // Going 9 cm ahead and turning takes a fifth of the surface out of B's image.
     EXPECT_GT(static_cast<double>(left_m.size()), 0.75 * static_cast<double>(without_m.size()));
@@ -384,7 +384,7 @@ TEST(ErrorTracker, KnowsNothingOfBWhereItsImageEnds) {
   const Corner corner;
   ErrorTracker tracker = acquainted(corner);
   const Pose a_from_b = pose_of(Eigen::Vector3d::Zero(), {0, 0.1, 0});
-  const DualFrequencyFrame frame = corner.frame_of(a_from_b);
+  const Frame frame = corner.frame_of(a_from_b);
   const ErrorTracker::Tracked tracked = tracker.track(frame, said_sigma(frame));
   const ImageF range_m = corner.ranges_from(Pose::Identity());
   int outside = 0;
@@ -425,13 +425,13 @@ SimulatorOptions switching_camera() {
 /// Three runs of twelve frames through the hall, each looked ahead at as the program does.
 double wrong_wraps_percent(const SimulatorOptions& simulation, const UnwrapOptions& options) {
   const Simulator simulator(make_scene("hall"), simulation);
-  const double wavelength_m = simulator.sensor().modulation.wavelength_a_m();
+  const double wavelength_m = simulator.sensor().modulation.wavelength_m(0);
   Unwrapper unwrapper(simulator.sensor(), options);
   double wrong = 0;
   double all = 0;
   for (const int first : {0, 20, 40}) {
     const std::vector<SimulatedFrame> run = run_of(simulator, first, 12);
-    std::vector<DualFrequencyFrame> ahead;
+    std::vector<Frame> ahead;
     for (std::size_t i = 0; i < FrameMeasurer::frames_ahead; ++i) ahead.push_back(run[i].frame);
     FrameMeasurer measurer(simulator.sensor(), options);
     measurer.look_ahead(ahead);
@@ -557,7 +557,7 @@ TEST(ErrorTracker, TakesMotionForAnOffsetWhereTheCameraIsUnknown) {
   SimulatorOptions simulation = small_camera();
   simulation.offset_b_m = -0.08;
   const Simulator simulator(make_scene("hall"), simulation);
-  ErrorTracker tracker(unwrap_limits(simulator.sensor(), 0), CameraModel());
+  ErrorTracker tracker(unwrap_limits(simulator.sensor(), 0).pair(0, 1), CameraModel());
   const FrameErrors errors = track(tracker, returns_of(simulator.simulate(20))).errors;
   EXPECT_NEAR(errors.camera.offset_m(), 0.08, 0.015);
   EXPECT_EQ(errors.motion.translation_m.norm(), 0);
@@ -570,25 +570,25 @@ TEST(ErrorTracker, NeedsNoAmplitudes) {
   simulation.offset_b_m = -0.08;
   simulation.range_noise_m = 0.005;
   const Simulator simulator(make_scene("hall"), simulation);
-  DualFrequencyFrame frame = returns_of(simulator.simulate(20));
-  frame.amplitude_a.resize(0, 0);
-  frame.amplitude_b.resize(0, 0);
+  Frame frame = returns_of(simulator.simulate(20));
+  frame.amplitudes[0].resize(0, 0);
+  frame.amplitudes[1].resize(0, 0);
   ErrorTracker tracker = tracker_of(simulator);
   const ErrorTracker::Tracked tracked = track(tracker, frame);
   EXPECT_NEAR(tracked.errors.camera.offset_m(), 0.08, 0.015);
   EXPECT_EQ(tracked.errors.camera.amplitude_gain, 1);
   EXPECT_EQ(tracked.b.amplitude_b.size(), 0);
   const auto seen = (tracked.b.sigma_b_cycles < 1).count();
-  EXPECT_GT(seen, 0.8 * static_cast<double>(frame.phase_a.size())) << "all but edges";
+  EXPECT_GT(seen, 0.8 * static_cast<double>(frame.phases[0].size())) << "all but edges";
 }
 
 TEST(ErrorTracker, KnowsNothingOfAFrameWithoutReturns) {
   const Corner corner;
   ErrorTracker tracker = acquainted(corner);
   const CameraErrors before = tracker.camera_errors();
-  DualFrequencyFrame dark = corner.frame_of(Pose::Identity());
-  dark.phase_a.setConstant(NAN);
-  dark.phase_b.setConstant(NAN);
+  Frame dark = corner.frame_of(Pose::Identity());
+  dark.phases[0].setConstant(NAN);
+  dark.phases[1].setConstant(NAN);
   const ErrorTracker::Tracked tracked = tracker.track(dark, said_sigma(dark));
   EXPECT_EQ(tracked.errors.pixels, 0);
   EXPECT_EQ(tracked.errors.camera.coefficient_m, before.coefficient_m);
@@ -602,14 +602,14 @@ TEST(ErrorTracker, LeavesMissingPixelsOutAndEveryOtherPhaseWithinACycle) {
   ErrorTracker tracker = tracker_of(simulator);
   std::mt19937 random(3);
   for (const SimulatedFrame& simulated : run_of(simulator, 20, 3)) {
-    DualFrequencyFrame frame = returns_of(simulated);
-    for (Eigen::Index i = 0; i < frame.phase_a.size(); ++i) {
-      if (random() % 3 == 0) frame.phase_a.data()[i] = frame.phase_b.data()[i] = NAN;
+    Frame frame = returns_of(simulated);
+    for (Eigen::Index i = 0; i < frame.phases[0].size(); ++i) {
+      if (random() % 3 == 0) frame.phases[0].data()[i] = frame.phases[1].data()[i] = NAN;
     }
     const ErrorTracker::Tracked tracked = track(tracker, frame);
-    EXPECT_TRUE((tracked.b.phase_b.isNaN() == frame.phase_a.isNaN()).all());
-    for (Eigen::Index i = 0; i < frame.phase_a.size(); ++i) {
-      if (std::isnan(frame.phase_a.data()[i])) continue;
+    EXPECT_TRUE((tracked.b.phase_b.isNaN() == frame.phases[0].isNaN()).all());
+    for (Eigen::Index i = 0; i < frame.phases[0].size(); ++i) {
+      if (std::isnan(frame.phases[0].data()[i])) continue;
       const float phase = tracked.b.phase_b.data()[i];
       ASSERT_TRUE(phase >= 0 && phase < 1) << phase;
       ASSERT_GT(tracked.b.sigma_b_cycles.data()[i], 0);
@@ -620,20 +620,20 @@ TEST(ErrorTracker, LeavesMissingPixelsOutAndEveryOtherPhaseWithinACycle) {
 
 TEST(ErrorTracker, LeavesAFrameOfOneRowOrColumnAsItIs) {
   const Corner corner;
-  const DualFrequencyFrame whole = corner.frame_of(Pose::Identity());
+  const Frame whole = corner.frame_of(Pose::Identity());
   for (const auto& [rows, cols] : {std::pair{1, 88}, {72, 1}, {1, 1}, {2, 2}}) {
     CameraModel camera = corner.camera;
     camera.width_px = cols;
     camera.height_px = rows;
-    DualFrequencyFrame frame;
-    frame.phase_a = whole.phase_a.topLeftCorner(rows, cols);
-    frame.phase_b = whole.phase_b.topLeftCorner(rows, cols);
-    frame.amplitude_a = whole.amplitude_a.topLeftCorner(rows, cols);
-    frame.amplitude_b = whole.amplitude_b.topLeftCorner(rows, cols);
+    Frame frame = blank_frame(2);
+    frame.phases[0] = whole.phases[0].topLeftCorner(rows, cols);
+    frame.phases[1] = whole.phases[1].topLeftCorner(rows, cols);
+    frame.amplitudes[0] = whole.amplitudes[0].topLeftCorner(rows, cols);
+    frame.amplitudes[1] = whole.amplitudes[1].topLeftCorner(rows, cols);
     for (const CameraModel& known : {camera, CameraModel()}) {
       ErrorTracker tracker(corner.limits, known);
       const ErrorTracker::Tracked tracked = tracker.track(frame, said_sigma(frame));
-      const ImageF change = tracked.b.phase_b - frame.phase_b;
+      const ImageF change = tracked.b.phase_b - frame.phases[1];
       EXPECT_LT((change - change.round()).abs().maxCoeff(), 1e-5) << rows << " x " << cols;
       EXPECT_LT(tracked.b.sigma_b_cycles.maxCoeff(), 1) << rows << " x " << cols;
     }
@@ -663,33 +663,33 @@ TEST(FrameMeasurer, KnowsTheCameraFromTheFirstFrameOnAfterLookingAhead) {
   SimulatorOptions simulation = small_camera();
   simulation.offset_b_m = -0.08;
   const Simulator simulator(make_scene("hall"), simulation);
-  std::vector<DualFrequencyFrame> frames;
+  std::vector<Frame> frames;
   for (const SimulatedFrame& simulated : run_of(simulator, 20, FrameMeasurer::frames_ahead)) {
     frames.push_back(simulated.frame);
   }
   FrameMeasurer measurer(simulator.sensor(), {});
   measurer.look_ahead(frames);
   const MeasuredFrame first = measurer.measure(frames.front());
-  EXPECT_EQ(first.errors.camera.frames, FrameMeasurer::frames_ahead + 1);
-  EXPECT_NEAR(first.errors.camera.offset_m(), 0.08, 0.006);
+  EXPECT_EQ(first.errors[1].camera.frames, FrameMeasurer::frames_ahead + 1);
+  EXPECT_NEAR(first.errors[1].camera.offset_m(), 0.08, 0.006);
 }
 
 TEST(FrameMeasurer, LeavesBAsItIsForMethodsThatDoNotCompareFrequencies) {
   SimulatorOptions simulation = small_camera();
   simulation.offset_b_m = -0.08;
   const Simulator simulator(make_scene("hall"), simulation);
-  const DualFrequencyFrame frame = returns_of(simulator.simulate(20));
+  const Frame frame = returns_of(simulator.simulate(20));
   for (const char* method : {"none", "pixel", "single", "paper", "jump", "joint"}) {
     UnwrapOptions options;
     options.method = find_named<UnwrapMethod>(method).value();
     const bool compares = method == std::string("jump") || method == std::string("joint");
     const MeasuredFrame measured = FrameMeasurer(simulator.sensor(), options).measure(frame);
-    EXPECT_EQ(is_same(measured.returns.phase_b, frame.phase_b), !compares) << method;
-    EXPECT_EQ(measured.residual_sigma_m > 0, compares) << method;
+    EXPECT_EQ(is_same(measured.returns.phases[1], frame.phases[1]), !compares) << method;
+    EXPECT_EQ(measured.residual_sigma_m[1] > 0, compares) << method;
     options.systematic_errors = false;
     const MeasuredFrame noise_alone = FrameMeasurer(simulator.sensor(), options).measure(frame);
-    EXPECT_TRUE(is_same(noise_alone.returns.phase_b, frame.phase_b)) << method;
-    EXPECT_EQ(noise_alone.residual_sigma_m, 0) << method;
+    EXPECT_TRUE(is_same(noise_alone.returns.phases[1], frame.phases[1])) << method;
+    EXPECT_EQ(noise_alone.residual_sigma_m[1], 0) << method;
   }
 }
 

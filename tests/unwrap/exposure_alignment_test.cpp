@@ -27,8 +27,8 @@ TEST(ExposureAlignment, FindsTheRotationToItsCovariance) {
   for (const int index : {3, 12, 21, 30}) {
     const SimulatedFrame one = simulator.simulate(index);
     const SimulatedFrame other = simulator.simulate(index + 1);
-    const auto found =
-        align_exposures(one.frame.amplitude_a, other.frame.amplitude_a, simulator.sensor().camera);
+    const auto found = align_exposures(one.frame.amplitudes[0], other.frame.amplitudes[0],
+                                       simulator.sensor().camera);
     ASSERT_TRUE(found) << index;
     const Eigen::Vector3d translation_m =
         (one.world_from_camera.inverse() * other.world_from_camera).translation();

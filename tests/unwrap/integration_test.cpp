@@ -101,7 +101,7 @@ TEST(Integration, TrustsLeastTheNodeThatWasPersuaded) {
 /// A frame of two flat walls side by side, without noise worth speaking of.
 struct TwoWalls {
   SensorModel sensor;
-  DualFrequencyFrame frame;
+  Frame frame = blank_frame(2);
   ImageF range_m;
 };
 
@@ -119,8 +119,8 @@ TwoWalls two_walls(double left_m, double right_m) {
       return cycles - std::floor(cycles);
     }));
   };
-  walls.frame.phase_a = phase(walls.sensor.modulation.wavelength_a_m());
-  walls.frame.phase_b = phase(walls.sensor.modulation.wavelength_b_m());
+  walls.frame.phases[0] = phase(walls.sensor.modulation.wavelength_m(0));
+  walls.frame.phases[1] = phase(walls.sensor.modulation.wavelength_m(1));
   return walls;
 }
 
@@ -175,10 +175,10 @@ TEST(PaperMethod, HasTwoCountsHoweverFarASurfaceReaches) {
   const Modulation modulation = walls.sensor.modulation;
   for (Eigen::Index u = 0; u < 24; ++u) {
     const double range_m = 4 + 8.0 * static_cast<double>(u) / 23;
-    walls.frame.phase_a.col(u) =
-        static_cast<float>(std::fmod(range_m / modulation.wavelength_a_m(), 1));
-    walls.frame.phase_b.col(u) =
-        static_cast<float>(std::fmod(range_m / modulation.wavelength_b_m(), 1));
+    walls.frame.phases[0].col(u) =
+        static_cast<float>(std::fmod(range_m / modulation.wavelength_m(0), 1));
+    walls.frame.phases[1].col(u) =
+        static_cast<float>(std::fmod(range_m / modulation.wavelength_m(1), 1));
   }
   const auto counts = [&](const UnwrapOptions& options) {
     return unwrap(walls.frame, walls.sensor, options).image.wrap_count;
@@ -191,15 +191,15 @@ TEST(PaperMethod, HasTwoCountsHoweverFarASurfaceReaches) {
 
 TEST(JumpMethod, WorksWhenBHasTheLongerWavelength) {
   TwoWalls walls = two_walls(3, 9);
-  std::swap(walls.frame.phase_a, walls.frame.phase_b);
-  std::swap(walls.sensor.modulation.frequency_a_hz, walls.sensor.modulation.frequency_b_hz);
+  std::swap(walls.frame.phases[0], walls.frame.phases[1]);
+  std::swap(walls.sensor.modulation.frequencies_hz[0], walls.sensor.modulation.frequencies_hz[1]);
   const UnwrapResult result = unwrap(walls.frame, walls.sensor, jump_options());
   EXPECT_LT(largest_error_m(walls, result.image), 0.1);
 }
 
 TEST(Unwrapping, GivesPixelsWithoutAReturnNoRange) {
   TwoWalls walls = two_walls(3, 9);
-  walls.frame.phase_b(4, 4) = NAN;
+  walls.frame.phases[1](4, 4) = NAN;
   const UnwrapResult result = unwrap(walls.frame, walls.sensor, {});
   EXPECT_FALSE(result.image.valid(4, 4));
   EXPECT_TRUE(std::isnan(result.image.range_m(4, 4)));
@@ -210,9 +210,9 @@ TEST(Unwrapping, GivesPixelsWithoutAReturnNoRange) {
 TEST(Unwrapping, OfAMeasuredFrameDoesNotDependOnTheFramesBefore) {
   TwoWalls near = two_walls(3, 9);
   TwoWalls far = two_walls(18, 7);
-  far.frame.phase_a.block(0, 20, 9, 4).setConstant(NAN);
+  far.frame.phases[0].block(0, 20, 9, 4).setConstant(NAN);
   TwoWalls small = two_walls(4, 12);
-  for (ImageF* phase : {&small.frame.phase_a, &small.frame.phase_b}) {
+  for (ImageF* phase : {&small.frame.phases[0], &small.frame.phases[1]}) {
     *phase = ImageF(phase->topLeftCorner(11, 7));
   }
   for (const char* method : {"joint", "jump", "paper", "single"}) {
@@ -253,12 +253,12 @@ TEST(Unwrapping, OfTheSameFramesInTheSameOrderGivesTheSameBits) {
 TEST(Unwrapping, SaysWhichPixelsAreSaturated) {
   TwoWalls walls = two_walls(3, 9);
   walls.sensor.saturation_amplitude = 1000;
-  walls.frame.amplitude_a = ImageF::Constant(16, 24, 100);
-  walls.frame.amplitude_b = walls.frame.amplitude_a;
-  walls.frame.amplitude_b(4, 4) = 1000;
-  walls.frame.amplitude_a(5, 5) = 2000;
-  walls.frame.phase_a(6, 6) = NAN;
-  walls.frame.amplitude_b(6, 6) = 2000;
+  walls.frame.amplitudes[0] = ImageF::Constant(16, 24, 100);
+  walls.frame.amplitudes[1] = walls.frame.amplitudes[0];
+  walls.frame.amplitudes[1](4, 4) = 1000;
+  walls.frame.amplitudes[0](5, 5) = 2000;
+  walls.frame.phases[0](6, 6) = NAN;
+  walls.frame.amplitudes[1](6, 6) = 2000;
   const RangeImage image = unwrap(walls.frame, walls.sensor, {}).image;
   EXPECT_EQ(image.reason(4, 4), static_cast<int>(InvalidReason::saturated));
   EXPECT_EQ(image.reason(5, 5), static_cast<int>(InvalidReason::saturated));
@@ -276,7 +276,7 @@ TEST(Unwrapping, TakesImagesOfAnyShape) {
   };
   for (const auto& [rows, cols] : {Shape{1, 1}, {1, 9}, {9, 1}, {2, 2}, {16, 3}, {3, 20}}) {
     TwoWalls walls = two_walls(7, 7);
-    for (ImageF* phase : {&walls.frame.phase_a, &walls.frame.phase_b}) {
+    for (ImageF* phase : {&walls.frame.phases[0], &walls.frame.phases[1]}) {
       *phase = ImageF(phase->topLeftCorner(rows, cols));
     }
     for (const char* method : {"none", "pixel", "single", "paper", "jump", "joint"}) {
@@ -294,7 +294,7 @@ TEST(Unwrapping, TakesImagesOfAnyShape) {
 
 TEST(Unwrapping, OfAnImageWithoutAnyReturnIsEmpty) {
   TwoWalls walls = two_walls(3, 9);
-  walls.frame.phase_a.setConstant(NAN);
+  walls.frame.phases[0].setConstant(NAN);
   for (const char* method : {"none", "pixel", "single", "paper", "jump", "joint"}) {
     UnwrapOptions options;
     options.method = find_named<UnwrapMethod>(method).value();

@@ -81,7 +81,7 @@ Tally unwrap_frames(const Simulator& simulator, int frames, const UnwrapOptions&
   for (int i = 0; i < frames; ++i) {
     const SimulatedFrame simulated = simulator.simulate((2 * i + 1) * total / (2 * frames));
     add_frame(unwrapper.unwrap(simulated.frame).image, simulated.range_truth_m,
-              simulator.sensor().modulation.wavelength_a_m(), tally);
+              simulator.sensor().modulation.wavelength_m(0), tally);
   }
   return tally;
 }
@@ -152,7 +152,7 @@ Tally unwrap_random_rooms(double range_noise_m) {
     for (int i = 0; i < 3; ++i) {
       const SimulatedFrame frame = simulator.simulate((2 * i + 1) * total / 6);
       add_frame(unwrapper.unwrap(frame.frame).image, frame.range_truth_m,
-                simulator.sensor().modulation.wavelength_a_m(), tally);
+                simulator.sensor().modulation.wavelength_m(0), tally);
     }
   }
   return tally;
@@ -184,11 +184,11 @@ TEST(Joint, UnwrapsWhereOnlyNeighbourhoodsCarryInformation) {
 TEST(Joint, NeedsNoAmplitudes) {
   const Simulator simulator(make_scene("room"), {});
   SimulatedFrame simulated = simulator.simulate(40);
-  simulated.frame.amplitude_a.resize(0, 0);
-  simulated.frame.amplitude_b.resize(0, 0);
+  simulated.frame.amplitudes[0].resize(0, 0);
+  simulated.frame.amplitudes[1].resize(0, 0);
   Tally tally;
   add_frame(unwrap(simulated.frame, simulator.sensor(), {}).image, simulated.range_truth_m,
-            simulator.sensor().modulation.wavelength_a_m(), tally);
+            simulator.sensor().modulation.wavelength_m(0), tally);
   EXPECT_LT(tally.wrong_percent(), 2);
 }
 
@@ -273,7 +273,7 @@ std::vector<double> mean_errors_m(const UnwrapOptions& options) {
   simulation.max_translation_m = 0.07;
   const Simulator simulator(make_scene("corridor"), simulation);
   std::vector<SimulatedFrame> run;
-  std::vector<DualFrequencyFrame> ahead;
+  std::vector<Frame> ahead;
   for (int i = 0; i < FrameMeasurer::frames_ahead; ++i) {
     run.push_back(simulator.simulate(40 + i));
     ahead.push_back(run.back().frame);
@@ -317,33 +317,33 @@ TEST(Fusion, LeavesAPixelAloneWhoseFrequenciesDisagree) {
   SensorModel sensor;
   sensor.modulation = {29e6, 31e6};
   const UnwrapLimits limits = unwrap_limits(sensor, 20);
-  DualFrequencyFrame frame;
-  frame.phase_a = ImageF::Constant(1, 1, 0.5F);
-  frame.phase_b = ImageF::Constant(1, 1, 0.9F);
-  frame.amplitude_a = frame.amplitude_b = ImageF::Constant(1, 1, 1.0F);
-  const FusedRanges out =
-      fuse_ranges(frame, ImageU8::Constant(1, 1, 1), limits, PhaseSigma(frame, {0.01, 0.01}), 0);
-  EXPECT_FLOAT_EQ(out.range_m(0, 0), static_cast<float>(1.5 * limits.wavelength_a_m));
-  EXPECT_FLOAT_EQ(out.sigma_m(0, 0), static_cast<float>(0.01 * limits.wavelength_a_m));
+  Frame frame = blank_frame(2);
+  frame.phases[0] = ImageF::Constant(1, 1, 0.5F);
+  frame.phases[1] = ImageF::Constant(1, 1, 0.9F);
+  frame.amplitudes[0] = frame.amplitudes[1] = ImageF::Constant(1, 1, 1.0F);
+  const FusedRanges out = fuse_ranges(frame, ImageU8::Constant(1, 1, 1), limits,
+                                      PhaseSigma(frame, {{0.01}, {0.01}}), {0, 0});
+  EXPECT_FLOAT_EQ(out.range_m(0, 0), static_cast<float>(1.5 * limits.wavelength_m()));
+  EXPECT_FLOAT_EQ(out.sigma_m(0, 0), static_cast<float>(0.01 * limits.wavelength_m()));
 }
 
 TEST(Halving, AveragesPhasorsAndTheirNoise) {
-  DualFrequencyFrame frame;
-  frame.phase_a.resize(3, 2);
-  frame.phase_a << 0.95F, 0.05F, 0.95F, 0.05F, 0.25F, NAN;
-  frame.phase_b = frame.phase_a;
-  frame.amplitude_a = frame.amplitude_b = ImageF::Constant(3, 2, 10.0F);
-  const auto [half, sigma] = halve(frame, PhaseSigma(frame, {.scale_a = 0.4, .scale_b = 0.4}));
-  ASSERT_EQ(half.phase_a.rows(), 2);
-  ASSERT_EQ(half.phase_a.cols(), 1);
-  const float from_zero = half.phase_a(0, 0) - std::round(half.phase_a(0, 0));
+  Frame frame = blank_frame(2);
+  frame.phases[0].resize(3, 2);
+  frame.phases[0] << 0.95F, 0.05F, 0.95F, 0.05F, 0.25F, NAN;
+  frame.phases[1] = frame.phases[0];
+  frame.amplitudes[0] = frame.amplitudes[1] = ImageF::Constant(3, 2, 10.0F);
+  const auto [half, sigma] = halve(frame, PhaseSigma(frame, {{.scale = 0.4}, {.scale = 0.4}}));
+  ASSERT_EQ(half.phases[0].rows(), 2);
+  ASSERT_EQ(half.phases[0].cols(), 1);
+  const float from_zero = half.phases[0](0, 0) - std::round(half.phases[0](0, 0));
   EXPECT_NEAR(from_zero, 0, 1e-6) << "the mean of phases on both sides of 0";
   const double agreement = std::cos(0.1 * 3.14159265);
-  EXPECT_NEAR(half.amplitude_a(0, 0), 10 * agreement, 1e-4);
-  EXPECT_NEAR(sigma.a_cycles(0, 0), 0.04 / 2 / agreement, 1e-6) << "of four pixels";
-  EXPECT_NEAR(half.phase_a(1, 0), 0.25, 1e-6);
-  EXPECT_NEAR(half.amplitude_a(1, 0), 10, 1e-4);
-  EXPECT_NEAR(sigma.a_cycles(1, 0), 0.04, 1e-6) << "one pixel alone is no less noisy in a block";
+  EXPECT_NEAR(half.amplitudes[0](0, 0), 10 * agreement, 1e-4);
+  EXPECT_NEAR(sigma.cycles[0](0, 0), 0.04 / 2 / agreement, 1e-6) << "of four pixels";
+  EXPECT_NEAR(half.phases[0](1, 0), 0.25, 1e-6);
+  EXPECT_NEAR(half.amplitudes[0](1, 0), 10, 1e-4);
+  EXPECT_NEAR(sigma.cycles[0](1, 0), 0.04, 1e-6) << "one pixel alone is no less noisy in a block";
 }
 
 }  // namespace

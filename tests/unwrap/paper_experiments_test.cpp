@@ -35,7 +35,7 @@ Outcome unwrap_scene(const char* scene, const char* method, int index = 5,
   options.method = find_named<UnwrapMethod>(method).value();
   Outcome outcome;
   outcome.result = unwrap(simulated.frame, simulator.sensor(), options);
-  const double half_wavelength_m = simulator.sensor().modulation.wavelength_a_m() / 2;
+  const double half_wavelength_m = simulator.sensor().modulation.wavelength_m(0) / 2;
   int wrong = 0;
   int all = 0;
   for (Eigen::Index i = 0; i < simulated.range_truth_m.size(); ++i) {
@@ -135,14 +135,14 @@ JumpShares jump_shares(const char* method) {
   const SimulatedFrame simulated = simulator.simulate(5);
   UnwrapOptions options;
   options.method = find_named<UnwrapMethod>(method).value();
-  const DualFrequencyFrame& frame = simulated.frame;
+  const Frame& frame = simulated.frame;
   JumpEstimator estimator;
   const JumpEstimate& jumps = estimator.estimate(
-      frame, PhaseSigma(frame, estimate_phase_noise(frame)), unwrap_limits(simulator.sensor(), 0),
-      jump_method(options.method), options);
+      frame, PhaseSigma(frame, estimate_phase_noise(frame)),
+      unwrap_limits(simulator.sensor(), 0).pair(0, 1), jump_method(options.method), options);
   const auto configurations = most_likely_configurations(jumps.beliefs.marginals);
-  const auto wavelength_m = static_cast<float>(simulator.sensor().modulation.wavelength_a_m());
-  const ImageF count = (simulated.range_truth_m / wavelength_m - frame.phase_a).round();
+  const auto wavelength_m = static_cast<float>(simulator.sensor().modulation.wavelength_m(0));
+  const ImageF count = (simulated.range_truth_m / wavelength_m - frame.phases[0]).round();
   int with_jump = 0;
   int found = 0;
   int without = 0;

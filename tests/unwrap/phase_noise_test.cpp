@@ -12,23 +12,23 @@ namespace tofmap {
 namespace {
 
 /// Noise of σ = scale / amplitude on a wrapped slope with a step, under varying amplitudes.
-DualFrequencyFrame noisy_slope(double scale) {
+Frame noisy_slope(double scale) {
   std::mt19937 random(11);
   std::normal_distribution<double> normal(0, 1);
-  DualFrequencyFrame frame;
-  frame.phase_a.resize(96, 128);
-  frame.amplitude_a.resize(96, 128);
+  Frame frame = blank_frame(2);
+  frame.phases[0].resize(96, 128);
+  frame.amplitudes[0].resize(96, 128);
   for (Eigen::Index v = 0; v < 96; ++v) {
     for (Eigen::Index u = 0; u < 128; ++u) {
       const double amplitude = 50 + 3.0 * static_cast<double>(u % 40);
       const double cycles = 0.011 * static_cast<double>(u) + 0.007 * static_cast<double>(v) +
                             (u > 60 ? 0.4 : 0) + scale / amplitude * normal(random);
-      frame.amplitude_a(v, u) = static_cast<float>(amplitude);
-      frame.phase_a(v, u) = static_cast<float>(cycles - std::floor(cycles));
+      frame.amplitudes[0](v, u) = static_cast<float>(amplitude);
+      frame.phases[0](v, u) = static_cast<float>(cycles - std::floor(cycles));
     }
   }
-  frame.phase_b = frame.phase_a;
-  frame.amplitude_b = frame.amplitude_a;
+  frame.phases[1] = frame.phases[0];
+  frame.amplitudes[1] = frame.amplitudes[0];
   return frame;
 }
 
@@ -40,57 +40,58 @@ INSTANTIATE_TEST_SUITE_P(Scales, PhaseNoiseOf,
 TEST_P(PhaseNoiseOf, IsFoundOnAWrappedSlopeOfVaryingAmplitude) {
   // The median of 16 000 second differences scatters by about one percent; slopes and steps
   // add a little.
-  EXPECT_NEAR(estimate_phase_noise(noisy_slope(GetParam())).scale_a, GetParam(), 0.05 * GetParam());
+  EXPECT_NEAR(estimate_phase_noise(noisy_slope(GetParam()))[0].scale, GetParam(),
+              0.05 * GetParam());
 }
 
 TEST(PhaseNoise, IsNoLessThanTheQuantisationOfPhases) {
-  DualFrequencyFrame frame;
-  frame.phase_a = frame.phase_b = ImageF::Constant(20, 20, 0.5F);
-  EXPECT_GT(estimate_phase_noise(frame).scale_a, 0.1 / 65535);
+  Frame frame = blank_frame(2);
+  frame.phases[0] = frame.phases[1] = ImageF::Constant(20, 20, 0.5F);
+  EXPECT_GT(estimate_phase_noise(frame)[0].scale, 0.1 / 65535);
 }
 
 /// The phases of a noisy slope, rounded to so many levels a cycle.
-DualFrequencyFrame rounded_slope(double scale, float levels_a, float levels_b) {
-  DualFrequencyFrame frame = noisy_slope(scale);
+Frame rounded_slope(double scale, float levels_a, float levels_b) {
+  Frame frame = noisy_slope(scale);
   const auto rounded = [](const ImageF& phase, float levels) {
     const ImageF whole = (phase * levels).round() / levels;
     return ImageF((whole < 1).select(whole, 0));
   };
-  frame.phase_a = rounded(frame.phase_a, levels_a);
-  frame.phase_b = rounded(frame.phase_b, levels_b);
+  frame.phases[0] = rounded(frame.phases[0], levels_a);
+  frame.phases[1] = rounded(frame.phases[1], levels_b);
   return frame;
 }
 
 TEST(Quantisation, IsTheStepOfThePhasesOfEachFrequency) {
-  const PhaseNoise noise = estimate_phase_noise(rounded_slope(0.5, 64, 1000));
-  EXPECT_NEAR(noise.quantisation_a_cycles, 1.0 / 64, 1e-6);
-  EXPECT_NEAR(noise.quantisation_b_cycles, 1.0 / 1000, 1e-6);
+  const std::vector<PhaseNoise> noise = estimate_phase_noise(rounded_slope(0.5, 64, 1000));
+  EXPECT_NEAR(noise[0].quantisation_cycles, 1.0 / 64, 1e-6);
+  EXPECT_NEAR(noise[1].quantisation_cycles, 1.0 / 1000, 1e-6);
 }
 
 TEST(Quantisation, OfPhasesThatAreNotRoundedIsThatOf16Bits) {
-  const PhaseNoise noise = estimate_phase_noise(noisy_slope(2));
-  EXPECT_LT(noise.quantisation_a_cycles, 1.0 / 8000);
-  EXPECT_GE(noise.quantisation_a_cycles, 1.0 / 65535);
+  const std::vector<PhaseNoise> noise = estimate_phase_noise(noisy_slope(2));
+  EXPECT_LT(noise[0].quantisation_cycles, 1.0 / 8000);
+  EXPECT_GE(noise[0].quantisation_cycles, 1.0 / 65535);
 }
 
 TEST(Quantisation, IsFoundWhereReturnsAreMissing) {
-  DualFrequencyFrame frame = rounded_slope(0.5, 64, 64);
-  frame.phase_a.topRows(60).setConstant(NAN);
-  EXPECT_NEAR(estimate_phase_noise(frame).quantisation_a_cycles, 1.0 / 64, 1e-6);
+  Frame frame = rounded_slope(0.5, 64, 64);
+  frame.phases[0].topRows(60).setConstant(NAN);
+  EXPECT_NEAR(estimate_phase_noise(frame)[0].quantisation_cycles, 1.0 / 64, 1e-6);
 }
 
 TEST(Quantisation, OfAnImageOfOnePhaseIsNotFiner) {
-  DualFrequencyFrame frame;
-  frame.phase_a = frame.phase_b = ImageF::Constant(20, 20, 0.5F);
+  Frame frame = blank_frame(2);
+  frame.phases[0] = frame.phases[1] = ImageF::Constant(20, 20, 0.5F);
   // Nothing is known of the step but that no camera's is coarser.
-  EXPECT_DOUBLE_EQ(estimate_phase_noise(frame).quantisation_a_cycles, 1.0 / 16);
+  EXPECT_DOUBLE_EQ(estimate_phase_noise(frame)[0].quantisation_cycles, 1.0 / 16);
 }
 
 TEST(PhaseNoise, IsAGuessWherePixelsAreTooFewToTell) {
-  DualFrequencyFrame frame;
-  frame.phase_a = frame.phase_b = ImageF::Constant(1, 2, 0.5F);
-  frame.amplitude_a = frame.amplitude_b = ImageF::Constant(1, 2, 50.0F);
-  EXPECT_DOUBLE_EQ(estimate_phase_noise(frame).scale_a, 0.01 * 50);
+  Frame frame = blank_frame(2);
+  frame.phases[0] = frame.phases[1] = ImageF::Constant(1, 2, 0.5F);
+  frame.amplitudes[0] = frame.amplitudes[1] = ImageF::Constant(1, 2, 50.0F);
+  EXPECT_DOUBLE_EQ(estimate_phase_noise(frame)[0].scale, 0.01 * 50);
 }
 
 }  // namespace

@@ -40,10 +40,10 @@ constexpr double shorter_m = 4.83536223;  // of 31 MHz
 /// One pixel with these wrapped ranges, by equation 2 with τ halfway.
 int count_of(double a_m, double b_m, double wavelength_a_m = longer_m,
              double wavelength_b_m = shorter_m) {
-  const UnwrapLimits limits{.wavelength_a_m = wavelength_a_m, .wavelength_b_m = wavelength_b_m};
-  DualFrequencyFrame frame;
-  frame.phase_a = ImageF::Constant(1, 1, static_cast<float>(a_m / wavelength_a_m));
-  frame.phase_b = ImageF::Constant(1, 1, static_cast<float>(b_m / wavelength_b_m));
+  const PairLimits limits{.wavelength_a_m = wavelength_a_m, .wavelength_b_m = wavelength_b_m};
+  Frame frame = blank_frame(2);
+  frame.phases[0] = ImageF::Constant(1, 1, static_cast<float>(a_m / wavelength_a_m));
+  frame.phases[1] = ImageF::Constant(1, 1, static_cast<float>(b_m / wavelength_b_m));
   return threshold_counts(frame, limits, halfway_threshold_m(limits))(0, 0);
 }
 
@@ -79,27 +79,27 @@ TEST(EquationTwo, HasNoCountWithoutAReturn) {
 }
 
 /// A wall at 4.9, 5.1, 5.3, 5.5 m: between the second and the third pixel A wraps.
-DualFrequencyFrame sloping_row() {
-  DualFrequencyFrame frame;
-  frame.phase_a.resize(1, 4);
-  frame.phase_b.resize(1, 4);
+Frame sloping_row() {
+  Frame frame = blank_frame(2);
+  frame.phases[0].resize(1, 4);
+  frame.phases[1].resize(1, 4);
   for (Eigen::Index u = 0; u < 4; ++u) {
     const double range_m = 4.9 + 0.2 * static_cast<double>(u);
-    frame.phase_a(0, u) = static_cast<float>(std::fmod(range_m / longer_m, 1));
-    frame.phase_b(0, u) = static_cast<float>(std::fmod(range_m / shorter_m, 1));
+    frame.phases[0](0, u) = static_cast<float>(std::fmod(range_m / longer_m, 1));
+    frame.phases[1](0, u) = static_cast<float>(std::fmod(range_m / shorter_m, 1));
   }
-  frame.amplitude_a = ImageF::Constant(1, 4, 10);
-  frame.amplitude_b = frame.amplitude_a;
+  frame.amplitudes[0] = ImageF::Constant(1, 4, 10);
+  frame.amplitudes[1] = frame.amplitudes[0];
   return frame;
 }
 
 TEST(EvidenceOfPaper, IsThatOfEquationsOneThreeAndFourWithTheVarianceOfTheImage) {
-  const DualFrequencyFrame frame = sloping_row();
+  const Frame frame = sloping_row();
   UnwrapOptions options;
   options.window_px = 2;
   JumpEstimator estimator;
   const JumpEstimate& jumps = estimator.estimate(
-      frame, PhaseSigma(frame, {.scale_a = 1, .scale_b = 1}),
+      frame, PhaseSigma(frame, {{.scale = 1}, {.scale = 1}}),
       {.wavelength_a_m = longer_m, .wavelength_b_m = shorter_m, .max_range_m = 70, .count_a = 14},
       jump_method(UnwrapMethod::paper), options);
   // Two steps of 0.2 m, and one of 0.2 m less a wavelength: with s = 0.2 / λ_A their mean is
@@ -123,12 +123,12 @@ TEST(EvidenceOfPaper, IsThatOfEquationsOneThreeAndFourWithTheVarianceOfTheImage)
 }
 
 TEST(EvidenceOfPaper, KnowsNoNoiseAndNoSigmaOfOptions) {
-  const DualFrequencyFrame frame = sloping_row();
+  const Frame frame = sloping_row();
   const auto evidence_of = [&](double noise_scale, double sigma_cycles) {
     UnwrapOptions options;
     options.sigma_cycles = sigma_cycles;
     return JumpEstimator()
-        .estimate(frame, PhaseSigma(frame, {.scale_a = noise_scale, .scale_b = noise_scale}),
+        .estimate(frame, PhaseSigma(frame, {{.scale = noise_scale}, {.scale = noise_scale}}),
                   {.wavelength_a_m = longer_m, .wavelength_b_m = shorter_m, .count_a = 2},
                   jump_method(UnwrapMethod::paper), options)
         .evidence.x[0](0, 0);

@@ -17,20 +17,21 @@ namespace {
 
 /// Pixels of one surface, 7 wavelengths away, whose residual is noisy: most of them have the right
 /// count, some any other.
-DualFrequencyFrame noisy_surface(const UnwrapLimits& limits, int pixels, double noise_cycles,
-                                 std::mt19937& random) {
+Frame noisy_surface(const PairLimits& limits, int pixels, double noise_cycles,
+                    std::mt19937& random) {
   std::uniform_real_distribution<double> range_m(7.1 * limits.wavelength_a_m,
                                                  7.9 * limits.wavelength_a_m);
   std::normal_distribution<double> noise(0, 1);
-  DualFrequencyFrame frame;
-  for (ImageF* image : {&frame.phase_a, &frame.phase_b, &frame.amplitude_a, &frame.amplitude_b}) {
+  Frame frame = blank_frame(2);
+  for (ImageF* image :
+       {&frame.phases[0], &frame.phases[1], &frame.amplitudes[0], &frame.amplitudes[1]}) {
     *image = ImageF::Ones(1, pixels);
   }
   const auto fraction = [](double x) { return static_cast<float>(x - std::floor(x)); };
   for (int i = 0; i < pixels; ++i) {
     const double r = range_m(random);
-    frame.phase_a(0, i) = fraction(r / limits.wavelength_a_m + noise_cycles * noise(random));
-    frame.phase_b(0, i) = fraction(r / limits.wavelength_b_m + noise_cycles * noise(random));
+    frame.phases[0](0, i) = fraction(r / limits.wavelength_a_m + noise_cycles * noise(random));
+    frame.phases[1](0, i) = fraction(r / limits.wavelength_b_m + noise_cycles * noise(random));
   }
   return frame;
 }
@@ -72,10 +73,10 @@ class PlainFits {
   OffsetUnion& forest_;
 };
 
-UnwrapLimits all_ranges() {
+PairLimits all_ranges() {
   SensorModel sensor;
   sensor.modulation = {29e6, 31e6};
-  return unwrap_limits(sensor, 0);
+  return unwrap_limits(sensor, 0).pair(0, 1);
 }
 
 /// Regions of the pixels of a noisy surface, each by itself at first.
@@ -83,13 +84,13 @@ struct Pixels {
   Pixels(double noise_cycles, std::mt19937& random)
       : limits(all_ranges()),
         frame(noisy_surface(limits, PlainFits::pixels, noise_cycles, random)),
-        cost(frame, limits, PhaseSigma(frame, {noise_cycles, noise_cycles})),
+        cost(frame, limits, PhaseSigma(frame, {{noise_cycles}, {noise_cycles}})),
         forest(PlainFits::pixels),
         fits(cost, nearest_pair_counts(frame, limits), forest),
         plain(cost, forest) {}
 
-  UnwrapLimits limits;
-  DualFrequencyFrame frame;
+  PairLimits limits;
+  Frame frame = blank_frame(2);
   ResidualCost cost;
   OffsetUnion forest;
   RegionFits fits;

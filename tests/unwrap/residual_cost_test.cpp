@@ -19,7 +19,7 @@ namespace {
 /// A frame of random phases and amplitudes, some without a return. As wide as no vector is.
 struct RandomFrame {
   SensorModel sensor;
-  DualFrequencyFrame frame;
+  Frame frame = blank_frame(2);
 
   explicit RandomFrame(double max_range_m) {
     sensor.modulation = {29e6, 31e6};
@@ -27,14 +27,15 @@ struct RandomFrame {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> phase(0, 1);
     std::uniform_real_distribution<float> amplitude(5, 500);
-    for (ImageF* image : {&frame.phase_a, &frame.phase_b, &frame.amplitude_a, &frame.amplitude_b}) {
+    for (ImageF* image :
+         {&frame.phases[0], &frame.phases[1], &frame.amplitudes[0], &frame.amplitudes[1]}) {
       image->resize(37, 53);
     }
-    for (Eigen::Index i = 0; i < frame.phase_a.size(); ++i) {
-      frame.phase_a.data()[i] = phase(random);
-      frame.phase_b.data()[i] = i % 17 == 0 ? NAN : phase(random);
-      frame.amplitude_a.data()[i] = amplitude(random);
-      frame.amplitude_b.data()[i] = amplitude(random);
+    for (Eigen::Index i = 0; i < frame.phases[0].size(); ++i) {
+      frame.phases[0].data()[i] = phase(random);
+      frame.phases[1].data()[i] = i % 17 == 0 ? NAN : phase(random);
+      frame.amplitudes[0].data()[i] = amplitude(random);
+      frame.amplitudes[1].data()[i] = amplitude(random);
     }
   }
 };
@@ -43,11 +44,11 @@ class Beat : public testing::TestWithParam<double> {};
 
 TEST_P(Beat, NearestPairHasTheLeastResidualOfAllCounts) {
   const RandomFrame random(GetParam());
-  const UnwrapLimits limits = unwrap_limits(random.sensor, 0);
+  const PairLimits limits = unwrap_limits(random.sensor, 0).pair(0, 1);
   const ImageU8 nearest = nearest_pair_counts(random.frame, limits);
   for (Eigen::Index i = 0; i < nearest.size(); ++i) {
-    const float a = random.frame.phase_a.data()[i];
-    const float b = random.frame.phase_b.data()[i];
+    const float a = random.frame.phases[0].data()[i];
+    const float b = random.frame.phases[1].data()[i];
     const int found = nearest.data()[i];
     ASSERT_EQ(std::isnan(b), found == invalid_wrap_count);
     if (std::isnan(b)) continue;
@@ -61,15 +62,15 @@ TEST_P(Beat, NearestPairHasTheLeastResidualOfAllCounts) {
 }
 
 /// The definition, for one pixel and any count.
-float plain_cost(const RandomFrame& random, const UnwrapLimits& limits, const PhaseNoise& noise,
-                 Eigen::Index i, int n) {
-  const float a = random.frame.phase_a.data()[i];
-  const float b = random.frame.phase_b.data()[i];
+float plain_cost(const RandomFrame& random, const PairLimits& limits,
+                 const std::vector<PhaseNoise>& noise, Eigen::Index i, int n) {
+  const float a = random.frame.phases[0].data()[i];
+  const float b = random.frame.phases[1].data()[i];
   if (std::isnan(b) || n < 0 || !count_within_limits(limits, a, n)) return ResidualCost::bound;
   const double sigma_a_m =
-      noise.scale_a / random.frame.amplitude_a.data()[i] * limits.wavelength_a_m;
+      noise[0].scale / random.frame.amplitudes[0].data()[i] * limits.wavelength_a_m;
   const double sigma_b_m =
-      noise.scale_b / random.frame.amplitude_b.data()[i] * limits.wavelength_b_m;
+      noise[1].scale / random.frame.amplitudes[1].data()[i] * limits.wavelength_b_m;
   const double residual_m = count_residual_m(limits, a, b, n);
   const double variance_m2 = sigma_a_m * sigma_a_m + sigma_b_m * sigma_b_m;
   return std::min(static_cast<float>(residual_m * residual_m / (2 * variance_m2)),
@@ -78,12 +79,12 @@ float plain_cost(const RandomFrame& random, const UnwrapLimits& limits, const Ph
 
 TEST_P(Beat, CostIsThatOfTheDefinition) {
   const RandomFrame random(GetParam());
-  const UnwrapLimits limits = unwrap_limits(random.sensor, 0);
-  const PhaseNoise noise{1, 1};
+  const PairLimits limits = unwrap_limits(random.sensor, 0).pair(0, 1);
+  const std::vector<PhaseNoise> noise{{1}, {1}};
   const ResidualCost cost(random.frame, limits, PhaseSigma(random.frame, noise));
   const auto counts = static_cast<int>(cost.size());
   constexpr float tolerance = 2e-2F;  // 1e-4 m of a residual of up to 0.15 m at a noise of 1 cm
-  for (Eigen::Index i = 0; i < random.frame.phase_a.size(); i += 5) {
+  for (Eigen::Index i = 0; i < random.frame.phases[0].size(); i += 5) {
     for (int n = -2; n <= limits.count_a + 1; ++n) {
       ASSERT_NEAR(cost(i, n), plain_cost(random, limits, noise, i, n), tolerance) << n;
     }
@@ -103,8 +104,8 @@ TEST_P(Beat, CostIsThatOfTheDefinition) {
 
 TEST_P(Beat, ProbabilityIsTheShareOfTheLikelihood) {
   const RandomFrame random(GetParam());
-  const UnwrapLimits limits = unwrap_limits(random.sensor, 0);
-  const ResidualCost cost(random.frame, limits, PhaseSigma(random.frame, {1, 1}));
+  const PairLimits limits = unwrap_limits(random.sensor, 0).pair(0, 1);
+  const ResidualCost cost(random.frame, limits, PhaseSigma(random.frame, {{1}, {1}}));
   const ImageU8 counts = nearest_pair_counts(random.frame, limits);
   const ImageF probability = cost.probability(counts);
   for (Eigen::Index i = 0; i < counts.size(); ++i) {

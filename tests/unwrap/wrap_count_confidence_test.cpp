@@ -34,8 +34,7 @@ ImageF confidence_at(const WrapCountBeliefs& beliefs, float noise_share) {
   SensorModel sensor;
   sensor.modulation = {29e6, 31e6};
   const UnwrapLimits limits = unwrap_limits(sensor, 0);
-  const double cycles =
-      noise_share * residual_step_m(limits) / (std::numbers::sqrt2 * limits.wavelength_a_m);
+  const double cycles = noise_share / residual_noise_steps(limits);
   return wrap_count_confidence(
       beliefs,
       ImageF::Constant(beliefs.count.rows(), beliefs.count.cols(), static_cast<float>(cycles)),

@@ -26,14 +26,15 @@ UnwrapLimits limits_up_to(double range_m) {
 }
 
 /// Two noisy walls, one behind the other, and a few pixels without a return.
-DualFrequencyFrame noisy_walls(int rows, int cols, const UnwrapLimits& limits, int seed) {
+Frame noisy_walls(int rows, int cols, const UnwrapLimits& limits, int seed) {
   std::mt19937 random(static_cast<unsigned>(seed));
   std::normal_distribution<double> normal(0, noise_cycles);
   std::uniform_real_distribution<double> uniform(0, 1);
   const double near_m = 1 + 3 * uniform(random);
   const double far_m = near_m + 0.8 * limits.max_range_m * uniform(random) * 0.7;
-  DualFrequencyFrame frame;
-  for (ImageF* image : {&frame.phase_a, &frame.phase_b, &frame.amplitude_a, &frame.amplitude_b}) {
+  Frame frame = blank_frame(2);
+  for (ImageF* image :
+       {&frame.phases[0], &frame.phases[1], &frame.amplitudes[0], &frame.amplitudes[1]}) {
     image->resize(rows, cols);
   }
   for (int v = 0; v < rows; ++v) {
@@ -44,19 +45,20 @@ DualFrequencyFrame noisy_walls(int rows, int cols, const UnwrapLimits& limits, i
         const double cycles = range_m / wavelength_m + normal(random);
         return static_cast<float>(cycles - std::floor(cycles));
       };
-      frame.phase_a(v, u) = phase(limits.wavelength_a_m);
-      frame.phase_b(v, u) = phase(limits.wavelength_b_m);
-      frame.amplitude_a(v, u) = is_far ? 40.0F : 100.0F;
-      frame.amplitude_b(v, u) = frame.amplitude_a(v, u);
-      if (uniform(random) < 0.05) frame.phase_a(v, u) = frame.phase_b(v, u) = NAN;
+      frame.phases[0](v, u) = phase(limits.wavelengths_m[0]);
+      frame.phases[1](v, u) = phase(limits.wavelengths_m[1]);
+      frame.amplitudes[0](v, u) = is_far ? 40.0F : 100.0F;
+      frame.amplitudes[1](v, u) = frame.amplitudes[0](v, u);
+      if (uniform(random) < 0.05) frame.phases[0](v, u) = frame.phases[1](v, u) = NAN;
     }
   }
   return frame;
 }
 
-WrapCountModel model_of(const DualFrequencyFrame& frame, const UnwrapLimits& limits) {
+WrapCountModel model_of(const Frame& frame, const UnwrapLimits& limits) {
   WrapCountModel model;
-  model.assign(frame, limits, PhaseSigma(frame, {noise_cycles * 100, noise_cycles * 100}), 0, {});
+  model.assign(frame, limits, PhaseSigma(frame, {{noise_cycles * 100}, {noise_cycles * 100}}),
+               {0, 0}, {});
   return model;
 }
 
@@ -116,7 +118,7 @@ TEST_P(WrapCountPropagationOn, GivesTheBeliefsOfThePlainVersion) {
   const UnwrapLimits limits = limits_up_to(25);
   WrapCountPropagation propagation;
   for (int seed = 0; seed < 3; ++seed) {
-    const DualFrequencyFrame frame = noisy_walls(GetParam().rows, GetParam().cols, limits, seed);
+    const Frame frame = noisy_walls(GetParam().rows, GetParam().cols, limits, seed);
     const WrapCountModel model = model_of(frame, limits);
     const WrapCountBeliefs fast = propagation.run(model, 3);
     const test::PlainWrapCountModel plain_model(model);
@@ -138,7 +140,7 @@ TEST(WrapCountPropagation, AgreesWithExactEnumerationWhereThatIsSure) {
   int sure = 0;
   int agreed = 0;
   for (int seed = 0; seed < 40; ++seed) {
-    const DualFrequencyFrame frame = noisy_walls(3, 4, limits, seed);
+    const Frame frame = noisy_walls(3, 4, limits, seed);
     const WrapCountModel model = model_of(frame, limits);
     const WrapCountBeliefs beliefs = propagation.run(model, 10);
     const auto exact = test::exact_marginals(test::PlainWrapCountModel(model));
@@ -176,8 +178,8 @@ TEST(WrapCountPropagation, SettlesWithIterations) {
 
 TEST(WrapCountModel, KeepsPixelsWithoutAReturnOutOfIt) {
   const UnwrapLimits limits = limits_up_to(25);
-  DualFrequencyFrame frame = noisy_walls(5, 5, limits, 3);
-  frame.phase_a(2, 2) = frame.phase_b(2, 2) = NAN;
+  Frame frame = noisy_walls(5, 5, limits, 3);
+  frame.phases[0](2, 2) = frame.phases[1](2, 2) = NAN;
   const WrapCountModel model = model_of(frame, limits);
   const DiagonalLayout& layout = model.layout();
   for (const double value : model.evidence_of(2, 2)) EXPECT_EQ(value, 1);

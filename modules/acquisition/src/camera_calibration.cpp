@@ -20,7 +20,15 @@ namespace tofmap {
 namespace {
 
 constexpr const char* calibration_format = "tofmap-camera";
-constexpr int calibration_version = 1;
+
+/// Version 1 has two frequencies, version 2 any number.
+constexpr int version_of_pairs = 1;
+constexpr int latest_version = 2;
+
+/// The key of the error at a frequency: "error_a" for the first one.
+std::string error_key(std::size_t frequency) {
+  return std::string("error_") + frequency_letter(frequency);
+}
 
 double wrapped(double cycles) { return cycles - std::floor(cycles); }
 
@@ -100,7 +108,7 @@ PhaseError read_error(const YamlSection& root, const std::string& name) {
 
 /// Throws InputError if the error rises faster than the phase anywhere: a longer range would
 /// measure shorter there.
-void check_order(const PhaseError& error, const char* name, double wavelength_m) {
+void check_order(const PhaseError& error, const std::string& name, double wavelength_m) {
   for (int i = 0; i < steps_a_cycle; ++i) {
     const double step_m =
         error.at_m((i + 1.0) / steps_a_cycle) - error.at_m(1.0 * i / steps_a_cycle);
@@ -113,17 +121,23 @@ void check_order(const PhaseError& error, const char* name, double wavelength_m)
   }
 }
 
-CalibratedWith read_calibrated_with(const YamlSection& section) {
-  section.allow_only({"width", "height", "frequency_a_hz", "frequency_b_hz"});
+CalibratedWith read_calibrated_with(const YamlSection& section, int version) {
   CalibratedWith with;
   with.width_px = section.value<int>("width", "a number of pixels");
   with.height_px = section.value<int>("height", "a number of pixels");
-  with.modulation.frequency_a_hz = section.value<double>("frequency_a_hz", "a frequency in Hz");
-  with.modulation.frequency_b_hz = section.value<double>("frequency_b_hz", "a frequency in Hz");
+  if (version == version_of_pairs) {
+    section.allow_only({"width", "height", "frequency_a_hz", "frequency_b_hz"});
+    with.modulation = {section.value<double>("frequency_a_hz", "a frequency in Hz"),
+                       section.value<double>("frequency_b_hz", "a frequency in Hz")};
+  } else {
+    section.allow_only({"width", "height", "frequencies_hz"});
+    with.modulation.frequencies_hz =
+        section.value<std::vector<double>>("frequencies_hz", "a list of frequencies in Hz");
+  }
   return with;
 }
 
-void write_error(std::ostream& out, const char* name, const PhaseError& error) {
+void write_error(std::ostream& out, const std::string& name, const PhaseError& error) {
   out << name << ":\n  offset_m: " << shortest(error.offset_m) << '\n';
   if (!error.harmonics.empty()) out << "  harmonics:\n";
   for (const WiggleHarmonic& harmonic : error.harmonics) {
@@ -143,8 +157,11 @@ std::string size_text(int width_px, int height_px) {
 }
 
 std::string frequencies_text(const Modulation& modulation) {
-  return fmt::format("{:.9g} and {:.9g} MHz", modulation.frequency_a_hz / 1e6,
-                     modulation.frequency_b_hz / 1e6);
+  std::vector<std::string> numbers;
+  for (const double hz : modulation.frequencies_hz) {
+    numbers.push_back(fmt::format("{:.9g}", hz / 1e6));
+  }
+  return joined(numbers, " and ") + " MHz";
 }
 
 [[noreturn]] void refuse_other_camera(const std::string& calibrated, const std::string& recorded) {
@@ -163,12 +180,11 @@ void check_camera(const CalibratedWith& with, const SensorModel& sensor) {
   const auto is_same = [](double one_hz, double other_hz) {
     return std::abs(one_hz - other_hz) <= same * other_hz;
   };
-  const Modulation& modulation = sensor.modulation;
-  if (is_same(with.modulation.frequency_a_hz, modulation.frequency_a_hz) &&
-      is_same(with.modulation.frequency_b_hz, modulation.frequency_b_hz)) {
+  if (std::ranges::equal(with.modulation.frequencies_hz, sensor.modulation.frequencies_hz,
+                         is_same)) {
     return;
   }
-  refuse_other_camera(frequencies_text(with.modulation), frequencies_text(modulation));
+  refuse_other_camera(frequencies_text(with.modulation), frequencies_text(sensor.modulation));
 }
 
 /// The comment as one line of valid YAML. It may quote file names, which can contain line breaks
@@ -185,8 +201,17 @@ SensorModel with_calibration(SensorModel sensor, const CameraCalibration& calibr
     sensor.saturation_amplitude = calibration.saturation_amplitude;
   }
   if (calibration.with) check_camera(*calibration.with, sensor);
-  check_order(calibration.error_a, "error_a", sensor.modulation.wavelength_a_m());
-  check_order(calibration.error_b, "error_b", sensor.modulation.wavelength_b_m());
+  const Modulation& modulation = sensor.modulation;
+  for (std::size_t f = 0; f < calibration.errors.size(); ++f) {
+    if (f < modulation.count()) {
+      check_order(calibration.errors[f], error_key(f), modulation.wavelength_m(f));
+    } else if (!is_nothing(calibration.errors[f])) {
+      throw InputError(error_key(f) + " is of frequency " + std::to_string(f + 1) +
+                       ", but the recording has " +
+                       counted(modulation.count(), "frequency", "frequencies") +
+                       "; does it belong to another camera?");
+    }
+  }
   if (!calibration.camera) return sensor;
   const CameraModel& given = *calibration.camera;
   check_size(given.width_px, given.height_px, sensor.camera);
@@ -212,21 +237,25 @@ double PhaseError::at_m(double phase_cycles) const {
 
 CameraCalibration read_calibration(const std::filesystem::path& file) {
   const YamlSection root = load_yaml(file, "'tofmap calibrate' writes such a file");
-  check_format(root, calibration_format, calibration_version);
+  const int version = check_format(root, calibration_format, latest_version);
   root.allow_only({"format", "version", "calibrated_with", "camera", "error_a", "error_b",
+                   "error_c", "error_d", "error_e", "error_f", "error_g", "error_h",
                    "saturation_amplitude"});
   CameraCalibration calibration;
   calibration.file = file;
   if (root.has("calibrated_with")) {
-    calibration.with = read_calibrated_with(root.section("calibrated_with"));
+    calibration.with = read_calibrated_with(root.section("calibrated_with"), version);
     naming(file.string(), [&] { validate(calibration.with->modulation); });
   }
   if (root.has("camera")) {
     calibration.camera = read_camera(root.section("camera"));
     naming(file.string(), [&] { validate(*calibration.camera); });
   }
-  calibration.error_a = read_error(root, "error_a");
-  calibration.error_b = read_error(root, "error_b");
+  for (std::size_t f = 0; f < most_frequencies; ++f) {
+    if (!root.has(error_key(f))) continue;
+    calibration.errors.resize(f + 1);
+    calibration.errors[f] = read_error(root, error_key(f));
+  }
   if (root.has("saturation_amplitude")) {
     calibration.saturation_amplitude =
         root.value<double>("saturation_amplitude", "an amplitude above 0");
@@ -241,7 +270,7 @@ CameraCalibration read_calibration(const std::filesystem::path& file) {
 
 bool is_calibration(const std::filesystem::path& file) {
   try {
-    check_format(load_yaml(file, ""), calibration_format, calibration_version);
+    check_format(load_yaml(file, ""), calibration_format, latest_version);
     return true;
   } catch (const InputError&) {
     return false;
@@ -252,16 +281,25 @@ void write_calibration(const std::filesystem::path& file, const CameraCalibratio
                        const std::string& comment) {
   std::ofstream out(file);
   if (!comment.empty()) out << "# " << one_line(comment) << '\n';
-  out << "format: " << calibration_format << "\nversion: " << calibration_version << '\n';
+  const bool is_pair =
+      calibration.with ? calibration.with->modulation.count() == 2 : calibration.errors.size() <= 2;
+  out << "format: " << calibration_format
+      << "\nversion: " << (is_pair ? version_of_pairs : latest_version) << '\n';
   if (calibration.with) {
     const CalibratedWith& with = *calibration.with;
-    out << "calibrated_with: {width: " << with.width_px << ", height: " << with.height_px
-        << ", frequency_a_hz: " << shortest(with.modulation.frequency_a_hz)
-        << ", frequency_b_hz: " << shortest(with.modulation.frequency_b_hz) << "}\n";
+    const std::vector<double>& hz = with.modulation.frequencies_hz;
+    out << "calibrated_with: {width: " << with.width_px << ", height: " << with.height_px;
+    if (is_pair) {
+      out << ", frequency_a_hz: " << shortest(hz[0]) << ", frequency_b_hz: " << shortest(hz[1]);
+    } else {
+      out << ", frequencies_hz: " << list_text(hz);
+    }
+    out << "}\n";
   }
   if (calibration.camera) out << "camera:\n" << camera_text(*calibration.camera);
-  write_error(out, "error_a", calibration.error_a);
-  write_error(out, "error_b", calibration.error_b);
+  for (std::size_t f = 0; f < calibration.errors.size(); ++f) {
+    write_error(out, error_key(f), calibration.errors[f]);
+  }
   if (calibration.saturation_amplitude > 0) {
     out << "saturation_amplitude: " << shortest(calibration.saturation_amplitude) << '\n';
   }
@@ -275,10 +313,11 @@ SensorModel calibrated(const SensorModel& sensor, const CameraCalibration& calib
   return naming(origin, [&] { return with_calibration(sensor, calibration); });
 }
 
-void calibrate(DualFrequencyFrame& frame, const Modulation& modulation,
-               const CameraCalibration& calibration) {
-  correct(frame.phase_a, calibration.error_a, modulation.wavelength_a_m());
-  correct(frame.phase_b, calibration.error_b, modulation.wavelength_b_m());
+void calibrate(Frame& frame, const Modulation& modulation, const CameraCalibration& calibration) {
+  const std::size_t known = std::min(calibration.errors.size(), frame.frequencies());
+  for (std::size_t f = 0; f < known; ++f) {
+    correct(frame.phases[f], calibration.errors[f], modulation.wavelength_m(f));
+  }
 }
 
 }  // namespace tofmap

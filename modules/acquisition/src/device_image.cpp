@@ -13,14 +13,19 @@
 #include <boost/crc.hpp>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
 
 namespace tofmap {
 namespace {
 
 constexpr double most_steps = 65534;  // an .oni file returns the depth 65535 as 1
 
-/// The bytes "tofmap", then the version of the tag's layout.
-constexpr std::array<std::uint16_t, 4> magic = {0x6f74, 0x6d66, 0x7061, 1};
+/// The bytes "tofmap".
+constexpr std::array<std::uint16_t, 3> magic = {0x6f74, 0x6d66, 0x7061};
+
+/// The version of the tag's layout: 1 for two frequencies, else 2, which has their number.
+constexpr std::uint64_t version_of_pairs = 1;
+constexpr std::uint64_t latest_version = 2;
 
 /// Writes the values of a tag as words of 16 bits, the low word first. Floating-point numbers are
 /// written as their bits.
@@ -71,6 +76,10 @@ constexpr int checksum_words = 2;
 
 std::vector<std::uint16_t> words_of(const FrameTag& tag) {
   TagWriter out;
+  const std::vector<double>& hz = tag.sensor.modulation.frequencies_hz;
+  const bool is_pair = hz.size() == 2;
+  out.add(is_pair ? version_of_pairs : latest_version, 1);
+  if (!is_pair) out.add(hz.size(), 1);
   out.add(tag.number, 2);
   out.add(tag.timestamp_s);
   const CameraModel& camera = tag.sensor.camera;
@@ -79,8 +88,7 @@ std::vector<std::uint16_t> words_of(const FrameTag& tag) {
   for (const double value : {camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px})
     out.add(value);
   for (const double value : camera.distortion) out.add(value);
-  out.add(tag.sensor.modulation.frequency_a_hz);
-  out.add(tag.sensor.modulation.frequency_b_hz);
+  for (const double value : hz) out.add(value);
   out.add(tag.sensor.max_range_m);
   out.add(tag.sensor.saturation_amplitude);
   out.add(tag.scale.unit_m);
@@ -92,6 +100,9 @@ std::vector<std::uint16_t> words_of(const FrameTag& tag) {
 FrameTag tag_of(const std::vector<std::uint16_t>& words) {
   TagReader in(words);
   FrameTag tag;
+  const std::uint64_t version = in.whole(1);
+  std::vector<double>& hz = tag.sensor.modulation.frequencies_hz;
+  hz.resize(version == version_of_pairs ? 2 : in.whole(1));
   tag.number = static_cast<std::uint32_t>(in.whole(2));
   tag.timestamp_s = in.number();
   CameraModel& camera = tag.sensor.camera;
@@ -101,8 +112,7 @@ FrameTag tag_of(const std::vector<std::uint16_t>& words) {
     *value = in.number();
   }
   for (double& value : camera.distortion) value = in.number();
-  tag.sensor.modulation.frequency_a_hz = in.number();
-  tag.sensor.modulation.frequency_b_hz = in.number();
+  for (double& value : hz) value = in.number();
   tag.sensor.max_range_m = in.number();
   tag.sensor.saturation_amplitude = in.number();
   tag.scale.unit_m = in.number();
@@ -110,16 +120,17 @@ FrameTag tag_of(const std::vector<std::uint16_t>& words) {
   return tag;
 }
 
-std::size_t tag_words() {
-  static const std::size_t count = words_of({}).size();
-  return count;
+std::size_t tag_words(std::size_t frequencies) {
+  FrameTag tag;
+  tag.sensor.modulation.frequencies_hz.resize(frequencies);
+  return words_of(tag).size();
 }
 
 constexpr int pixels_per_word =
     2;  // one byte per pixel, since .oni files do not keep the depth 65535
 
-void write_tag(ImageU16& image, const std::vector<std::uint16_t>& words) {
-  const Eigen::Index rows = tag_rows(static_cast<int>(image.cols()));
+void write_tag(ImageU16& image, const std::vector<std::uint16_t>& words, std::size_t frequencies) {
+  const Eigen::Index rows = tag_rows(static_cast<int>(image.cols()), frequencies);
   image.bottomRows(rows).setZero();
   std::uint16_t* pixel = image.row(image.rows() - rows).data();
   for (const std::uint16_t word : words) {
@@ -128,8 +139,8 @@ void write_tag(ImageU16& image, const std::vector<std::uint16_t>& words) {
   }
 }
 
-std::vector<std::uint16_t> words_at(const std::uint16_t* pixel) {
-  std::vector<std::uint16_t> words(tag_words());
+std::vector<std::uint16_t> words_at(const std::uint16_t* pixel, std::size_t count) {
+  std::vector<std::uint16_t> words(count);
   for (std::uint16_t& word : words) {
     word = static_cast<std::uint16_t>(pixel[0] | pixel[1] << 8);
     pixel += pixels_per_word;
@@ -137,29 +148,41 @@ std::vector<std::uint16_t> words_at(const std::uint16_t* pixel) {
   return words;
 }
 
+/// The tag of an image at this number of frequencies, on which its place depends.
+std::optional<FrameTag> read_tag(const ImageU16& image, std::size_t frequencies) {
+  const Eigen::Index rows = tag_rows(static_cast<int>(image.cols()), frequencies);
+  if (image.rows() < rows) return std::nullopt;
+  const std::vector<std::uint16_t> words =
+      words_at(image.row(image.rows() - rows).data(), tag_words(frequencies));
+  if (!std::equal(magic.begin(), magic.end(), words.begin())) return std::nullopt;
+  const std::size_t checked = words.size() - checksum_words;
+  const std::uint32_t sum = words[checked] | std::uint32_t{words[checked + 1]} << 16;
+  if (sum != checksum(words, checked)) return std::nullopt;
+  const std::uint16_t version = words[magic.size()];
+  const bool fits = frequencies == 2
+                        ? version == version_of_pairs
+                        : version == latest_version && words[magic.size() + 1] == frequencies;
+  return fits ? std::optional(tag_of(words)) : std::nullopt;
+}
+
 }  // namespace
 
-int tag_rows(int width_px) {
-  const int pixels = pixels_per_word * static_cast<int>(tag_words());
+int tag_rows(int width_px, std::size_t frequencies) {
+  const int pixels = pixels_per_word * static_cast<int>(tag_words(frequencies));
   return (pixels + width_px - 1) / width_px;
 }
 
 std::optional<FrameTag> read_tag(const ImageU16& image) {
   if (image.cols() == 0) return std::nullopt;
-  const Eigen::Index rows = tag_rows(static_cast<int>(image.cols()));
-  if (image.rows() < rows) return std::nullopt;
-  const std::vector<std::uint16_t> words = words_at(image.row(image.rows() - rows).data());
-  if (!std::equal(magic.begin(), magic.end(), words.begin())) return std::nullopt;
-  const std::size_t checked = words.size() - checksum_words;
-  const std::uint32_t sum = words[checked] | std::uint32_t{words[checked + 1]} << 16;
-  if (sum != checksum(words, checked)) return std::nullopt;
-  return tag_of(words);
+  for (std::size_t frequencies = 1; frequencies <= most_frequencies; ++frequencies) {
+    if (std::optional<FrameTag> tag = read_tag(image, frequencies)) return tag;
+  }
+  return std::nullopt;
 }
 
 DeviceImageCodec::DeviceImageCodec(const SensorModel& sensor, const RangeScale& scale)
     : sensor_(sensor), scale_(scale) {
-  const double longest_m =
-      std::max(sensor.modulation.wavelength_a_m(), sensor.modulation.wavelength_b_m());
+  const double longest_m = longest_wavelength_m(sensor.modulation);
   if (!(longest_m / scale.unit_m <= most_steps)) {
     throw UsageError("ranges up to " + std::to_string(longest_m) +
                      " m do not fit into 16 bits at " + std::to_string(1000 * scale.unit_m) +
@@ -198,47 +221,51 @@ int DeviceImageCodec::count_beyond(const Eigen::Ref<const ImageU16>& range,
   return static_cast<int>((range.cast<double>() > longest).count());
 }
 
-StackedImages DeviceImageCodec::stack(const DualFrequencyFrame& frame, std::uint32_t number) const {
+StackedImages DeviceImageCodec::stack(const Frame& frame, std::uint32_t number) const {
   const Eigen::Index rows = sensor_.camera.height_px;
   const Eigen::Index cols = sensor_.camera.width_px;
-  const Eigen::Index all_rows = 2 * rows + tag_rows(sensor_.camera.width_px);
+  const Modulation& modulation = sensor_.modulation;
+  const auto frequencies = static_cast<Eigen::Index>(modulation.count());
+  const Eigen::Index all_rows =
+      frequencies * rows + tag_rows(sensor_.camera.width_px, modulation.count());
   StackedImages out{ImageU16(all_rows, cols), ImageU16::Zero(all_rows, cols)};
-  out.range.topRows(rows) = encode_range(frame.phase_a, sensor_.modulation.wavelength_a_m());
-  out.range.middleRows(rows, rows) =
-      encode_range(frame.phase_b, sensor_.modulation.wavelength_b_m());
-  if (frame.has_amplitude()) {
-    out.amplitude.topRows(rows) = encode_amplitude(frame.amplitude_a);
-    out.amplitude.middleRows(rows, rows) = encode_amplitude(frame.amplitude_b);
+  for (std::size_t f = 0; f < modulation.count(); ++f) {
+    const Eigen::Index first = static_cast<Eigen::Index>(f) * rows;
+    out.range.middleRows(first, rows) = encode_range(frame.phases[f], modulation.wavelength_m(f));
+    if (!frame.has_amplitude()) continue;
+    out.amplitude.middleRows(first, rows) = encode_amplitude(frame.amplitudes[f]);
   }
   const auto words = words_of({number, frame.timestamp_s, sensor_, scale_});
-  write_tag(out.range, words);
-  write_tag(out.amplitude, words);
+  write_tag(out.range, words, modulation.count());
+  write_tag(out.amplitude, words, modulation.count());
   return out;
 }
 
-int DeviceImageCodec::rows_of_both(const ImageU16& image) const {
+void DeviceImageCodec::check_stack(const ImageU16& image) const {
   const CameraModel& camera = sensor_.camera;
-  const int both = 2 * camera.height_px;
+  const std::size_t frequencies = sensor_.modulation.count();
+  const int all_rows = static_cast<int>(frequencies) * camera.height_px;
   const bool fits = image.cols() == camera.width_px &&
-                    (image.rows() == both || image.rows() == both + tag_rows(camera.width_px));
-  if (!fits) {
-    throw UsageError("an image of " + std::to_string(image.cols()) + " x " +
-                     std::to_string(image.rows()) + " pixels does not hold two images of " +
-                     std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px));
-  }
-  return both / 2;
+                    (image.rows() == all_rows ||
+                     image.rows() == all_rows + tag_rows(camera.width_px, frequencies));
+  if (fits) return;
+  throw UsageError("an image of " + std::to_string(image.cols()) + " x " +
+                   std::to_string(image.rows()) + " pixels does not hold " +
+                   counted(frequencies, "image") + " of " + std::to_string(camera.width_px) +
+                   " x " + std::to_string(camera.height_px));
 }
 
-DualFrequencyFrame DeviceImageCodec::unstack(const ImageU16& range,
-                                             const ImageU16& amplitude) const {
-  const Eigen::Index rows = rows_of_both(range);
-  DualFrequencyFrame frame;
-  frame.phase_a = decode_range(range.topRows(rows), sensor_.modulation.wavelength_a_m());
-  frame.phase_b = decode_range(range.middleRows(rows, rows), sensor_.modulation.wavelength_b_m());
-  if (amplitude.size() > 0) {
-    rows_of_both(amplitude);
-    frame.amplitude_a = decode_amplitude(amplitude.topRows(rows));
-    frame.amplitude_b = decode_amplitude(amplitude.middleRows(rows, rows));
+Frame DeviceImageCodec::unstack(const ImageU16& range, const ImageU16& amplitude) const {
+  check_stack(range);
+  if (amplitude.size() > 0) check_stack(amplitude);
+  const Eigen::Index rows = sensor_.camera.height_px;
+  Frame frame;
+  for (std::size_t f = 0; f < sensor_.modulation.count(); ++f) {
+    const Eigen::Index first = static_cast<Eigen::Index>(f) * rows;
+    frame.phases.push_back(
+        decode_range(range.middleRows(first, rows), sensor_.modulation.wavelength_m(f)));
+    if (amplitude.size() == 0) continue;
+    frame.amplitudes.push_back(decode_amplitude(amplitude.middleRows(first, rows)));
   }
   return frame;
 }

@@ -44,12 +44,10 @@ SensorModel untagged_sensor(const std::string& uri, const OpenNi2Connection& dev
   const auto frequency = [&](double wanted_hz, int property) {
     return wanted_hz > 0 ? wanted_hz : device.number(property).value_or(0);
   };
-  sensor.modulation.frequency_a_hz =
-      frequency(options.frequency_a_hz, openni2_property::frequency_a_hz);
-  sensor.modulation.frequency_b_hz =
-      frequency(options.frequency_b_hz, openni2_property::frequency_b_hz);
+  sensor.modulation = {frequency(options.frequency_a_hz, openni2_property::frequency_a_hz),
+                       frequency(options.frequency_b_hz, openni2_property::frequency_b_hz)};
   sensor.max_range_m = options.max_range_m;
-  if (!(sensor.modulation.frequency_a_hz > 0 && sensor.modulation.frequency_b_hz > 0)) {
+  if (!(sensor.modulation.frequencies_hz[0] > 0 && sensor.modulation.frequencies_hz[1] > 0)) {
     throw UsageError(uri + ": does not report its modulation frequencies; set " +
                      "device.frequency_a_hz and device.frequency_b_hz");
   }
@@ -94,10 +92,10 @@ class OpenNi2Source::Impl {
   void take_as_configured(const RawImage& image);
   void begin(const SensorModel& sensor, const RangeScale& scale, ImageKey key);
   std::optional<DeviceImage> understand(RawImage image);
-  std::optional<DualFrequencyFrame> add(RawImage image);
-  std::optional<DualFrequencyFrame> frame_of(JoinedImages joined);
-  DualFrequencyFrame frame_of_pair(const AlternatingPair& pair) const;
-  SourcedFrame sourced(DualFrequencyFrame frame);
+  std::optional<Frame> add(RawImage image);
+  std::optional<Frame> frame_of(JoinedImages joined);
+  Frame frame_of_pair(const AlternatingPair& pair) const;
+  SourcedFrame sourced(Frame frame);
   void check_fruit() const;
   std::string silence() const;
 
@@ -166,7 +164,7 @@ void OpenNi2Source::Impl::take_as_configured(const RawImage& image) {
   AlternatingPairer::Settings pairing;
   pairing.period_s = options.period_s > 0 ? options.period_s : 1.0 / device_.frame_rate_hz();
   const Modulation& modulation = sensor.modulation;
-  pairing.longer = modulation.wavelength_a_m() > modulation.wavelength_b_m() ? Half::a : Half::b;
+  pairing.longer = modulation.wavelength_m(0) > modulation.wavelength_m(1) ? Half::a : Half::b;
   if (options.first == FirstImage::a) pairing.first = Half::a;
   if (options.first == FirstImage::b) pairing.first = Half::b;
   alternating_.emplace(pairing);
@@ -199,47 +197,44 @@ std::optional<DeviceImage> OpenNi2Source::Impl::understand(RawImage image) {
                          image.timestamp_us, std::move(image.pixels)};
   if (!first_tag_) return understood;
   const std::optional<FrameTag> tag = read_tag(understood.pixels);
-  const bool is_alike =
-      tag && tag->scale.unit_m == first_tag_->scale.unit_m &&
-      tag->scale.is_z_depth == first_tag_->scale.is_z_depth &&
-      tag->sensor.modulation.frequency_a_hz == first_tag_->sensor.modulation.frequency_a_hz &&
-      tag->sensor.modulation.frequency_b_hz == first_tag_->sensor.modulation.frequency_b_hz &&
-      tag->sensor.camera.width_px == first_tag_->sensor.camera.width_px &&
-      tag->sensor.camera.height_px == first_tag_->sensor.camera.height_px;
+  const bool is_alike = tag && tag->scale.unit_m == first_tag_->scale.unit_m &&
+                        tag->scale.is_z_depth == first_tag_->scale.is_z_depth &&
+                        tag->sensor.modulation == first_tag_->sensor.modulation &&
+                        tag->sensor.camera.width_px == first_tag_->sensor.camera.width_px &&
+                        tag->sensor.camera.height_px == first_tag_->sensor.camera.height_px;
   if (!is_alike) return std::nullopt;
   understood.timestamp_s = tag->timestamp_s;
   understood.key = tag->number;
   return understood;
 }
 
-DualFrequencyFrame OpenNi2Source::Impl::frame_of_pair(const AlternatingPair& pair) const {
+Frame OpenNi2Source::Impl::frame_of_pair(const AlternatingPair& pair) const {
   const Modulation& modulation = sensor_.modulation;
-  DualFrequencyFrame frame;
+  Frame frame;
   frame.timestamp_s = pair.a.timestamp_s;
-  frame.phase_a = codec_->decode_range(pair.a.range, modulation.wavelength_a_m());
-  frame.phase_b = codec_->decode_range(pair.b.range, modulation.wavelength_b_m());
+  frame.phases = {codec_->decode_range(pair.a.range, modulation.wavelength_m(0)),
+                  codec_->decode_range(pair.b.range, modulation.wavelength_m(1))};
   if (pair.a.has_amplitude() && pair.b.has_amplitude()) {
-    frame.amplitude_a = decode_amplitude(pair.a.amplitude);
-    frame.amplitude_b = decode_amplitude(pair.b.amplitude);
+    frame.amplitudes = {decode_amplitude(pair.a.amplitude), decode_amplitude(pair.b.amplitude)};
   }
   return frame;
 }
 
-std::optional<DualFrequencyFrame> OpenNi2Source::Impl::frame_of(JoinedImages joined) {
+std::optional<Frame> OpenNi2Source::Impl::frame_of(JoinedImages joined) {
   if (!alternating_) {
-    DualFrequencyFrame frame = codec_->unstack(joined.range, joined.amplitude);
+    Frame frame = codec_->unstack(joined.range, joined.amplitude);
     frame.timestamp_s = joined.timestamp_s;
     return frame;
   }
   const Modulation& modulation = sensor_.modulation;
-  const double shorter_m = std::min(modulation.wavelength_a_m(), modulation.wavelength_b_m());
+  const double shorter_m = shortest_wavelength_m(modulation);
   const bool reaches_beyond =
       has_beyond(codec_->count_beyond(joined.range, shorter_m), joined.range.size());
   const auto pair = alternating_->add(std::move(joined), reaches_beyond, counts_);
   return pair ? std::optional(frame_of_pair(*pair)) : std::nullopt;
 }
 
-std::optional<DualFrequencyFrame> OpenNi2Source::Impl::add(RawImage image) {
+std::optional<Frame> OpenNi2Source::Impl::add(RawImage image) {
   const std::scoped_lock lock(mutex_);
   ++images_;
   std::optional<DeviceImage> understood = understand(std::move(image));
@@ -276,7 +271,7 @@ void OpenNi2Source::Impl::check_fruit() const {
                    "the frequencies fit the device?");
 }
 
-SourcedFrame OpenNi2Source::Impl::sourced(DualFrequencyFrame frame) {
+SourcedFrame OpenNi2Source::Impl::sourced(Frame frame) {
   SourcedFrame out;
   out.index = index_;
   out.timestamp_s = frame.timestamp_s;
@@ -297,7 +292,7 @@ std::optional<SourcedFrame> OpenNi2Source::Impl::next() {
       early_.pop_front();
     }
     if (!image) break;
-    std::optional<DualFrequencyFrame> frame = add(std::move(*image));
+    std::optional<Frame> frame = add(std::move(*image));
     if (frame) return sourced(std::move(*frame));
     check_fruit();
   }

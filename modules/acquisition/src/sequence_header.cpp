@@ -13,20 +13,37 @@ namespace tofmap {
 namespace {
 
 constexpr const char* sequence_format = "tofmap-sequence";
-constexpr int sequence_version = 1;
 
-Modulation read_modulation(const YamlSection& section) {
+/// Version 1 has two frequencies, version 2 any number.
+constexpr int version_of_pairs = 1;
+constexpr int latest_version = 2;
+
+Modulation read_frequencies(const YamlSection& section) {
+  section.allow_only({"frequencies_hz", "exposure_offsets_s"});
+  Modulation modulation;
+  modulation.frequencies_hz =
+      section.value<std::vector<double>>("frequencies_hz", "a list of hertz");
+  if (section.has("exposure_offsets_s")) {
+    modulation.exposure_offsets_s =
+        section.value<std::vector<double>>("exposure_offsets_s", "a list of seconds");
+  }
+  return modulation;
+}
+
+Modulation read_pair(const YamlSection& section) {
   section.allow_only({"frequency_a_hz", "frequency_b_hz"});
   return {section.value<double>("frequency_a_hz", "a number of hertz"),
           section.value<double>("frequency_b_hz", "a number of hertz")};
 }
 
 SensorModel read_sensor(const YamlSection& root) {
-  check_format(root, sequence_format, sequence_version);
+  const int version = check_format(root, sequence_format, latest_version);
   root.allow_only({"format", "version", "camera", "modulation", "max_range_m"});
   SensorModel sensor;
   sensor.camera = read_camera(root.section("camera"));
-  sensor.modulation = read_modulation(root.section("modulation"));
+  const YamlSection modulation = root.section("modulation");
+  sensor.modulation =
+      version == version_of_pairs ? read_pair(modulation) : read_frequencies(modulation);
   if (root.has("max_range_m")) {
     sensor.max_range_m = root.value<double>("max_range_m", "a number of metres");
     if (!(std::isfinite(sensor.max_range_m) && sensor.max_range_m > 0)) {
@@ -44,20 +61,29 @@ SensorModel read_sequence_header(const std::filesystem::path& file) {
   naming(file.string(), [&] {
     validate(sensor.camera);
     validate(sensor.modulation);
-    const double most_m = invalid_wrap_count * sensor.modulation.wavelength_a_m();
+    const double most_m = invalid_wrap_count * sensor.modulation.wavelength_m(0);
     if (sensor.max_range_m <= most_m) return;
     throw InputError("max_range_m must be at most " + std::to_string(invalid_wrap_count) +
-                     " wavelengths of A, " + shortest(most_m) + " m");
+                     " wavelengths of the first frequency, " + shortest(most_m) + " m");
   });
   return sensor;
 }
 
 std::string sequence_header_text(const SensorModel& sensor) {
-  std::string text =
-      std::string("format: ") + sequence_format + "\nversion: " + std::to_string(sequence_version) +
-      "\ncamera:\n" + camera_text(sensor.camera) +
-      "modulation:\n  frequency_a_hz: " + shortest(sensor.modulation.frequency_a_hz) +
-      "\n  frequency_b_hz: " + shortest(sensor.modulation.frequency_b_hz) + '\n';
+  const Modulation& modulation = sensor.modulation;
+  const bool is_pair = modulation.count() == 2;
+  std::string text = std::string("format: ") + sequence_format +
+                     "\nversion: " + std::to_string(is_pair ? version_of_pairs : latest_version) +
+                     "\ncamera:\n" + camera_text(sensor.camera) + "modulation:\n";
+  if (is_pair) {
+    text += "  frequency_a_hz: " + shortest(modulation.frequencies_hz[0]) +
+            "\n  frequency_b_hz: " + shortest(modulation.frequencies_hz[1]) + '\n';
+  } else {
+    text += "  frequencies_hz: " + list_text(modulation.frequencies_hz) + '\n';
+    if (!modulation.exposure_offsets_s.empty()) {
+      text += "  exposure_offsets_s: " + list_text(modulation.exposure_offsets_s) + '\n';
+    }
+  }
   if (sensor.max_range_m > 0) text += "max_range_m: " + shortest(sensor.max_range_m) + '\n';
   return text;
 }

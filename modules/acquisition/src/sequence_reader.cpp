@@ -32,29 +32,49 @@ std::filesystem::path inner_path(const std::string& text, const std::string& pla
   return path;
 }
 
-SequenceFrameFiles parse_line(const std::vector<std::string>& words, const std::string& place) {
-  constexpr const char* expected =
-      ": expected 'timestamp phase_a phase_b [amplitude_a amplitude_b]'";
-  if (words.size() < 3 || words.size() > 5) {
+/// The columns of a line, for messages: "timestamp phase_a phase_b [amplitude_a amplitude_b]".
+std::string columns(std::size_t frequencies) {
+  std::string phases;
+  std::string amplitudes;
+  for (std::size_t f = 0; f < frequencies; ++f) {
+    phases += std::string(" phase_") + frequency_letter(f);
+    amplitudes += std::string(f == 0 ? "" : " ") + "amplitude_" + frequency_letter(f);
+  }
+  return "timestamp" + phases + " [" + amplitudes + "]";
+}
+
+double parse_time(const std::string& word, const std::string& place) {
+  double time_s = 0;
+  const char* end = word.data() + word.size();
+  const auto [rest, error] = std::from_chars(word.data(), end, time_s);
+  if (error != std::errc() || rest != end || !std::isfinite(time_s)) {
+    throw InputError(place + ": the timestamp '" + word + "' is not a number of seconds");
+  }
+  return time_s;
+}
+
+SequenceFrameFiles parse_line(const std::vector<std::string>& words, std::size_t frequencies,
+                              const std::string& place) {
+  const std::string expected = ": expected '" + columns(frequencies) + "'";
+  if (words.size() < 1 + frequencies || words.size() > 1 + 2 * frequencies) {
     throw InputError(place + expected + ", got " + counted(words.size(), "column"));
   }
   SequenceFrameFiles files;
-  const char* end = words[0].data() + words[0].size();
-  const auto [rest, error] = std::from_chars(words[0].data(), end, files.timestamp_s);
-  if (error != std::errc() || rest != end || !std::isfinite(files.timestamp_s)) {
-    throw InputError(place + ": the timestamp '" + words[0] + "' is not a number of seconds");
-  }
-  if (words[1] == "-" || words[2] == "-") {
+  files.timestamp_s = parse_time(words[0], place);
+  const auto phases = words.begin() + 1;
+  const auto amplitudes = phases + static_cast<std::ptrdiff_t>(frequencies);
+  if (std::find(phases, amplitudes, "-") != amplitudes) {
     throw InputError(place + expected + "; only an amplitude may be '-'");
   }
-  for (auto word = words.begin() + 1; word != words.end(); ++word) {
-    if (*word == "-" || std::find(words.begin() + 1, word, *word) == word) continue;
+  for (auto word = phases; word != words.end(); ++word) {
+    if (*word == "-" || std::find(phases, word, *word) == word) continue;
     throw InputError(place + ": names '" + *word + "' twice; every image has a file of its own");
   }
-  files.phase_a = inner_path(words[1], place);
-  files.phase_b = inner_path(words[2], place);
-  if (words.size() > 3 && words[3] != "-") files.amplitude_a = inner_path(words[3], place);
-  if (words.size() > 4 && words[4] != "-") files.amplitude_b = inner_path(words[4], place);
+  for (auto word = phases; word != words.end(); ++word) {
+    if (*word == "-") continue;
+    (word < amplitudes ? files.phases : files.amplitudes).push_back(inner_path(*word, place));
+  }
+  if (files.amplitudes.size() < frequencies) files.amplitudes.clear();
   return files;
 }
 
@@ -71,7 +91,7 @@ void mark_times_out_of_order(std::vector<SequenceFrameFiles>& frames,
   const auto mark = [&](SequenceFrameFiles& frame, const char* relation, double other_s) {
     std::ostringstream text;
     text << std::setprecision(16) << file.string() << ": the timestamp " << frame.timestamp_s
-         << " of " << frame.phase_a.string() << " is not " << relation << ' ' << other_s;
+         << " of " << frame.phases.front().string() << " is not " << relation << ' ' << other_s;
     frame.damage = text.str();
   };
   double latest_s = -std::numeric_limits<double>::infinity();
@@ -113,7 +133,8 @@ void fill_times(std::vector<SequenceFrameFiles>& frames) {
   }
 }
 
-std::vector<SequenceFrameFiles> read_frame_list(const std::filesystem::path& file) {
+std::vector<SequenceFrameFiles> read_frame_list(const std::filesystem::path& file,
+                                                std::size_t frequencies) {
   refuse_no_file(file);
   std::ifstream in(file);
   if (!in) {
@@ -128,7 +149,8 @@ std::vector<SequenceFrameFiles> read_frame_list(const std::filesystem::path& fil
     const std::vector<std::string> words = words_of_line(line);
     if (words.empty() || words.front().starts_with('#')) continue;
     try {
-      frames.push_back(parse_line(words, file.string() + ":" + std::to_string(number)));
+      frames.push_back(
+          parse_line(words, frequencies, file.string() + ":" + std::to_string(number)));
     } catch (const InputError& error) {
       SequenceFrameFiles damaged;
       damaged.damage = error.what();
@@ -174,7 +196,7 @@ SequenceReader::SequenceReader(std::filesystem::path folder, CameraCalibration c
   constexpr double end_of_scale = 65535;  // the true amplitude may have been larger
   sensor_.saturation_amplitude = end_of_scale;
   sensor_ = calibrated(sensor_, calibration_);
-  files_ = read_frame_list(folder_ / "frames.txt");
+  files_ = read_frame_list(folder_ / "frames.txt", sensor_.modulation.count());
 }
 
 void SequenceReader::start_at(int index) { next_index_ = index; }
@@ -207,20 +229,20 @@ SourcedFrame SequenceReader::read(int index) const {
   return sourced;
 }
 
-DualFrequencyFrame SequenceReader::read_frame(int index) const {
+Frame SequenceReader::read_frame(int index) const {
   const SequenceFrameFiles& files = files_at(index);
-  DualFrequencyFrame frame;
+  Frame frame;
   frame.index = index;
   frame.timestamp_s = files.timestamp_s;
-  frame.phase_a = phase_from_pixels(read_sized(folder_ / files.phase_a, sensor_.camera));
-  frame.phase_b = phase_from_pixels(read_sized(folder_ / files.phase_b, sensor_.camera));
+  for (const std::filesystem::path& file : files.phases) {
+    frame.phases.push_back(phase_from_pixels(read_sized(folder_ / file, sensor_.camera)));
+  }
   calibrate(frame, sensor_.modulation, calibration_);
-  // An amplitude of one frequency alone is ignored: it does not tell the noise of the other phase.
-  if (files.amplitude_a.empty() || files.amplitude_b.empty()) return frame;
-  frame.amplitude_a = read_sized(folder_ / files.amplitude_a, sensor_.camera).cast<float>();
-  frame.amplitude_b = read_sized(folder_ / files.amplitude_b, sensor_.camera).cast<float>();
-  frame.phase_a = (frame.amplitude_a == 0).select(nan, frame.phase_a);
-  frame.phase_b = (frame.amplitude_b == 0).select(nan, frame.phase_b);
+  for (std::size_t f = 0; f < files.amplitudes.size(); ++f) {
+    frame.amplitudes.push_back(
+        read_sized(folder_ / files.amplitudes[f], sensor_.camera).cast<float>());
+    frame.phases[f] = (frame.amplitudes[f] == 0).select(nan, frame.phases[f]);
+  }
   return frame;
 }
 
@@ -232,11 +254,13 @@ Trajectory SequenceReader::ground_truth() const {
 }
 
 std::optional<ImageF> SequenceReader::range_truth(int index) const {
-  const std::filesystem::path name = files_at(index).phase_a.filename();
+  const SequenceFrameFiles& files = files_at(index);
+  if (files.phases.empty()) return std::nullopt;
+  const std::filesystem::path name = files.phases.front().filename();
   const std::filesystem::path file = folder_ / "range_truth" / name;
   std::error_code unknown;
   const bool is_missing = !std::filesystem::exists(file, unknown) && !unknown;
-  if (name.empty() || is_missing) return std::nullopt;
+  if (is_missing) return std::nullopt;
   const ImageU16 range_mm = read_sized(file, sensor_.camera);
   return (range_mm == 0).select(nan, range_mm.cast<float>() / 1000.0F);
 }

@@ -13,6 +13,7 @@
 #include <tofmap/acquisition/png_image.hpp>
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
 
 namespace tofmap {
 namespace {
@@ -89,10 +90,15 @@ std::string image_name(int index) {
   return name;
 }
 
+/// The kind of an image, which is also the name of its folder: "phase_a".
+std::string image_kind(const char* of, std::size_t frequency) {
+  return std::string(of) + frequency_letter(frequency);
+}
+
 template <class T>
-void check_size(const Image<T>& image, const CameraModel& camera, const char* what) {
+void check_size(const Image<T>& image, const CameraModel& camera, const std::string& what) {
   if (image.cols() == camera.width_px && image.rows() == camera.height_px) return;
-  throw UsageError(std::string(what) + " is " + std::to_string(image.cols()) + " x " +
+  throw UsageError(what + " is " + std::to_string(image.cols()) + " x " +
                    std::to_string(image.rows()) + " pixels; the camera has " +
                    std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px));
 }
@@ -111,7 +117,8 @@ SequenceWriter::SequenceWriter(std::filesystem::path folder, const SensorModel& 
   validate(sensor.camera);
   validate(sensor.modulation);
   make_empty_folder(folder_);
-  for (const char* name : {"phase_a", "phase_b"}) make_folder(folder_ / name);
+  const std::size_t frequencies = sensor.modulation.count();
+  for (std::size_t f = 0; f < frequencies; ++f) make_folder(folder_ / image_kind("phase_", f));
 
   const std::filesystem::path header = folder_ / "sequence.yaml";
   std::ofstream out(header);
@@ -120,12 +127,14 @@ SequenceWriter::SequenceWriter(std::filesystem::path folder, const SensorModel& 
   if (!out) fail_to_write(header);
 
   frames_.open(folder_ / "frames.txt");
-  frames_ << "# timestamp phase_a phase_b amplitude_a amplitude_b\n" << std::flush;
+  frames_ << "# timestamp";
+  for (std::size_t f = 0; f < frequencies; ++f) frames_ << ' ' << image_kind("phase_", f);
+  for (std::size_t f = 0; f < frequencies; ++f) frames_ << ' ' << image_kind("amplitude_", f);
+  frames_ << '\n' << std::flush;
   if (!frames_) fail_to_write(folder_ / "frames.txt");
 }
 
-void SequenceWriter::add(const DualFrequencyFrame& frame,
-                         const std::optional<Pose>& world_from_camera,
+void SequenceWriter::add(const Frame& frame, const std::optional<Pose>& world_from_camera,
                          const std::optional<ImageF>& range_truth_m,
                          const std::optional<ImageU8>& label_truth,
                          const std::optional<ImageU8>& moving_truth) {
@@ -136,23 +145,30 @@ void SequenceWriter::add(const DualFrequencyFrame& frame,
     throw UsageError("frame timestamps must increase: " + std::to_string(frame.timestamp_s) +
                      " s follows " + std::to_string(last_timestamp_s_) + " s");
   }
+  if (frame.frequencies() != sensor_.modulation.count()) {
+    throw UsageError("a frame has " + counted(frame.frequencies(), "frequency", "frequencies") +
+                     "; the sequence has " + std::to_string(sensor_.modulation.count()));
+  }
   const std::string name = image_name(count_);
   std::ostringstream line;
   line << std::fixed << std::setprecision(6) << timestamp_s;
-  const auto write = [&](const char* kind, const auto& image, const auto& pixels) {
+  const auto write = [&](const std::string& kind, const auto& image, const auto& pixels) {
     check_size(image, sensor_.camera, kind);
     make_folder(folder_ / kind);
     write_png(folder_ / kind / name, pixels);
     line << ' ' << kind << '/' << name;
   };
-  write("phase_a", frame.phase_a, phase_pixels(frame.phase_a));
-  write("phase_b", frame.phase_b, phase_pixels(frame.phase_b));
-  if (frame.has_amplitude()) {
-    const auto pixels = [&](const ImageF& a) { return amplitude_pixels(a, amplitude_scale_); };
-    write("amplitude_a", frame.amplitude_a, pixels(frame.amplitude_a));
-    write("amplitude_b", frame.amplitude_b, pixels(frame.amplitude_b));
-  } else {
-    line << " - -";
+  const std::size_t frequencies = sensor_.modulation.count();
+  for (std::size_t f = 0; f < frequencies; ++f) {
+    write(image_kind("phase_", f), frame.phases[f], phase_pixels(frame.phases[f]));
+  }
+  for (std::size_t f = 0; f < frequencies; ++f) {
+    if (!frame.has_amplitude()) {
+      line << " -";
+      continue;
+    }
+    const ImageF& amplitude = frame.amplitudes[f];
+    write(image_kind("amplitude_", f), amplitude, amplitude_pixels(amplitude, amplitude_scale_));
   }
   const std::string listed = line.str();
   if (range_truth_m) write("range_truth", *range_truth_m, range_pixels(*range_truth_m));

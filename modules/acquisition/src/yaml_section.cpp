@@ -23,16 +23,18 @@ YamlSection load_yaml(const std::filesystem::path& file, const std::string& hint
   }
 }
 
-void check_format(const YamlSection& root, const std::string& format, int version) {
+int check_format(const YamlSection& root, const std::string& format, int latest_version) {
   const auto given = root.value<std::string>("format", format.c_str());
   if (given != format) {
     root.fail("format", "is '" + given + "'; only '" + format + "' can be read");
   }
-  const int given_version = root.value<int>("version", "a whole number");
-  if (given_version != version) {
-    root.fail("version", "is " + std::to_string(given_version) + "; this program reads version " +
-                             std::to_string(version));
+  const auto version = root.value<int>("version", "a whole number");
+  if (version < 1 || version > latest_version) {
+    const std::string latest = std::to_string(latest_version);
+    root.fail("version", "is " + std::to_string(version) + "; this program reads version" +
+                             (latest_version == 1 ? " 1" : "s 1 to " + latest));
   }
+  return version;
 }
 
 CameraModel read_camera(const YamlSection& section) {
@@ -66,6 +68,12 @@ std::string camera_text(const CameraModel& camera) {
   }
   out << "]  # k1 k2 p1 p2 k3\n";
   return out.str();
+}
+
+std::string list_text(const std::vector<double>& numbers) {
+  std::string text;
+  for (const double number : numbers) text += (text.empty() ? "" : ", ") + shortest(number);
+  return "[" + text + "]";
 }
 
 std::string shortest(double number) {

@@ -126,8 +126,9 @@ class YamlSection {
 /// a YAML map. `hint` ends the message about a file that cannot be read.
 YamlSection load_yaml(const std::filesystem::path& file, const std::string& hint);
 
-/// Throws InputError unless the keys `format` and `version` have these values.
-void check_format(const YamlSection& root, const std::string& format, int version);
+/// The value of the key `version`. Throws InputError unless the key `format` has this value and
+/// `version` is 1 … latest_version.
+int check_format(const YamlSection& root, const std::string& format, int latest_version);
 
 /// Reads the keys of a camera. Does not check that the camera is plausible; validate() does.
 CameraModel read_camera(const YamlSection& section);
@@ -137,5 +138,8 @@ std::string camera_text(const CameraModel& camera);
 
 /// The number with the fewest digits that read back as the same bits.
 std::string shortest(double number);
+
+/// Numbers as a YAML list: "[1.5, 2]".
+std::string list_text(const std::vector<double>& numbers);
 
 }  // namespace tofmap

@@ -206,10 +206,9 @@ FrequencyFit fit_frequency(std::span<const RangeSample> all, double wavelength_m
 
 }  // namespace
 
-void append_range_samples(const DualFrequencyFrame& frame, const SensorModel& sensor,
-                          const ImageF& reference_m, int first, int stride,
-                          std::vector<RangeSample>& samples) {
-  if (reference_m.rows() != frame.phase_a.rows() || reference_m.cols() != frame.phase_a.cols()) {
+void append_range_samples(const Frame& frame, const SensorModel& sensor, const ImageF& reference_m,
+                          std::size_t b, int first, int stride, std::vector<RangeSample>& samples) {
+  if (!same_size(reference_m, frame.phases[0])) {
     throw UsageError("append_range_samples: frame and reference ranges differ in size");
   }
   if (first < 0 || stride < 1) {
@@ -222,22 +221,23 @@ void append_range_samples(const DualFrequencyFrame& frame, const SensorModel& se
   const Modulation& modulation = sensor.modulation;
   const auto is_saturated = [&](Eigen::Index i) {
     return frame.has_amplitude() && sensor.saturation_amplitude > 0 &&
-           std::max(frame.amplitude_a.data()[i], frame.amplitude_b.data()[i]) >=
+           std::max(frame.amplitudes[0].data()[i], frame.amplitudes[b].data()[i]) >=
                static_cast<float>(sensor.saturation_amplitude);
   };
   for (Eigen::Index i = first; i < reference_m.size(); i += stride) {
-    const float a = frame.phase_a.data()[i];
-    const float b = frame.phase_b.data()[i];
+    const float phase_a = frame.phases[0].data()[i];
+    const float phase_b = frame.phases[b].data()[i];
     const float near_m = reference_m.data()[i];
-    if (std::isnan(a) || std::isnan(b) || std::isnan(near_m) || is_saturated(i)) continue;
-    RangeSample sample{unwrapped(a, modulation.wavelength_a_m(), near_m),
-                       unwrapped(b, modulation.wavelength_b_m(), near_m), near_m};
+    if (std::isnan(phase_a) || std::isnan(phase_b) || std::isnan(near_m) || is_saturated(i))
+      continue;
+    RangeSample sample{unwrapped(phase_a, modulation.wavelength_m(0), near_m),
+                       unwrapped(phase_b, modulation.wavelength_m(b), near_m), near_m};
     if (frame.has_amplitude()) {
       const auto noise = [](double wavelength_m, float amplitude) {
         return static_cast<float>(wavelength_m / std::max(1.0, double{amplitude}));
       };
-      sample.noise_a = noise(modulation.wavelength_a_m(), frame.amplitude_a.data()[i]);
-      sample.noise_b = noise(modulation.wavelength_b_m(), frame.amplitude_b.data()[i]);
+      sample.noise_a = noise(modulation.wavelength_m(0), frame.amplitudes[0].data()[i]);
+      sample.noise_b = noise(modulation.wavelength_m(b), frame.amplitudes[b].data()[i]);
     }
     samples.push_back(sample);
   }
@@ -245,7 +245,7 @@ void append_range_samples(const DualFrequencyFrame& frame, const SensorModel& se
 
 double agreement_with_references(std::span<const RangeSample> samples,
                                  const Modulation& modulation) {
-  const double rad_per_m = 2 * std::numbers::pi / modulation.wavelength_a_m();
+  const double rad_per_m = 2 * std::numbers::pi / modulation.wavelength_m(0);
   std::complex<double> sum = 0;
   for (const RangeSample& sample : samples) {
     sum += std::polar(1.0, rad_per_m * (double{sample.a_m} - double{sample.reference_m}));
@@ -255,9 +255,9 @@ double agreement_with_references(std::span<const RangeSample> samples,
 
 PhaseErrorFit fit_to_references(std::span<const RangeSample> samples, const Modulation& modulation,
                                 const PhaseErrorFitOptions& options) {
-  const FrequencyFit a = fit_frequency(samples, modulation.wavelength_a_m(), &RangeSample::a_m,
+  const FrequencyFit a = fit_frequency(samples, modulation.wavelength_m(0), &RangeSample::a_m,
                                        &RangeSample::noise_a, options);
-  const FrequencyFit b = fit_frequency(samples, modulation.wavelength_b_m(), &RangeSample::b_m,
+  const FrequencyFit b = fit_frequency(samples, modulation.wavelength_m(1), &RangeSample::b_m,
                                        &RangeSample::noise_b, options);
   return {.error_a = a.error,
           .error_b = b.error,
@@ -270,8 +270,8 @@ PhaseErrorFit fit_to_references(std::span<const RangeSample> samples, const Modu
 
 PhaseErrorFit fit_to_residual(std::span<const RangeSample> all, const Modulation& modulation,
                               const PhaseErrorFitOptions& options) {
-  const double a_m = modulation.wavelength_a_m();
-  const double b_m = modulation.wavelength_b_m();
+  const double a_m = modulation.wavelength_m(0);
+  const double b_m = modulation.wavelength_m(1);
   const SampleValue difference{
       [](const RangeSample& sample) { return double{sample.a_m - sample.b_m}; },
       [](const RangeSample& sample) {

@@ -29,7 +29,11 @@ RecordingSamples collect_samples(const SequenceReader& recording, const Referenc
   }
   const int stride = pixel_stride(recording, every_frame);
   RecordingSamples collected;
-  DualFrequencyFrame last;
+  const std::size_t frequencies = recording.sensor().modulation.count();
+  for (std::size_t b = 1; b < frequencies; ++b) collected.others.push_back(b);
+  if (collected.others.empty()) collected.others.push_back(0);
+  collected.samples.resize(collected.others.size());
+  Frame last;
   for (int i = 0; i < *recording.frame_count(); i += every_frame) {
     if (keep_going && !keep_going(i)) break;
     const SourcedFrame sourced = recording.read(i);
@@ -48,8 +52,10 @@ RecordingSamples collect_samples(const SequenceReader& recording, const Referenc
     const std::optional<ImageF> reference_m = reference(*sourced.frame);
     if (!reference_m) continue;
     // The first pixel differs from frame to frame, so that all pixels of the camera are used.
-    append_range_samples(*sourced.frame, recording.sensor(), *reference_m,
-                         (collected.read - 1) % stride, stride, collected.samples);
+    for (std::size_t b = 0; b < collected.others.size(); ++b) {
+      append_range_samples(*sourced.frame, recording.sensor(), *reference_m, collected.others[b],
+                           (collected.read - 1) % stride, stride, collected.samples[b]);
+    }
     ++collected.frames;
     if (collected.first_frames.size() < most_first_frames)
       collected.first_frames.push_back(*sourced.frame);

@@ -35,10 +35,10 @@ struct Beam {
   double phase_cycles;
 };
 
-std::vector<Beam> beams_of(const DualFrequencyFrame& frame, const PixelRays& rays) {
+std::vector<Beam> beams_of(const Frame& frame, const PixelRays& rays) {
   std::vector<Beam> beams;
-  for (Eigen::Index i = 0; i < frame.phase_a.size(); ++i) {
-    const float phase = frame.phase_a.data()[i];
+  for (Eigen::Index i = 0; i < frame.phases[0].size(); ++i) {
+    const float phase = frame.phases[0].data()[i];
     if (std::isnan(phase)) continue;
     beams.push_back({{rays.x.data()[i], rays.y.data()[i], rays.z.data()[i]}, phase});
   }
@@ -122,11 +122,10 @@ void check_wall_distances(const WallDistances& distances_m, const std::filesyste
                   recording.folder().string(), frames));
 }
 
-std::optional<ImageF> wall_range(const DualFrequencyFrame& frame, const SensorModel& sensor,
-                                 double distance_m) {
+std::optional<ImageF> wall_range(const Frame& frame, const SensorModel& sensor, double distance_m) {
   const PixelRays rays = pixel_rays(sensor.camera);
   const std::vector<Beam> beams = beams_of(frame, rays);
-  const double wavelength_m = sensor.modulation.wavelength_a_m();
+  const double wavelength_m = sensor.modulation.wavelength_m(0);
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   double reach_m = first_reach * wavelength_m;
   std::size_t on_wall = 0;
@@ -155,7 +154,7 @@ std::optional<ImageF> wall_range(const DualFrequencyFrame& frame, const SensorMo
   if (static_cast<double>(on_wall) < least_share * static_cast<double>(beams.size())) {
     return std::nullopt;
   }
-  ImageF range_m(frame.phase_a.rows(), frame.phase_a.cols());
+  ImageF range_m(frame.phases[0].rows(), frame.phases[0].cols());
   for (Eigen::Index i = 0; i < range_m.size(); ++i) {
     const Eigen::Vector3d ray(rays.x.data()[i], rays.y.data()[i], rays.z.data()[i]);
     range_m.data()[i] = static_cast<float>(range_to(normal, distance_m, ray));

@@ -29,6 +29,20 @@ std::optional<Number> parse_number(const std::string& text) {
   return number;
 }
 
+/// The numbers of "80e6, 16e6" or "[80e6, 16e6]"; empty if something else is among them.
+std::optional<std::vector<double>> parse_numbers(std::string text) {
+  if (text.starts_with('[') && text.ends_with(']')) text = text.substr(1, text.size() - 2);
+  std::ranges::replace(text, ',', ' ');
+  std::vector<double> numbers;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const auto number = parse_number<double>(word);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
 std::optional<bool> parse_bool(const std::string& text) {
   if (text == "true") return true;
   if (text == "false") return false;
@@ -40,6 +54,13 @@ std::string number_text(double number) {
   char buffer[32];
   const auto result = std::to_chars(buffer, buffer + sizeof buffer, number);
   return {buffer, result.ptr};
+}
+
+/// Numbers as a YAML list: "[80000000, 16000000]".
+std::string numbers_text(const std::vector<double>& numbers) {
+  std::string text;
+  for (const double number : numbers) text += (text.empty() ? "" : ", ") + number_text(number);
+  return "[" + text + "]";
 }
 
 /// Text as a YAML scalar, in quotes where it needs them.
@@ -60,6 +81,9 @@ std::string OptionTable::Entry::allowed() const {
   if (std::holds_alternative<bool*>(value)) return "true | false";
   if (std::holds_alternative<std::string*>(value)) return "any text";
   if (const auto* named = std::get_if<EnumReference>(&value)) return named->allowed;
+  if (std::holds_alternative<std::vector<double>*>(value)) {
+    return "list of numbers, " + range_text(min, max);
+  }
   const bool whole = std::holds_alternative<int*>(value);
   return (whole ? "whole number, " : "") + range_text(min, max);
 }
@@ -68,6 +92,7 @@ std::string OptionTable::Entry::text() const {
   if (const auto* flag = std::get_if<bool*>(&value)) return **flag ? "true" : "false";
   if (const auto* whole = std::get_if<int*>(&value)) return std::to_string(**whole);
   if (const auto* number = std::get_if<double*>(&value)) return number_text(**number);
+  if (const auto* list = std::get_if<std::vector<double>*>(&value)) return numbers_text(**list);
   if (const auto* named = std::get_if<EnumReference>(&value)) return yaml_text(named->text());
   return yaml_text(*std::get<std::string*>(value));
 }
@@ -76,6 +101,9 @@ void OptionTable::Entry::set(const std::string& value_text) {
   const auto refuse = [&] {
     throw UsageError("option " + key() + ": '" + value_text +
                      "' is not allowed; allowed: " + allowed() + (unit.empty() ? "" : " " + unit));
+  };
+  const auto fits = [&](double number) {
+    return std::isfinite(number) && number >= min && number <= max;
   };
   if (auto* flag = std::get_if<bool*>(&value)) {
     const auto parsed = parse_bool(value_text);
@@ -87,8 +115,12 @@ void OptionTable::Entry::set(const std::string& value_text) {
     **whole = *parsed;
   } else if (auto* number = std::get_if<double*>(&value)) {
     const auto parsed = parse_number<double>(value_text);
-    if (!parsed || !std::isfinite(*parsed) || *parsed < min || *parsed > max) refuse();
+    if (!parsed || !fits(*parsed)) refuse();
     **number = *parsed;
+  } else if (auto* list = std::get_if<std::vector<double>*>(&value)) {
+    auto parsed = parse_numbers(value_text);
+    if (!parsed || !std::ranges::all_of(*parsed, fits)) refuse();
+    **list = std::move(*parsed);
   } else if (auto* named = std::get_if<EnumReference>(&value)) {
     if (!named->set(value_text)) refuse();
   } else {
@@ -131,12 +163,27 @@ bool OptionTable::has_group(const std::string& group) const {
 }
 
 void OptionTable::load(const std::filesystem::path& file, const OptionTable& others) {
-  const auto scalar = [&](const std::string& key, const YAML::Node& node) {
-    if (!node.IsScalar()) {
+  const auto is_list = [&](const std::string& key) {
+    return std::ranges::any_of(entries_, [&](const Entry& entry) {
+      return entry.key() == key && std::holds_alternative<std::vector<double>*>(entry.value);
+    });
+  };
+  const auto text_of = [&](const std::string& key, const YAML::Node& node) {
+    if (node.IsScalar()) return node.Scalar();
+    if (!node.IsSequence() || !is_list(key)) {
       throw UsageError(file.string() + ": option " + key + " must be a single value");
     }
+    std::string text;
+    for (const YAML::Node& one : node) {
+      if (!one.IsScalar()) throw UsageError(file.string() + ": option " + key + " must be a list");
+      text += (text.empty() ? "" : ", ") + one.Scalar();
+    }
+    return text;
+  };
+  const auto scalar = [&](const std::string& key, const YAML::Node& node) {
+    const std::string text = text_of(key, node);
     try {
-      set(key, node.Scalar());
+      set(key, text);
     } catch (const UsageError& error) {
       throw UsageError(file.string() + ":" + std::to_string(node.Mark().line + 1) + ": " +
                        error.what());

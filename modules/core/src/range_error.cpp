@@ -40,11 +40,14 @@ ImageF phase_sigma_cycles(const ImageF& phase, const ImageF& amplitude, double s
   return sigma;
 }
 
-PhaseSigma::PhaseSigma(const DualFrequencyFrame& frame, const PhaseNoise& noise,
-                       const ImageF& ambient)
-    : a_cycles(phase_sigma_cycles(frame.phase_a, frame.amplitude_a, noise.scale_a,
-                                  noise.quantisation_a_cycles, ambient)),
-      b_cycles(phase_sigma_cycles(frame.phase_b, frame.amplitude_b, noise.scale_b,
-                                  noise.quantisation_b_cycles, ambient)) {}
+PhaseSigma::PhaseSigma(const Frame& frame, const std::vector<PhaseNoise>& noise,
+                       const ImageF& ambient) {
+  const ImageF none;
+  for (std::size_t f = 0; f < frame.frequencies(); ++f) {
+    cycles.push_back(phase_sigma_cycles(frame.phases[f],
+                                        frame.has_amplitude() ? frame.amplitudes[f] : none,
+                                        noise[f].scale, noise[f].quantisation_cycles, ambient));
+  }
+}
 
 }  // namespace tofmap

@@ -3,6 +3,7 @@
 
 #include "tofmap/diagnostics/axial_depth.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <tofmap/core/camera.hpp>
@@ -42,19 +43,16 @@ struct EndOfCycle {
 
 }  // namespace
 
-bool looks_like_axial_depth(const std::vector<DualFrequencyFrame>& frames,
-                            const SensorModel& sensor) {
+bool looks_like_axial_depth(const std::vector<Frame>& frames, const SensorModel& sensor) {
   const ImageF cosine = pixel_rays(sensor.camera).z;
-  EndOfCycle end_a;
-  EndOfCycle end_b;
-  for (const DualFrequencyFrame& frame : frames) {
-    end_a.add(frame.phase_a, cosine);
-    end_b.add(frame.phase_b, cosine);
+  std::vector<EndOfCycle> ends(sensor.modulation.count());
+  for (const Frame& frame : frames) {
+    for (std::size_t f = 0; f < frame.frequencies(); ++f) ends[f].add(frame.phases[f], cosine);
   }
-  return end_a.is_there() && end_b.is_there();
+  return std::ranges::all_of(ends, &EndOfCycle::is_there);
 }
 
-std::optional<std::string> axial_depth_warning(const std::vector<DualFrequencyFrame>& frames,
+std::optional<std::string> axial_depth_warning(const std::vector<Frame>& frames,
                                                const SensorModel& sensor) {
   if (!looks_like_axial_depth(frames, sensor)) return std::nullopt;
   return "towards the border of the image, ranges wrap where depth along the optical axis would; "

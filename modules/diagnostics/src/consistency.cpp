@@ -27,19 +27,19 @@ double percent(double part, double whole) { return whole > 0 ? 100 * part / whol
 /// A phase difference, wrapped to −1/2 … 1/2 cycles.
 double nearest_cycle(double cycles) { return cycles - std::round(cycles); }
 
-/// The inter-frequency residual of each pixel at its wrap count, in cycles of B. NaN where the
-/// range is invalid or a phase is missing.
-ImageF phase_b_residuals(const RangedFrame& ranged, const Modulation& modulation) {
-  const double ratio = modulation.wavelength_a_m() / modulation.wavelength_b_m();
+/// The inter-frequency residual of each pixel at its wrap count, in cycles of
+/// frequency `b`. NaN where the range is invalid or a phase is missing.
+ImageF phase_residuals(const RangedFrame& ranged, const Modulation& modulation, std::size_t b) {
+  const double ratio = modulation.wavelength_m(0) / modulation.wavelength_m(b);
   const RangeImage& image = *ranged.image;
-  if (!same_size(image.range_m, ranged.frame->phase_a) ||
-      !same_size(image.range_m, ranged.frame->phase_b)) {
+  if (!same_size(image.range_m, ranged.frame->phases[0]) ||
+      !same_size(image.range_m, ranged.frame->phases[b])) {
     throw UsageError("consistency: ranges and phases differ in size");
   }
   ImageF residuals = ImageF::Constant(image.rows(), image.cols(), static_cast<float>(nan));
   for (Eigen::Index i = 0; i < residuals.size(); ++i) {
-    const double phase_a = ranged.frame->phase_a.data()[i];
-    const double phase_b = ranged.frame->phase_b.data()[i];
+    const double phase_a = ranged.frame->phases[0].data()[i];
+    const double phase_b = ranged.frame->phases[b].data()[i];
     if (image.reason.data()[i] != 0 || std::isnan(phase_a) || std::isnan(phase_b)) continue;
     const double cycles_a = phase_a + image.wrap_count.data()[i];
     residuals.data()[i] = frequency_residual_cycles(
@@ -93,11 +93,11 @@ LocalMean mean_around(const ImageF& residuals, const ImageU8& counts, Eigen::Ind
 
 /// The smallest change of the residual that another wrap count of A makes, in cycles of B. Only
 /// wrap counts up to three away are considered. NaN if none of them changes the residual.
-double smallest_step_cycles(const Modulation& modulation) {
+double smallest_step_cycles(const Modulation& modulation, std::size_t b) {
   constexpr int counts = 4;
   const double step_cycles =
-      residual_step_m(modulation.wavelength_a_m(), modulation.wavelength_b_m(), counts) /
-      modulation.wavelength_b_m();
+      residual_step_m(modulation.wavelength_m(0), modulation.wavelength_m(b), counts) /
+      modulation.wavelength_m(b);
   return step_cycles < 1 ? step_cycles : nan;
 }
 
@@ -174,13 +174,15 @@ std::optional<double> thickness_at(const MapCloud& map, const Tree& tree, int in
 ResidualAgreement residual_agreement(const std::vector<RangedFrame>& frames,
                                      const Modulation& modulation) {
   constexpr double least_telling_percent = 1;  // a few patches do not speak for a recording
-  const double step_cycles = smallest_step_cycles(modulation);
   double square_sum = 0;
   double misfits = 0;
   double telling = 0;
   double pixels = 0;
-  for (const RangedFrame& ranged : frames) {
-    const ImageF residuals = phase_b_residuals(ranged, modulation);
+  for (std::size_t i = 0; i < frames.size() * (modulation.count() - 1); ++i) {
+    const RangedFrame& ranged = frames[i / (modulation.count() - 1)];
+    const std::size_t b = 1 + i % (modulation.count() - 1);
+    const double step_cycles = smallest_step_cycles(modulation, b);
+    const ImageF residuals = phase_residuals(ranged, modulation, b);
     for (Eigen::Index row = 0; row < residuals.rows(); ++row) {
       for (Eigen::Index col = 0; col < residuals.cols(); ++col) {
         const double residual = residuals(row, col);
@@ -278,7 +280,7 @@ std::vector<std::string> warnings_about(const Consistency& consistency) {
   }
   if (consistency.residual_misfit_percent > most_misfit_percent) {
     warnings.push_back(
-        fmt::format("{:.0f} % of the pixels, of those with little noise, would fit both "
+        fmt::format("{:.0f} % of the pixels, of those with little noise, would fit all "
                     "frequencies better with another wrap count: wrap counts are wrong, or there "
                     "is an offset between the frequencies (see 'tofmap info')",
                     consistency.residual_misfit_percent));

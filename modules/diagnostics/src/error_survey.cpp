@@ -27,15 +27,20 @@ double millimetres(double metres) { return 1000 * metres; }
 }  // namespace
 
 void ErrorTally::add(const MeasuredFrame& frame) {
-  camera_ = frame.errors.camera;
-  if (frame.errors.pixels > 0) {
+  cameras_.clear();
+  double flow_px = 0;
+  int pixels = 0;
+  for (const FrameErrors& errors : frame.errors) {
+    cameras_.push_back(errors.camera);
+    flow_px = std::max(flow_px, errors.flow_px);
+    pixels = std::max(pixels, errors.pixels);
+  }
+  if (pixels > 0) {
     ++frames_;
     // No camera turns by a quarter of its view between two exposures: images do not belong
     // together.
-    const double most_flow_px = 0.25 * static_cast<double>(frame.returns.phase_a.cols());
-    if (frame.errors.flow_px < most_flow_px) {
-      flows_px_.push_back(static_cast<float>(frame.errors.flow_px));
-    }
+    const double most_flow_px = 0.25 * static_cast<double>(frame.returns.cols());
+    if (flow_px < most_flow_px) flows_px_.push_back(static_cast<float>(flow_px));
   }
   pixels_ += static_cast<double>((frame.valid != 0).count());
   has_amplitudes_ = frame.returns.has_amplitude();
@@ -49,7 +54,7 @@ void ErrorTally::add(const MeasuredFrame& frame) {
 
 ErrorSurvey ErrorTally::survey() const {
   ErrorSurvey survey;
-  survey.camera = camera_;
+  survey.cameras = cameras_;
   survey.has_amplitudes = has_amplitudes_;
   survey.frames = frames_;
   std::vector<float> flows_px = flows_px_;
@@ -59,50 +64,52 @@ ErrorSurvey ErrorTally::survey() const {
   return survey;
 }
 
-ErrorSurvey survey_errors(const std::vector<DualFrequencyFrame>& frames, const SensorModel& sensor,
+ErrorSurvey survey_errors(const std::vector<Frame>& frames, const SensorModel& sensor,
                           const UnwrapOptions& options) {
   FrameMeasurer measurer(sensor, options);
   ErrorTally tally;
-  for (const DualFrequencyFrame& frame : frames) tally.add(measurer.measure(frame));
+  for (const Frame& frame : frames) tally.add(measurer.measure(frame));
   return tally.survey();
 }
 
 std::vector<std::string> remarks_about(const ErrorSurvey& survey) {
   std::vector<std::string> remarks;
-  if (survey.camera.frames > 0) {
-    const double offset_m = survey.camera.offset_m();
-    const double periodic_m = survey.camera.periodic_rms_m;
-    const double per_decade_m = survey.camera.per_decade_m();
-    if (std::abs(offset_m) >= least_offset_m) {
+  for (std::size_t f = 1; f < survey.cameras.size(); ++f) {
+    const CameraErrors& camera = survey.cameras[f];
+    const std::string b = frequency_name(f);
+    if (camera.frames == 0) continue;
+    if (std::abs(camera.offset_m()) >= least_offset_m) {
       remarks.push_back(fmt::format(
-          "offset between the frequencies: A measures {:.0f} mm {} than B; unwrapping compensates "
-          "for it, but ranges keep the error of A or B: 'tofmap calibrate' with known ranges finds "
+          "offset between the frequencies: A measures {:.0f} mm {} than {}; unwrapping compensates "
+          "for it, but ranges keep the error of A or {}: 'tofmap calibrate' with known ranges "
+          "finds "
           "out which",
-          millimetres(std::abs(offset_m)), offset_m < 0 ? "less" : "more"));
+          millimetres(std::abs(camera.offset_m())), camera.offset_m() < 0 ? "less" : "more", b, b));
     }
-    if (periodic_m >= least_periodic_m) {
+    if (camera.periodic_rms_m >= least_periodic_m) {
       remarks.push_back(fmt::format(
-          "the ranges of A and B differ by a periodic error of {:.0f} mm (RMS); unwrapping "
+          "the ranges of A and {} differ by a periodic error of {:.0f} mm (RMS); unwrapping "
           "compensates for it, but ranges keep it: 'tofmap calibrate' finds and corrects it",
-          millimetres(periodic_m)));
+          b, millimetres(camera.periodic_rms_m)));
     }
+    const double per_decade_m = camera.per_decade_m();
     if (std::abs(per_decade_m) >= least_per_decade_m) {
       remarks.push_back(fmt::format(
-          "A measures {:.0f} mm {} than B for every factor of ten in amplitude; unwrapping "
+          "A measures {:.0f} mm {} than {} for every factor of ten in amplitude; unwrapping "
           "compensates for it",
-          millimetres(std::abs(per_decade_m)), per_decade_m < 0 ? "less" : "more"));
+          millimetres(std::abs(per_decade_m)), per_decade_m < 0 ? "less" : "more", b));
     }
-    if (survey.camera.systematic_m >= least_systematic_m) {
+    if (camera.systematic_m >= least_systematic_m) {
       remarks.push_back(fmt::format(
-          "the ranges of A and B differ by {:.0f} mm (RMS) beyond noise, offset and periodic "
+          "the ranges of A and {} differ by {:.0f} mm (RMS) beyond noise, offset and periodic "
           "errors; unwrapping gives them less confidence",
-          millimetres(survey.camera.systematic_m)));
+          b, millimetres(camera.systematic_m)));
     }
   }
   if (survey.flow_px >= least_flow_px) {
     remarks.push_back(fmt::format(
-        "the image moves by {:.1f} pixels (median) from A's exposure to B's; unwrapping moves B's "
-        "pixels back to where A saw them",
+        "the image moves by {:.1f} pixels (median) from the first exposure of a frame to the last; "
+        "unwrapping moves pixels back to where A saw them",
         survey.flow_px));
   }
   if (survey.ambient_share >= least_ambient_share) {
@@ -121,8 +128,11 @@ std::vector<std::string> warnings_about(const ErrorSurvey& survey, bool map_agre
   // A periodic error of 1 cm made trajectories ten times worse (docs/mapping.md). If that did not
   // make frames disagree, the map has the error itself, of which a wall may have twice as much.
   const double most_periodic_m = map_agrees ? 0.025 : 0.01;
-  const double periodic_m = survey.camera.periodic_rms_m;
-  if (survey.camera.frames == 0 || periodic_m < most_periodic_m) return {};
+  double periodic_m = 0;
+  for (const CameraErrors& camera : survey.cameras) {
+    if (camera.frames > 0) periodic_m = std::max(periodic_m, camera.periodic_rms_m);
+  }
+  if (periodic_m < most_periodic_m) return {};
   return {fmt::format(
       "ranges have a periodic error of about {:.0f} mm, and the error of the map is at least as "
       "large; 'tofmap calibrate' finds and corrects it. If a calibration is in use already, it "

@@ -55,19 +55,34 @@ bool same_returns(const ImageF& phase, const ImageF& other) {
   return returns >= least_returns;
 }
 
+/// Whether a frame has the phases of the last one at some frequencies, but not at all.
+bool repeats_some(const Frame& frame, const Frame& last) {
+  if (frame.frequencies() != last.frequencies()) return false;
+  std::size_t same = 0;
+  for (std::size_t f = 0; f < frame.frequencies(); ++f) {
+    same += same_returns(frame.phases[f], last.phases[f]) ? 1 : 0;
+  }
+  return same > 0 && same < frame.frequencies();
+}
+
 /// Pixel counts, summed over all frames.
 struct PixelTotals {
   double all = 0;
-  double without_return = 0;  ///< at either frequency
-  double saturated = 0;       ///< at either frequency
+  double without_return = 0;  ///< at one of the frequencies
+  double saturated = 0;       ///< at one of the frequencies
 
-  void add(const DualFrequencyFrame& frame, double saturation_amplitude) {
-    all += static_cast<double>(frame.phase_a.size());
-    without_return += static_cast<double>((frame.phase_a.isNaN() || frame.phase_b.isNaN()).count());
+  void add(const Frame& frame, double saturation_amplitude) {
+    all += static_cast<double>(frame.rows() * frame.cols());
+    Image<bool> is_missing = Image<bool>::Constant(frame.rows(), frame.cols(), false);
+    for (const ImageF& phase : frame.phases) is_missing = is_missing || phase.isNaN();
+    without_return += static_cast<double>(is_missing.count());
     if (!frame.has_amplitude() || saturation_amplitude <= 0) return;
     const auto limit = static_cast<float>(saturation_amplitude);
-    saturated +=
-        static_cast<double>((frame.amplitude_a >= limit || frame.amplitude_b >= limit).count());
+    Image<bool> is_saturated = Image<bool>::Constant(frame.rows(), frame.cols(), false);
+    for (const ImageF& amplitude : frame.amplitudes) {
+      is_saturated = is_saturated || amplitude >= limit;
+    }
+    saturated += static_cast<double>(is_saturated.count());
   }
 
   double share(double of) const { return all > 0 ? of / all : 0; }
@@ -120,7 +135,7 @@ void warn_of_images(const RecordingSurvey& survey, std::vector<std::string>& war
     warnings.push_back(
         counted(static_cast<std::size_t>(survey.repeated_single), "frame") +
         (survey.repeated_single == 1 ? " has" : " have") +
-        " the phases of the previous frame at one frequency, and new phases at the other; are "
+        " the phases of the previous frame at one frequency, and new phases at another; are "
         "files of one folder copies of each other?");
   }
 }
@@ -161,8 +176,8 @@ RecordingSurvey survey_recording(const SequenceReader& recording,
   const int every = 1 + (count - 1) / compared_frames;
   RecordingSurvey survey;
   PixelTotals totals;
-  std::vector<DualFrequencyFrame> some;
-  DualFrequencyFrame last;
+  std::vector<Frame> some;
+  Frame last;
   for (int i = 0; i < count; ++i) {
     if (keep_going && !keep_going(i)) break;
     ++survey.frames;
@@ -171,19 +186,17 @@ RecordingSurvey survey_recording(const SequenceReader& recording,
       survey.damages.push_back(sourced.damage);
       continue;
     }
-    DualFrequencyFrame& frame = *sourced.frame;
+    Frame& frame = *sourced.frame;
     totals.add(frame, sensor.saturation_amplitude);
     survey.without_amplitude += frame.has_amplitude() ? 0 : 1;
     survey.without_return += is_without_return(frame) ? 1 : 0;
     const bool is_repeated = repeats(frame, last);
     survey.repeated += is_repeated ? 1 : 0;
-    survey.repeated_single += !is_repeated && (same_returns(frame.phase_a, last.phase_a) !=
-                                               same_returns(frame.phase_b, last.phase_b))
-                                  ? 1
-                                  : 0;
+    survey.repeated_single += !is_repeated && repeats_some(frame, last) ? 1 : 0;
     const SequenceFrameFiles& files = recording.files()[static_cast<std::size_t>(i)];
-    if (is_constant(frame.phase_a)) survey.constant_images.push_back(files.phase_a.string());
-    if (is_constant(frame.phase_b)) survey.constant_images.push_back(files.phase_b.string());
+    for (std::size_t f = 0; f < frame.frequencies(); ++f) {
+      if (is_constant(frame.phases[f])) survey.constant_images.push_back(files.phases[f].string());
+    }
     if (i % every == 0) some.push_back(frame);
     last = std::move(frame);
   }
@@ -192,7 +205,7 @@ RecordingSurvey survey_recording(const SequenceReader& recording,
   survey_times(recording.files(), survey);
   survey.swapped_amplitude_warning = swapped_amplitude_warning(some);
   survey.axial_depth_warning = axial_depth_warning(some, sensor);
-  survey.residual = survey_residual(some, sensor);
+  survey.residuals = survey_residuals(some, sensor);
   survey.errors = survey_errors(some, sensor);
   return survey;
 }
@@ -203,12 +216,13 @@ std::vector<std::string> warnings_about(const RecordingSurvey& survey, const Sen
     if (warning) warnings.push_back(*std::move(warning));
   };
   add(camera_warning(sensor.camera));
-  const std::optional<std::string> pair_warning = frequency_pair_warning(sensor.modulation);
-  add(pair_warning);
-  if (sensor.max_range_m > combined_range_m(sensor.modulation)) {
+  const std::optional<std::string> of_frequencies = frequency_warning(sensor.modulation);
+  add(of_frequencies);
+  if (sensor.modulation.count() > 1 && sensor.max_range_m > combined_range_m(sensor.modulation)) {
     warnings.emplace_back(
-        "the scene reaches farther than the combined range of this pair of frequencies; are "
-        "max_range_m, frequency_a_hz and frequency_b_hz right?");
+        "the scene reaches farther than the combined range of these frequencies; are max_range_m "
+        "and "
+        "the frequencies right?");
   }
   warn_of_returns(survey, warnings);
   warn_of_images(survey, warnings);
@@ -217,14 +231,20 @@ std::vector<std::string> warnings_about(const RecordingSurvey& survey, const Sen
   add(survey.axial_depth_warning);
   // If there is a warning about the images themselves, A and B cannot agree, and a comparison of
   // the frequencies tells nothing new.
-  const bool is_comparable = survey.residual && !pair_warning && !survey.axial_depth_warning &&
+  const bool is_comparable = !of_frequencies && !survey.axial_depth_warning &&
                              !survey.swapped_amplitude_warning && survey.constant_images.empty() &&
                              survey.repeated_single == 0;
   if (!is_comparable) return warnings;
-  const std::optional<std::string> mixed_up = pairing_warning(*survey.residual);
-  add(mixed_up);
-  if (mixed_up) return warnings;
-  add(offset_warning(*survey.residual, &survey.errors.camera));
+  bool are_mixed_up = false;
+  for (const ResidualSurvey& residual : survey.residuals) {
+    const std::optional<std::string> mixed_up = pairing_warning(residual);
+    add(mixed_up);
+    are_mixed_up = are_mixed_up || mixed_up;
+  }
+  if (are_mixed_up) return warnings;
+  for (const ResidualSurvey& residual : survey.residuals) {
+    add(offset_warning(residual, camera_at(survey.errors, residual.frequency)));
+  }
   for (std::string& warning : warnings_about(survey.errors)) warnings.push_back(std::move(warning));
   return warnings;
 }

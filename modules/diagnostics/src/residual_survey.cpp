@@ -29,11 +29,11 @@ struct PhasePair {
   double b_cycles;
 };
 
-std::vector<PhasePair> phase_pairs(const std::vector<DualFrequencyFrame>& frames) {
+std::vector<PhasePair> phase_pairs(const std::vector<Frame>& frames, std::size_t b) {
   std::vector<PhasePair> pairs;
-  for (const DualFrequencyFrame& frame : frames) {
-    for (Eigen::Index i = 0; i < frame.phase_a.size(); i += pixel_stride) {
-      const PhasePair pair{frame.phase_a.data()[i], frame.phase_b.data()[i]};
+  for (const Frame& frame : frames) {
+    for (Eigen::Index i = 0; i < frame.phases[0].size(); i += pixel_stride) {
+      const PhasePair pair{frame.phases[0].data()[i], frame.phases[b].data()[i]};
       if (!std::isnan(pair.a_cycles) && !std::isnan(pair.b_cycles)) pairs.push_back(pair);
     }
   }
@@ -45,12 +45,12 @@ std::vector<PhasePair> phase_pairs(const std::vector<DualFrequencyFrame>& frames
 class Differences {
  public:
   explicit Differences(const SensorModel& sensor)
-      : a_m_(sensor.modulation.wavelength_a_m()), b_m_(sensor.modulation.wavelength_b_m()) {
+      : a_m_(sensor.modulation.wavelength_m(0)), b_m_(sensor.modulation.wavelength_m(1)) {
     constexpr double tolerance_cycles = 0.05;  // more noise hides which wrap counts are right
     const double combined_m = combined_range_m(sensor.modulation, tolerance_cycles);
     const double farthest_m =
         sensor.max_range_m > 0 ? std::min(sensor.max_range_m, combined_m) : combined_m;
-    count_a_ = wrap_limits(sensor.modulation, farthest_m).count_a;
+    count_a_ = wrap_limit(a_m_, farthest_m);
     farthest_m_ = farthest_m + tolerance_cycles * a_m_;
   }
 
@@ -189,7 +189,8 @@ std::string more_or_less(double offset_m) {
 
 /// "133 mm more than B, or 200 mm less".
 std::string offset_text(const ResidualSurvey& residual) {
-  std::string text = more_or_less(residual.offset_m) + " than B";
+  std::string text =
+      more_or_less(residual.offset_m) + " than " + frequency_name(residual.frequency);
   constexpr std::size_t some = 2;
   for (std::size_t i = 0; i < std::min(some, residual.other_offsets_m.size()); ++i) {
     text += ", or " + more_or_less(residual.other_offsets_m[i]);
@@ -197,42 +198,56 @@ std::string offset_text(const ResidualSurvey& residual) {
   return text;
 }
 
-}  // namespace
-
-std::optional<ResidualSurvey> survey_residual(const std::vector<DualFrequencyFrame>& frames,
-                                              const SensorModel& sensor) {
-  const std::vector<PhasePair> pairs = phase_pairs(frames);
+/// Compares the first frequency with `b`. Empty if too few pixels have returns at both.
+std::optional<ResidualSurvey> survey_pair(const std::vector<Frame>& frames,
+                                          const SensorModel& sensor, std::size_t b) {
+  const std::vector<PhasePair> pairs = phase_pairs(frames, b);
   if (pairs.size() < least_pixels) return std::nullopt;
-  Agreement as_is = agreement(pairs, sensor);
-  SensorModel swapped = sensor;
-  std::swap(swapped.modulation.frequency_a_hz, swapped.modulation.frequency_b_hz);
+  const SensorModel of_pair = frequency_pair(sensor, 0, b);
+  const Agreement as_is = agreement(pairs, of_pair);
   if (as_is.offsets_m.empty()) return std::nullopt;
   ResidualSurvey survey;
+  survey.frequency = b;
   survey.offset_m = as_is.offsets_m.front();
   survey.other_offsets_m.assign(as_is.offsets_m.begin() + 1, as_is.offsets_m.end());
   survey.spread_m = as_is.spread_m;
-  survey.swapped_spread_m = agreement(pairs, swapped).spread_m;
-  survey.ambiguity_m = Differences(sensor).ambiguity_m();
+  survey.swapped_spread_m = agreement(pairs, frequency_pair(sensor, b, 0)).spread_m;
+  survey.ambiguity_m = Differences(of_pair).ambiguity_m();
   return survey;
+}
+
+}  // namespace
+
+std::vector<ResidualSurvey> survey_residuals(const std::vector<Frame>& frames,
+                                             const SensorModel& sensor) {
+  std::vector<ResidualSurvey> surveys;
+  for (std::size_t b = 1; b < sensor.modulation.count(); ++b) {
+    auto survey = survey_pair(frames, sensor, b);
+    if (survey) surveys.push_back(*std::move(survey));
+  }
+  return surveys;
 }
 
 std::optional<std::string> pairing_warning(const ResidualSurvey& residual, bool map_agrees) {
   constexpr double telling_ratio = 0.5;
   if (residual.swapped_spread_m < telling_ratio * residual.spread_m) {
     return fmt::format(
-        "A and B agree within {:.0f} mm if the frequencies are swapped, but only within {:.0f} mm "
-        "as they are; are frequency_a_hz and frequency_b_hz mixed up, or the folders of A and B?",
-        1000 * residual.swapped_spread_m, 1000 * residual.spread_m);
+        "A and {0} agree within {1:.0f} mm if the frequencies are swapped, but only within {2:.0f} "
+        "mm "
+        "as they are; are the frequencies of A and {0} mixed up in sequence.yaml, or their "
+        "folders?",
+        frequency_name(residual.frequency), 1000 * residual.swapped_spread_m,
+        1000 * residual.spread_m);
   }
   // Differences of unrelated phases have a spread of 0.37 times the ambiguity, or more if
   // max_range_m is small.
   constexpr double no_agreement = 0.3;
   if (!map_agrees && residual.spread_m > no_agreement * residual.ambiguity_m) {
     return fmt::format(
-        "A and B agree only within {:.0f} mm, no better than images of different places; are "
+        "A and {} agree only within {:.0f} mm, no better than images of different places; are "
         "their folders or files mixed up, is max_range_m less than the size of the room, is "
         "device.layout wrong for the device, or do the images show nothing but noise?",
-        1000 * residual.spread_m);
+        frequency_name(residual.frequency), 1000 * residual.spread_m);
   }
   return std::nullopt;
 }
@@ -251,7 +266,8 @@ std::optional<std::string> offset_warning(const ResidualSurvey& residual,
       "; 'tofmap calibrate' with known ranges finds the phase offset of each frequency";
   if (!agree) {
     return "the offset between the frequencies is uncertain: A measures " +
-           more_or_less(estimate_m) + " than B, or " + offset_text(residual) + remedy;
+           more_or_less(estimate_m) + " than " + frequency_name(residual.frequency) + ", or " +
+           offset_text(residual) + remedy;
   }
   // The next offsets that fit are about `ambiguity_m` away, and so at least three times as large.
   const bool is_smallest_by_far = std::abs(estimate_m) < residual.ambiguity_m / 4;
@@ -259,14 +275,20 @@ std::optional<std::string> offset_warning(const ResidualSurvey& residual,
   return "A measures " + offset_text(residual) + remedy;
 }
 
-std::optional<std::string> frequency_pair_warning(const Modulation& modulation) {
+std::optional<std::string> frequency_warning(const Modulation& modulation) {
   constexpr double least_wavelengths = 1.5;
   const double combined_m = combined_range_m(modulation);
-  if (combined_m >= least_wavelengths * modulation.wavelength_a_m()) return std::nullopt;
+  if (combined_m >= least_wavelengths * modulation.wavelength_m(0)) return std::nullopt;
+  if (modulation.count() == 1) {
+    return fmt::format(
+        "one frequency cannot tell wrap counts apart: ranges are unambiguous up to {:.2f} m, and "
+        "those beyond are known only relative to their neighbours",
+        combined_m);
+  }
   return fmt::format(
-      "this pair of frequencies cannot tell wrap counts apart: it is unambiguous up to {:.2f} m, "
-      "and frequency A alone up to {:.2f} m; are frequency_a_hz and frequency_b_hz right?",
-      combined_m, modulation.wavelength_a_m());
+      "these frequencies cannot tell wrap counts apart: together they are unambiguous up to "
+      "{:.2f} m, and frequency A alone up to {:.2f} m; are the frequencies right?",
+      combined_m, modulation.wavelength_m(0));
 }
 
 }  // namespace tofmap

@@ -46,13 +46,13 @@ class ImagePairs {
 
 }  // namespace
 
-bool looks_like_swapped_amplitude(const std::vector<DualFrequencyFrame>& frames) {
+bool looks_like_swapped_amplitude(const std::vector<Frame>& frames) {
   ImagePairs phases;
   ImagePairs amplitudes;
-  for (const DualFrequencyFrame& frame : frames) {
-    if (!frame.has_amplitude()) return false;
-    phases.add(frame.phase_a, frame.phase_b);
-    amplitudes.add(frame.amplitude_a, frame.amplitude_b);
+  for (const Frame& frame : frames) {
+    if (!frame.has_amplitude() || frame.frequencies() < 2) return false;
+    phases.add(frame.phases[0], frame.phases[1]);
+    amplitudes.add(frame.amplitudes[0], frame.amplitudes[1]);
   }
   // At 29 and 31 MHz, B has wrapped once more than A in up to a tenth of the pixels of a room.
   constexpr double some = 0.005;
@@ -60,8 +60,7 @@ bool looks_like_swapped_amplitude(const std::vector<DualFrequencyFrame>& frames)
   return amplitudes.wrapped_share() > some && phases.wrapped_share() < hardly_any;
 }
 
-std::optional<std::string> swapped_amplitude_warning(
-    const std::vector<DualFrequencyFrame>& frames) {
+std::optional<std::string> swapped_amplitude_warning(const std::vector<Frame>& frames) {
   if (!looks_like_swapped_amplitude(frames)) return std::nullopt;
   return "phases and amplitudes are mixed up: the amplitude images wrap as phases do, and the "
          "phase images do not; exchange their folders, or the images of a device (device.layout)";

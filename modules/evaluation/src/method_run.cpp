@@ -16,7 +16,7 @@ namespace {
 UnwrappingRecord record_of_frame(const PreparedFrame& frame, const SequenceReader& recording,
                                  const RecordedTruth& recorded) {
   return record_of(frame.unwrapped, frame.timestamp_s, frame.times.unwrap_ms,
-                   recorded.range_m(frame.index), recording.sensor().modulation.wavelength_a_m());
+                   recorded.range_m(frame.index), recording.sensor().modulation.wavelength_m(0));
 }
 
 /// A frame that is unwrapped but not mapped. Empty if the recorded frame is damaged.
@@ -97,7 +97,7 @@ MethodResult run_down_to_map(const MethodRun& run, const SequenceReader& recordi
                      source.frame_count());
   MapHooks hooks;
   hooks.keep_going = run.keep_going;
-  hooks.on_frame = [&](const DualFrequencyFrame& frame, const PreparedFrame& prepared) {
+  hooks.on_frame = [&](const Frame& frame, const PreparedFrame& prepared) {
     result.frames.push_back(record_of_frame(prepared, recording, recorded));
     sample.add(frame, prepared);
   };

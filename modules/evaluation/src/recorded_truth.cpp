@@ -43,8 +43,8 @@ RecordedTruth::RecordedTruth(const SequenceReader& recording) : recording_(recor
 bool RecordedTruth::has_ranges() const {
   return std::ranges::any_of(recording_.files(), [&](const SequenceFrameFiles& frame) {
     std::error_code unknown;
-    const auto file = recording_.folder() / "range_truth" / frame.phase_a.filename();
-    return frame.phase_a.has_filename() && std::filesystem::exists(file, unknown);
+    const auto file = recording_.folder() / "range_truth" / frame.phases[0].filename();
+    return frame.phases[0].has_filename() && std::filesystem::exists(file, unknown);
   });
 }
 

@@ -22,7 +22,7 @@ constexpr double rad_per_deg = std::numbers::pi / 180;
 
 /// What filters use besides the ranges.
 struct FilterInput {
-  const DualFrequencyFrame& frame;
+  const Frame& frame;
   const Modulation& modulation;
   const PixelRays& rays;
   const FilterOptions& options;
@@ -161,7 +161,7 @@ std::vector<Filter> smoothing_chain() {
   return chain;
 }
 
-FilterResult apply_filters(const RangeImage& image, const DualFrequencyFrame& frame,
+FilterResult apply_filters(const RangeImage& image, const Frame& frame,
                            const Modulation& modulation, const PixelRays& rays,
                            const FilterOptions& options) {
   FilterResult result;

@@ -50,17 +50,23 @@ TOFMAP_VECTOR_CLONES void fill_difference(int pixels, const FrameRow& from_, flo
   }
 }
 
-void check_frame(const RangeImage& image, const DualFrequencyFrame& frame) {
-  const bool agree = same_size(image.range_m, frame.phase_a) &&
-                     same_size(image.range_m, frame.phase_b) &&
-                     (!frame.has_amplitude() || (same_size(image.range_m, frame.amplitude_a) &&
-                                                 same_size(image.range_m, frame.amplitude_b)));
+/// The frequency, but the first, with the shortest wavelength.
+std::size_t most_precise_other(const Modulation& modulation) {
+  const auto highest =
+      std::max_element(modulation.frequencies_hz.begin() + 1, modulation.frequencies_hz.end());
+  return static_cast<std::size_t>(highest - modulation.frequencies_hz.begin());
+}
+
+void check_frame(const RangeImage& image, const Frame& frame) {
+  const auto fits = [&](const ImageF& one) { return same_size(image.range_m, one); };
+  const bool agree = std::ranges::all_of(frame.phases, fits) &&
+                     (!frame.has_amplitude() || std::ranges::all_of(frame.amplitudes, fits));
   if (!agree) throw UsageError("filter: image and frame differ in size");
 }
 
 }  // namespace
 
-FrequencyDifference::FrequencyDifference(const RangeImage& image, const DualFrequencyFrame& frame,
+FrequencyDifference::FrequencyDifference(const RangeImage& image, const Frame& frame,
                                          const Modulation& modulation, const PixelRays& rays)
     : rows_(static_cast<int>(image.rows())),
       cols_(static_cast<int>(image.cols())),
@@ -69,23 +75,38 @@ FrequencyDifference::FrequencyDifference(const RangeImage& image, const DualFreq
       variances_(values_) {
   check_size(image, rays, "filter");
   check_frame(image, frame);
+  if (frame.frequencies() == 1) {
+    set_equal(image);
+    return;
+  }
+  const std::size_t b = most_precise_other(modulation);
   const std::vector<float> ones(static_cast<std::size_t>(cols_), 1.0F);
   for (int v = 0; v < rows_; ++v) {
     const Eigen::Index first = v * image.cols();
     const bool is_lit = frame.has_amplitude();
     fill_difference(
         cols_,
-        {frame.phase_a.data() + first, frame.phase_b.data() + first,
-         is_lit ? frame.amplitude_a.data() + first : ones.data(),
-         is_lit ? frame.amplitude_b.data() + first : ones.data(), image.range_m.data() + first,
+        {frame.phases[0].data() + first, frame.phases[b].data() + first,
+         is_lit ? frame.amplitudes[0].data() + first : ones.data(),
+         is_lit ? frame.amplitudes[b].data() + first : ones.data(), image.range_m.data() + first,
          rays.z.data() + first, image.wrap_count.data() + first},
-        static_cast<float>(modulation.wavelength_a_m()),
-        static_cast<float>(modulation.wavelength_b_m()), values_.data() + place(v),
+        static_cast<float>(modulation.wavelength_m(0)),
+        static_cast<float>(modulation.wavelength_m(b)), values_.data() + place(v),
         variances_.data() + place(v));
   }
   const double scale = noise_scale();
   const auto scale2 = static_cast<float>(scale * scale);
   for (float& variance : variances_) variance *= scale2;
+}
+
+void FrequencyDifference::set_equal(const RangeImage& image) {
+  for (int v = 0; v < rows_; ++v) {
+    for (int u = 0; u < cols_; ++u) {
+      if (!image.valid(v, u)) continue;
+      values_[place(v) + static_cast<std::size_t>(u)] = 0;
+      variances_[place(v) + static_cast<std::size_t>(u)] = 0;
+    }
+  }
 }
 
 double FrequencyDifference::noise_scale() const {

@@ -14,8 +14,10 @@
 
 namespace tofmap {
 
-/// For each pixel, the depth that A measured minus the nearest depth that the phase of B allows,
-/// metres. NaN where the pixel is invalid, and in a margin around the image, as in InverseDepth.
+/// For each pixel, the depth that the first frequency, A, measured minus the nearest depth that the
+/// phase of another one, B, allows, metres. B is the one with the shortest wavelength, which
+/// measures most precisely. NaN where the pixel is invalid, and in a margin around the image, as in
+/// InverseDepth. With one frequency, all differences and their variances are 0.
 ///
 /// The noise follows the amplitudes, σ² = s² ((λ_A / a_A)² + (λ_B / a_B)²). The scale s is
 /// estimated from the median of the differences between neighbours, so that an error that both
@@ -23,8 +25,8 @@ namespace tofmap {
 class FrequencyDifference {
  public:
   /// Throws UsageError if image, frame and rays differ in size.
-  FrequencyDifference(const RangeImage& image, const DualFrequencyFrame& frame,
-                      const Modulation& modulation, const PixelRays& rays);
+  FrequencyDifference(const RangeImage& image, const Frame& frame, const Modulation& modulation,
+                      const PixelRays& rays);
 
   /// The difference at the first pixel of a row, metres. The rest of the row follows it.
   const float* value(int row) const { return values_.data() + place(row); }
@@ -33,6 +35,9 @@ class FrequencyDifference {
   const float* variance(int row) const { return variances_.data() + place(row); }
 
  private:
+  /// Sets the differences of valid pixels to 0.
+  void set_equal(const RangeImage& image);
+
   /// The scale s; 0 if no two neighbours have a difference.
   double noise_scale() const;
 

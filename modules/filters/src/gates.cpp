@@ -9,17 +9,18 @@
 
 namespace tofmap {
 
-RangeImage drop_low_amplitude(const RangeImage& image, const DualFrequencyFrame& frame,
-                              double min_amplitude) {
+RangeImage drop_low_amplitude(const RangeImage& image, const Frame& frame, double min_amplitude) {
   RangeImage out = image;
   if (!frame.has_amplitude()) return out;
-  if (!same_size(image.range_m, frame.amplitude_a)) {
+  if (!same_size(image.range_m, frame.amplitudes.front())) {
     throw UsageError("amplitude filter: range image and frame differ in size");
   }
   for (Eigen::Index row = 0; row < out.rows(); ++row) {
     for (Eigen::Index col = 0; col < out.cols(); ++col) {
-      const float weaker = std::min(frame.amplitude_a(row, col), frame.amplitude_b(row, col));
-      if (out.valid(row, col) && weaker < min_amplitude) {
+      const auto is_weak = [&](const ImageF& amplitude) {
+        return amplitude(row, col) < min_amplitude;
+      };
+      if (out.valid(row, col) && std::ranges::any_of(frame.amplitudes, is_weak)) {
         out.invalidate(row, col, InvalidReason::low_amplitude);
       }
     }

@@ -127,20 +127,23 @@ constexpr double sure_nats = 4.5;
 
 /// How badly the residuals fit a region if `change` is added to all of its wrap counts: the sum
 /// over its pixels of half the squared residual over its variance (docs/filters.md, equation 1).
-double residual_cost(const Region& region, int change, const RangeImage& image,
-                     const DualFrequencyFrame& frame, const Modulation& modulation) {
-  const double b_per_a = modulation.frequency_b_hz / modulation.frequency_a_hz;
+double residual_cost(const Region& region, int change, const RangeImage& image, const Frame& frame,
+                     const Modulation& modulation) {
   double sum = 0;
   for (const Pixel at : region.pixels) {
     const double a_cycles =
-        frame.phase_a(at.row, at.col) + image.wrap_count(at.row, at.col) + change;
-    const double residual = frequency_residual_cycles(
-        static_cast<float>(a_cycles), frame.phase_b(at.row, at.col), static_cast<float>(b_per_a));
-    // range_m is the mean of the ranges of A and B. The standard deviation of their difference is
-    // twice that of their mean.
-    const double wavelength_m = modulation.wavelength_a_m();
+        frame.phases[0](at.row, at.col) + image.wrap_count(at.row, at.col) + change;
+    // range_m is the mean of the ranges of all frequencies. The standard deviation of the
+    // difference of two of them is twice that of their mean.
+    const double wavelength_m = modulation.wavelength_m(0);
     const double variance = 4 * image.variance_m2(at.row, at.col) / (wavelength_m * wavelength_m);
-    sum += std::min(sure_nats, residual * residual / (2 * variance));
+    for (std::size_t f = 1; f < frame.frequencies(); ++f) {
+      const double b_per_a = modulation.frequencies_hz[f] / modulation.frequencies_hz[0];
+      const double residual =
+          frequency_residual_cycles(static_cast<float>(a_cycles), frame.phases[f](at.row, at.col),
+                                    static_cast<float>(b_per_a));
+      sum += std::min(sure_nats, residual * residual / (2 * variance));
+    }
   }
   return sum;
 }
@@ -154,22 +157,22 @@ bool allows(const Region& region, int change, const RangeImage& image) {
 }
 
 /// Gives a region the wrap counts of its surroundings, and the ranges of A.
-void correct(const Region& region, const Vote& vote, const DualFrequencyFrame& frame,
-             double wavelength_m, RangeImage& image) {
+void correct(const Region& region, const Vote& vote, const Frame& frame, double wavelength_m,
+             RangeImage& image) {
   for (const Pixel at : region.pixels) {
     const int count = image.wrap_count(at.row, at.col) + vote.wraps;
     image.wrap_count(at.row, at.col) = static_cast<std::uint8_t>(count);
     image.range_m(at.row, at.col) =
-        static_cast<float>((frame.phase_a(at.row, at.col) + count) * wavelength_m);
+        static_cast<float>((frame.phases[0](at.row, at.col) + count) * wavelength_m);
     image.sigma_m(at.row, at.col) *= std::numbers::sqrt2_v<float>;  // of A alone
     image.confidence(at.row, at.col) = vote.confidence;
   }
 }
 
 /// Corrects or drops a region if it is an isolated wrap.
-void mend(const Region& region, const DualFrequencyFrame& frame, const Modulation& modulation,
+void mend(const Region& region, const Frame& frame, const Modulation& modulation,
           const RangeImage& image, RangeImage& out) {
-  const double wavelength_m = modulation.wavelength_a_m();
+  const double wavelength_m = modulation.wavelength_m(0);
   const std::optional<Vote> surroundings = vote(region, image, wavelength_m);
   if (!surroundings) return;
   const auto cost = [&](int change) {
@@ -199,15 +202,16 @@ bool has_wraps(const RangeImage& image) {
 
 }  // namespace
 
-RangeImage mend_isolated_wraps(const RangeImage& image, const DualFrequencyFrame& frame,
+RangeImage mend_isolated_wraps(const RangeImage& image, const Frame& frame,
                                const Modulation& modulation, const IsolatedWrapLimits& limits) {
-  if (!same_size(image.range_m, frame.phase_a) || !same_size(image.range_m, frame.phase_b)) {
+  const auto fits = [&](const ImageF& phase) { return same_size(image.range_m, phase); };
+  if (!std::ranges::all_of(frame.phases, fits)) {
     throw UsageError("isolated-wrap filter: range image and frame differ in size");
   }
   RangeImage out = image;
   if (!has_wraps(image)) return out;
   const double max_pixels = limits.max_share * static_cast<double>(image.range_m.size());
-  RegionFinder finder(image, modulation.wavelength_a_m());
+  RegionFinder finder(image, modulation.wavelength_m(0));
   for (int row = 0; row < image.rows(); ++row) {
     for (int col = 0; col < image.cols(); ++col) {
       if (!image.valid(row, col) || finder.is_seen(row, col)) continue;

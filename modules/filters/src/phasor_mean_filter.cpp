@@ -32,7 +32,7 @@ constexpr double mixed_share = 0.005;
 
 /// The range noise of valid pixels as a fraction of λ_A; NaN for invalid pixels.
 ImageF noise_cycles(const RangeImage& image, const Modulation& modulation) {
-  return image.sigma_m / static_cast<float>(modulation.wavelength_a_m());
+  return image.sigma_m / static_cast<float>(modulation.wavelength_m(0));
 }
 
 /// The radius at which a window without edges reaches `enough_sigma_rad`, for the median noise of
@@ -64,8 +64,8 @@ struct PhasePair {
 
   PhasePair(const PhasePlanes& planes, int v, int u, const Modulation& modulation) {
     constexpr double least_coherence = 0.05;
-    const double a_m = modulation.wavelength_a_m();
-    const double b_m = modulation.wavelength_b_m();
+    const double a_m = modulation.wavelength_m(0);
+    const double b_m = modulation.wavelength_m(1);
     wrapped_a_m = cycles_of(planes.a, v, u) * a_m;
     wrapped_b_m = cycles_of(planes.b, v, u) * b_m;
     // If the phasors of the window cancel more than predicted, noise is larger by that factor.
@@ -92,8 +92,8 @@ struct CountedRange {
 /// 14). range_m is 0 if no count is possible.
 CountedRange likeliest_range(const PhasePair& pair, const Modulation& modulation, int counts,
                              double own_range_m, double own_confidence) {
-  const double a_m = modulation.wavelength_a_m();
-  const double b_m = modulation.wavelength_b_m();
+  const double a_m = modulation.wavelength_m(0);
+  const double b_m = modulation.wavelength_m(1);
   const double variance_m2 = pair.variance_a_m2 + pair.variance_b_m2;
   const double own = std::clamp(own_confidence, 0.01, 0.99);
   CountedRange best;
@@ -120,7 +120,7 @@ int count_limit(const RangeImage& image) {
 
 }  // namespace
 
-RangeImage average_phasors(const RangeImage& image, const DualFrequencyFrame& frame,
+RangeImage average_phasors(const RangeImage& image, const Frame& frame,
                            const Modulation& modulation, const PixelRays& rays,
                            const PhasorMeanLimits& limits) {
   // The few noisy pixels of a quiet frame are dark, far away, or seen at a grazing angle. Averaging
@@ -131,15 +131,16 @@ RangeImage average_phasors(const RangeImage& image, const DualFrequencyFrame& fr
   const ImageF noise = noise_cycles(image, modulation);
   const auto noisy = static_cast<double>((noise > least_noise).count());
   if (noisy == 0 || noisy < least_share * image.count_valid()) return image;
-  if (!same_size(image.range_m, frame.phase_a) || !same_size(image.range_m, frame.phase_b)) {
+  if (frame.frequencies() < 2) return image;
+  if (!same_size(image.range_m, frame.phases[0]) || !same_size(image.range_m, frame.phases[1])) {
     throw UsageError("phasor_mean filter: range image and frame differ in size");
   }
   const double radius_px = std::min(limits.max_radius_px, wanted_radius_px(noise, least_noise));
   if (radius_px < 2) return image;
   const WindowGrowth growth{
-      .wavelength_ratio = modulation.wavelength_a_m() / modulation.wavelength_b_m(),
+      .wavelength_ratio = modulation.wavelength_m(0) / modulation.wavelength_m(1),
       .last_radius_px = radius_px};
-  const Phasors phasors(frame.phase_a, frame.phase_b, noise,
+  const Phasors phasors(frame.phases[0], frame.phases[1], noise,
                         static_cast<int>(std::ceil(radius_px)));
   const PhasePlanes planes = grow_phase_planes(phasors, static_cast<int>(image.rows()),
                                                static_cast<int>(image.cols()), growth);
@@ -156,7 +157,7 @@ RangeImage average_phasors(const RangeImage& image, const DualFrequencyFrame& fr
       out.range_m(v, u) = static_cast<float>(best.range_m);
       out.sigma_m(v, u) =
           static_cast<float>(std::sqrt(pair.fused_variance_m2() + pair.common_variance_m2));
-      out.wrap_count(v, u) = static_cast<std::uint8_t>(best.range_m / modulation.wavelength_a_m());
+      out.wrap_count(v, u) = static_cast<std::uint8_t>(best.range_m / modulation.wavelength_m(0));
       out.confidence(v, u) = static_cast<float>(best.probability);
       out.averaged_px(v, u) =
           std::max(1.0F, 1 / (phase_information(noise(v, u)) * planes.variance.row(v)[u]));

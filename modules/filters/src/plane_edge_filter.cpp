@@ -123,7 +123,7 @@ class SurfaceKeeper {
 
 }  // namespace
 
-RangeImage drop_off_planes(const RangeImage& image, const DualFrequencyFrame& frame,
+RangeImage drop_off_planes(const RangeImage& image, const Frame& frame,
                            const Modulation& modulation, const PixelRays& rays,
                            const PlaneEdgeLimits& limits) {
   // The limits are stricter than those for smoothing: a pixel that is left out without need only
@@ -136,7 +136,7 @@ RangeImage drop_off_planes(const RangeImage& image, const DualFrequencyFrame& fr
                        {.plane_sigmas = limits.max_sigmas,
                         .edge_sigmas = limits.max_edge_sigmas,
                         .tolerance_m = limits.tolerance_m,
-                        .mixing_m = modulation.wavelength_a_m() / 4});
+                        .mixing_m = modulation.wavelength_m(0) / 4});
   keeper.drop_what_flying_pixels_keep();
   keeper.take_back(image);
   RangeImage out = image;

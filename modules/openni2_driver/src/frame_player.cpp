@@ -45,11 +45,11 @@ void FramePlayer::open() {
   period_s_ = 1 / options.frame_rate_hz;
 }
 
-std::optional<DualFrequencyFrame> FramePlayer::next() {
+std::optional<Frame> FramePlayer::next() {
   while (true) {
     while (const std::optional<SourcedFrame> sourced = source_->next()) {
       if (!sourced->frame) continue;
-      DualFrequencyFrame frame = *sourced->frame;
+      Frame frame = *sourced->frame;
       if (!first_s_) first_s_ = frame.timestamp_s;
       frame.timestamp_s += round_start_s_ - *first_s_;
       last_s_ = frame.timestamp_s;

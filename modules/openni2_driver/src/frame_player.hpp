@@ -28,7 +28,7 @@ class FramePlayer {
 
   /// The next frame; the timestamp of the first one is 0. Empty when all frames have been played or
   /// `keep_going` has returned false.
-  std::optional<DualFrequencyFrame> next();
+  std::optional<Frame> next();
 
  private:
   void open();

@@ -38,11 +38,13 @@ PlayedDevice::PlayedDevice(const DeviceRequest& request, Events events)
       player_(request, [this] { return !is_ending(); }),
       speed_(request.player.speed) {
   const CameraModel& camera = player_.sensor().camera;
+  const std::size_t frequencies = player_.sensor().modulation.count();
   const bool is_stacked = request.player.layout == PlayedLayout::stacked;
   OniVideoMode mode;
   mode.resolutionX = camera.width_px;
-  mode.resolutionY =
-      is_stacked ? 2 * camera.height_px + tag_rows(camera.width_px) : camera.height_px;
+  mode.resolutionY = is_stacked ? static_cast<int>(frequencies) * camera.height_px +
+                                      tag_rows(camera.width_px, frequencies)
+                                : camera.height_px;
   const double images_per_frame = is_stacked ? 1 : 2;
   mode.fps = std::max(1, static_cast<int>(std::lround(images_per_frame / player_.period_s())));
   for (const DepthFormat& format : depth_formats) {
@@ -144,9 +146,9 @@ OniStatus PlayedDevice::getProperty(int id, void* data, int* size) {
       return answer(OniVersion{TOFMAP_VERSION_MAJOR, TOFMAP_VERSION_MINOR, TOFMAP_VERSION_PATCH, 0},
                     data, size);
     case openni2_property::frequency_a_hz:
-      return answer(modulation.frequency_a_hz, data, size);
+      return answer(modulation.frequencies_hz[0], data, size);
     case openni2_property::frequency_b_hz:
-      return answer(modulation.frequency_b_hz, data, size);
+      return answer(modulation.frequencies_hz[1], data, size);
     case openni2_property::layout: {
       const std::string layout(name_of(request_.player.layout));
       const auto needed = static_cast<int>(layout.size()) + 1;
@@ -294,7 +296,7 @@ void PlayedDevice::deliver_image(ImageStream& stream, const ImageU16& image,
   stream.deliver(image, timestamp_us, images_);
 }
 
-void PlayedDevice::deliver(const DualFrequencyFrame& frame) {
+void PlayedDevice::deliver(const Frame& frame) {
   if (!wait_for_turn(frame.timestamp_s)) return;
   // Encodes only now, because the mode of a stream, and with it the unit, may have changed
   // meanwhile.
@@ -304,16 +306,16 @@ void PlayedDevice::deliver(const DualFrequencyFrame& frame) {
     return;
   }
   const Modulation& modulation = player_.sensor().modulation;
-  const ImageU16 no_amplitude = ImageU16::Zero(frame.phase_a.rows(), frame.phase_a.cols());
-  const auto amplitude_of = [&](const ImageF& amplitude) {
-    return frame.has_amplitude() ? encode_amplitude(amplitude) : no_amplitude;
+  const ImageU16 no_amplitude = ImageU16::Zero(frame.rows(), frame.cols());
+  const auto amplitude_of = [&](std::size_t f) {
+    return frame.has_amplitude() ? encode_amplitude(frame.amplitudes[f]) : no_amplitude;
   };
-  deliver_images(codec().encode_range(frame.phase_a, modulation.wavelength_a_m()),
-                 amplitude_of(frame.amplitude_a), frame.timestamp_s);
+  deliver_images(codec().encode_range(frame.phases[0], modulation.wavelength_m(0)), amplitude_of(0),
+                 frame.timestamp_s);
   const double b_timestamp_s = frame.timestamp_s + player_.period_s() / 2;
   if (!wait_for_turn(b_timestamp_s)) return;
-  deliver_images(codec().encode_range(frame.phase_b, modulation.wavelength_b_m()),
-                 amplitude_of(frame.amplitude_b), b_timestamp_s);
+  deliver_images(codec().encode_range(frame.phases[1], modulation.wavelength_m(1)), amplitude_of(1),
+                 b_timestamp_s);
 }
 
 void PlayedDevice::play() {
@@ -327,7 +329,7 @@ void PlayedDevice::play() {
         update([this] { is_unplugged_ = true; });
         break;
       }
-      const std::optional<DualFrequencyFrame> frame = player_.next();
+      const std::optional<Frame> frame = player_.next();
       if (!frame && !is_ending()) {
         events_.at_end();
         return;

@@ -60,7 +60,7 @@ class PlayedDevice final : public oni::driver::DeviceBase {
   bool wait_for_stream();
   void let_start();
   bool wait_for_turn(double timestamp_s);
-  void deliver(const DualFrequencyFrame& frame);
+  void deliver(const Frame& frame);
   void deliver_images(const ImageU16& range, const ImageU16& amplitude, double timestamp_s);
   void deliver_image(ImageStream& stream, const ImageU16& image, std::uint64_t timestamp_us);
   const DeviceImageCodec& codec();

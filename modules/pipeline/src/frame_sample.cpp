@@ -58,12 +58,11 @@ FrameSample::FrameSample(const CameraModel& camera, int wanted, std::optional<in
   }
 }
 
-void FrameSample::add(const DualFrequencyFrame& recorded, const PreparedFrame& prepared) {
+void FrameSample::add(const Frame& recorded, const PreparedFrame& prepared) {
   if (!is_its_turn(recorded.index)) return;
   frames_.push_back({recorded, prepared.returns, prepared.unwrapped, prepared.filtered.image});
   SampledFrame& kept = frames_.back();
-  kept.returns.amplitude_a.resize(0, 0);
-  kept.returns.amplitude_b.resize(0, 0);
+  kept.returns.amplitudes.clear();
   kept.unwrapped.errors = {};
   if (!has_known_length_ && frames_.size() >= most_) drop_every_second();
 }

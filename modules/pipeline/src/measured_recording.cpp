@@ -12,7 +12,7 @@ namespace tofmap {
 
 MeasuredRecording::MeasuredRecording(const SequenceReader& source, const UnwrapOptions& options)
     : source_(source), measurer_(source.sensor(), options) {
-  std::vector<DualFrequencyFrame> first;
+  std::vector<Frame> first;
   for (int i = 0; i < std::min(FrameMeasurer::frames_ahead, *source.frame_count()); ++i) {
     SourcedFrame sourced = source.read(i);
     if (sourced.frame) first.push_back(*std::move(sourced.frame));

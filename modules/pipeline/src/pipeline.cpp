@@ -51,7 +51,7 @@ std::vector<std::optional<PreparedFrame>> prepare_all(
 
 /// Estimates the camera's errors from the first frames of a recording.
 void look_ahead(const std::vector<SourcedFrame>& first, FrameMeasurer& measurer) {
-  std::vector<DualFrequencyFrame> frames;
+  std::vector<Frame> frames;
   for (const SourcedFrame& sourced : first) {
     if (sourced.frame && frames.size() < FrameMeasurer::frames_ahead) {
       frames.push_back(*sourced.frame);
@@ -120,7 +120,7 @@ void bind_options(OptionTable& table, PipelineOptions& options) {
   table.bind("map", options.map);
 }
 
-TimedMeasurement measure_frame(const DualFrequencyFrame& frame, FrameMeasurer& measurer) {
+TimedMeasurement measure_frame(const Frame& frame, FrameMeasurer& measurer) {
   TimedMeasurement out;
   out.frame = timed(out.milliseconds, [&] { return measurer.measure(frame); });
   return out;

@@ -50,9 +50,8 @@ void serialize(Archive& archive, tofmap::FrameRecord& record, unsigned) {
 }
 
 template <class Archive>
-void serialize(Archive& archive, tofmap::DualFrequencyFrame& frame, unsigned) {
-  archive& frame.index& frame.timestamp_s& frame.phase_a& frame.phase_b;
-  archive& frame.amplitude_a& frame.amplitude_b;
+void serialize(Archive& archive, tofmap::Frame& frame, unsigned) {
+  archive& frame.index& frame.timestamp_s& frame.phases& frame.amplitudes;
 }
 
 template <class Archive>
@@ -81,7 +80,12 @@ namespace tofmap {
 template <class Archive>
 void ErrorTally::serialize(Archive& archive, unsigned) {
   static_assert(std::is_trivially_copyable_v<CameraErrors>);
-  archive& boost::serialization::make_binary_object(&camera_, sizeof camera_);
+  std::size_t count = cameras_.size();
+  archive& count;
+  if constexpr (Archive::is_loading::value) cameras_.resize(std::min(count, most_frequencies));
+  for (CameraErrors& camera : cameras_) {
+    archive& boost::serialization::make_binary_object(&camera, sizeof camera);
+  }
   archive& frames_& flows_px_& pixels_& ambient_pixels_& ambient_factors_& has_amplitudes_;
 }
 
@@ -101,7 +105,7 @@ void FrameSample::load(std::istream& in, int frames_done) {
 void MapRun::save(std::ostream& out) const {
   {
     boost::archive::binary_oarchive archive(out);
-    archive << frames_ << last_.phase_a << last_.phase_b << errors_;
+    archive << frames_ << last_.phases << errors_;
   }
   std::vector<TrackingResult> tracking;
   for (const FrameRecord& frame : frames_) tracking.push_back(frame.tracking);
@@ -113,7 +117,7 @@ void MapRun::save(std::ostream& out) const {
 void MapRun::load(std::istream& in) {
   {
     boost::archive::binary_iarchive archive(in);
-    archive >> frames_ >> last_.phase_a >> last_.phase_b >> errors_;
+    archive >> frames_ >> last_.phases >> errors_;
   }
   std::vector<TrackingResult> tracking = load_tracking(in);
   if (tracking.size() != frames_.size()) throw InputError("map state: frames and tracking differ");

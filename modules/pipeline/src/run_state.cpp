@@ -18,7 +18,7 @@ namespace tofmap {
 namespace {
 
 // Raise the number after the comma whenever the stored data change between two releases.
-constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 21";
+constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 22";
 
 /// The camera, frequencies and options of a run, one per line. A run can only resume a run with the
 /// same lines.
@@ -29,9 +29,9 @@ std::vector<std::string> identity(const SensorModel& sensor, PipelineOptions opt
   text << "camera: " << camera.width_px << " x " << camera.height_px << " px, " << camera.fx_px
        << ' ' << camera.fy_px << ' ' << camera.cx_px << ' ' << camera.cy_px << ", distortion";
   for (const double coefficient : camera.distortion) text << ' ' << coefficient;
-  text << '\n'
-       << "frequencies: " << sensor.modulation.frequency_a_hz << ' '
-       << sensor.modulation.frequency_b_hz << " Hz\n"
+  text << '\n' << "frequencies:";
+  for (const double frequency_hz : sensor.modulation.frequencies_hz) text << ' ' << frequency_hz;
+  text << " Hz\n"
        << "largest range: " << sensor.max_range_m
        << " m, saturation: " << sensor.saturation_amplitude << '\n';
   OptionTable table;
@@ -69,7 +69,7 @@ std::string recording_line(const SequenceReader& source, int frames) {
     if (frames == 0) break;
     const SourcedFrame sourced = source.read(i);
     if (!sourced.frame) continue;
-    const ImageF& phase = sourced.frame->phase_a;
+    const ImageF& phase = sourced.frame->phases[0];
     checksum.process_bytes(phase.data(), static_cast<std::size_t>(phase.size()) * sizeof(float));
   }
   return "recording: " + std::to_string(frames) + " frames, " + std::to_string(checksum.checksum());

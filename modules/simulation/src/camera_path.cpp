@@ -107,42 +107,48 @@ Pose CameraPath::pose_at(double u) const {
 }
 
 CameraMotion plan_motion(const CameraPath& path, const MotionLimits& limits, int frames,
-                         int min_frames, double frame_rate_hz, double b_delay_share) {
+                         int min_frames, double frame_rate_hz,
+                         const std::vector<double>& delay_shares) {
   if (path.empty()) throw UsageError("the path of the camera has no poses");
   const EffortTable efforts(path, limits);
   const int needed = static_cast<int>(std::ceil(efforts.total() / limit_share)) + 1;
   const int count = frames > 0 ? frames : std::max(needed, min_frames);
   const double step = count > 1 ? std::min(limit_share, efforts.total() / (count - 1)) : 0;
   CameraMotion motion;
-  for (int i = 0; i < count; ++i) {
-    const double timestamp_s = i / frame_rate_hz;
-    motion.at_a.push_back({timestamp_s, path.pose_at(efforts.place(i * step))});
-    motion.at_b.push_back({timestamp_s, path.pose_at(efforts.place((i + b_delay_share) * step))});
-  }
-  if (!path.closed() && count > 1 && b_delay_share > 0 &&
-      (count - 1 + b_delay_share) * step > efforts.total()) {
-    // An open path ends at the last A. The pose of the last B is extrapolated from the last step.
-    const std::size_t last = motion.at_a.size() - 1;
-    motion.at_b[last].world_from_camera =
-        interpolate(motion.at_a[last - 1].world_from_camera, motion.at_a[last].world_from_camera,
-                    1 + b_delay_share);
+  for (const double delay_share : delay_shares) {
+    Trajectory& poses = motion.at.emplace_back();
+    for (int i = 0; i < count; ++i) {
+      poses.push_back({i / frame_rate_hz, path.pose_at(efforts.place((i + delay_share) * step))});
+    }
+    if (!path.closed() && count > 1 && delay_share > 0 &&
+        (count - 1 + delay_share) * step > efforts.total()) {
+      // An open path ends at the last frame. The pose of a later image of it is extrapolated from
+      // the last step.
+      const Pose before = path.pose_at(efforts.place((count - 2) * step));
+      const Pose last = path.pose_at(efforts.place((count - 1) * step));
+      poses.back().world_from_camera = interpolate(before, last, 1 + delay_share);
+    }
   }
   return motion;
 }
 
-CameraMotion replay_motion(const Trajectory& poses, int frames, double b_delay_share) {
+CameraMotion replay_motion(const Trajectory& poses, int frames,
+                           const std::vector<double>& delay_shares) {
   if (poses.empty()) throw UsageError("the trajectory contains no poses to replay");
   const std::size_t count =
       frames > 0 ? std::min(poses.size(), static_cast<std::size_t>(frames)) : poses.size();
   CameraMotion motion;
-  for (std::size_t i = 0; i < count; ++i) {
-    motion.at_a.push_back(poses[i]);
-    motion.at_b.push_back(poses[i]);
-    if (poses.size() == 1) break;
-    const bool last = i + 1 == poses.size();
-    const Pose& from = poses[last ? i - 1 : i].world_from_camera;
-    const Pose& to = poses[last ? i : i + 1].world_from_camera;
-    motion.at_b.back().world_from_camera = interpolate(from, to, b_delay_share + (last ? 1 : 0));
+  for (const double delay_share : delay_shares) {
+    Trajectory& at_image = motion.at.emplace_back();
+    for (std::size_t i = 0; i < count; ++i) {
+      at_image.push_back(poses[i]);
+      if (poses.size() == 1) break;
+      if (delay_share == 0) continue;
+      const bool last = i + 1 == poses.size();
+      const Pose& from = poses[last ? i - 1 : i].world_from_camera;
+      const Pose& to = poses[last ? i : i + 1].world_from_camera;
+      at_image.back().world_from_camera = interpolate(from, to, delay_share + (last ? 1 : 0));
+    }
   }
   return motion;
 }

@@ -37,7 +37,7 @@ inline std::optional<PhaseAndAmplitude> measure(const std::complex<double>& sign
 /// 2π σ_r / λ_A = σ_n / amplitude (docs/simulator.md, equation 4).
 inline double noise_strength(double range_noise_m, const Modulation& modulation) {
   constexpr double reference_amplitude = amplitude_unit * 0.5 / (5.0 * 5.0);
-  return reference_amplitude * 2 * std::numbers::pi * range_noise_m / modulation.wavelength_a_m();
+  return reference_amplitude * 2 * std::numbers::pi * range_noise_m / modulation.wavelength_m(0);
 }
 
 }  // namespace tofmap

@@ -57,7 +57,7 @@ PixelLight light_from(double strength, double range_m, double wavelength_m) {
 }
 
 SensorEffects sensor_effects(const SimulatorOptions& options, const Modulation& modulation) {
-  return {.harmonic = rad_per_cycle * options.wiggle_m / modulation.wavelength_a_m(),
+  return {.harmonic = rad_per_cycle * options.wiggle_m / modulation.wavelength_m(0),
           .dark_level = options.dark_level,
           .full_well = options.full_well};
 }

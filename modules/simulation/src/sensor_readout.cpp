@@ -41,13 +41,15 @@ void check_size(const ImageC& signal, const CameraModel& camera) {
 
 }  // namespace
 
-std::uint64_t noise_key(const SimulatorOptions& options, int frame, ImageOfFrame image) {
-  return mix(mix(static_cast<std::uint64_t>(options.seed)) + 2 * static_cast<unsigned>(frame) +
-             static_cast<unsigned>(image));
+std::uint64_t noise_key(const SimulatorOptions& options, int frame, std::size_t frequency,
+                        std::size_t frequencies) {
+  return mix(mix(static_cast<std::uint64_t>(options.seed)) +
+             frequencies * static_cast<unsigned>(frame) + frequency);
 }
 
-std::optional<SensorReadout::Pixel> SensorReadout::read(const std::complex<double>& ideal,
+std::optional<SensorReadout::Pixel> SensorReadout::read(const std::complex<double>& ideal_,
                                                         Eigen::Index row, Eigen::Index col) const {
+  const std::complex<double> ideal = contrast * ideal_;
   const auto pixel = static_cast<std::size_t>(row * cols + col);
   const double sigma = ambient.noise_factor(row, col) * noise_sigma;
   const std::complex<double> rotation = errors.rotation(ideal, pixel);
@@ -60,32 +62,30 @@ std::optional<SensorReadout::Pixel> SensorReadout::read(const std::complex<doubl
 }
 
 SensorReadout sensor_readout(const SimulatorOptions& options, const SensorModel& sensor, int frame,
-                             ImageOfFrame image) {
+                             std::size_t frequency) {
   const Modulation& modulation = sensor.modulation;
   const double dark_sigma = dark_noise_sigma(sensor_effects(options, modulation));
-  const bool is_a = image == ImageOfFrame::a;
-  return {
-      .wavelength_m = is_a ? modulation.wavelength_a_m() : modulation.wavelength_b_m(),
-      .errors = is_a ? range_errors_a(options, modulation) : range_errors_b(options, modulation),
-      .ambient = ambient_light(options, sensor.camera),
-      .noise_sigma = std::hypot(noise_strength(options.range_noise_m, modulation), dark_sigma),
-      .noise_key = noise_key(options, frame, image),
-      .phase_bits = options.phase_bits,
-      .cols = sensor.camera.width_px};
+  return {.wavelength_m = modulation.wavelength_m(frequency),
+          .contrast = frequency < options.contrasts.size() ? options.contrasts[frequency] : 1,
+          .errors = range_errors(options, modulation, frequency),
+          .ambient = ambient_light(options, sensor.camera),
+          .noise_sigma = std::hypot(noise_strength(options.range_noise_m, modulation), dark_sigma),
+          .noise_key = noise_key(options, frame, frequency, modulation.count()),
+          .phase_bits = options.phase_bits,
+          .cols = sensor.camera.width_px};
 }
 
-DualFrequencyFrame measured_frame(const IdealFrame& ideal, const SensorModel& sensor,
-                                  const SimulatorOptions& options) {
-  check_size(ideal.signal_a, sensor.camera);
-  check_size(ideal.signal_b, sensor.camera);
+Frame measured_frame(const IdealFrame& ideal, const SensorModel& sensor,
+                     const SimulatorOptions& options) {
   check_systematic_errors(options);
-  DualFrequencyFrame frame;
+  Frame frame = blank_frame(ideal.signals.size());
   frame.index = ideal.index;
   frame.timestamp_s = ideal.timestamp_s;
-  read_image(ideal.signal_a, sensor_readout(options, sensor, ideal.index, ImageOfFrame::a),
-             frame.phase_a, frame.amplitude_a);
-  read_image(ideal.signal_b, sensor_readout(options, sensor, ideal.index, ImageOfFrame::b),
-             frame.phase_b, frame.amplitude_b);
+  for (std::size_t f = 0; f < ideal.signals.size(); ++f) {
+    check_size(ideal.signals[f], sensor.camera);
+    read_image(ideal.signals[f], sensor_readout(options, sensor, ideal.index, f), frame.phases[f],
+               frame.amplitudes[f]);
+  }
   return frame;
 }
 

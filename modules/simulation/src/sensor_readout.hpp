@@ -6,6 +6,7 @@
 #include "systematic_errors.hpp"
 
 #include <complex>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -13,15 +14,16 @@
 
 namespace tofmap {
 
-enum class ImageOfFrame : std::uint8_t { a = 0, b = 1 };
-
-/// The key of the noise of one image. It depends on `seed`, frame index and image.
-std::uint64_t noise_key(const SimulatorOptions& options, int frame, ImageOfFrame image);
+/// The key of the noise of the image at one frequency, of `frequencies`. It depends on `seed`,
+/// frame index and frequency.
+std::uint64_t noise_key(const SimulatorOptions& options, int frame, std::size_t frequency,
+                        std::size_t frequencies);
 
 /// How a sensor measures the ideal signals of one image: with range errors, ambient light, noise
 /// and quantisation (docs/simulator.md, equations 2 to 4 and 8 to 14).
 struct SensorReadout {
   double wavelength_m = 1;
+  double contrast = 1;  ///< factor of the signal at this frequency
   RangeErrors errors;
   AmbientLight ambient;
   double noise_sigma = 0;  ///< of each component of the signal, without ambient light
@@ -41,6 +43,6 @@ struct SensorReadout {
 };
 
 SensorReadout sensor_readout(const SimulatorOptions& options, const SensorModel& sensor, int frame,
-                             ImageOfFrame image);
+                             std::size_t frequency);
 
 }  // namespace tofmap

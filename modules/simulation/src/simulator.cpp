@@ -32,7 +32,7 @@ SensorModel sensor_model(const SimulatorOptions& options) {
                           options.height_px);
   camera.distortion = {options.distortion_k1, options.distortion_k2, options.distortion_p1,
                        options.distortion_p2, options.distortion_k3};
-  sensor.modulation = {options.frequency_a_hz, options.frequency_b_hz};
+  sensor.modulation = modulation_of(options);
   sensor.max_range_m = options.max_range_m;
   try {
     validate(camera);
@@ -61,16 +61,27 @@ std::vector<Eigen::Vector3f> subpixel_rays(const CameraModel& camera, int n) {
   return rays;
 }
 
+/// When each image of a frame is taken, as a fraction of the frame period after its timestamp.
+std::vector<double> delay_shares(const SimulatorOptions& options) {
+  const std::size_t count = modulation_of(options).count();
+  std::vector<double> shares{0};
+  for (std::size_t f = 1; f < count; ++f) {
+    shares.push_back(options.b_delay_share * static_cast<double>(f) /
+                     static_cast<double>(count - 1));
+  }
+  return shares;
+}
+
 CameraMotion camera_motion(const Scene& scene, const SimulatorOptions& options) {
   if (!options.trajectory_file.empty()) {
     const Trajectory poses = read_trajectory(options.trajectory_file);
     if (poses.empty()) throw InputError(options.trajectory_file + ": contains no poses");
-    return replay_motion(poses, options.frames, options.b_delay_share);
+    return replay_motion(poses, options.frames, delay_shares(options));
   }
   const MotionLimits limits{options.max_translation_m,
                             options.max_rotation_deg * std::numbers::pi / 180};
   return plan_motion(scene.path, limits, options.frames, scene.min_frames, options.frame_rate_hz,
-                     options.b_delay_share);
+                     delay_shares(options));
 }
 
 /// The rays of a scene, to whose surface the frames of doors are added.
@@ -87,7 +98,7 @@ Simulator::Simulator(Scene scene, const SimulatorOptions& options, std::function
       sensor_(sensor_model(options_)),
       reach_m_(options_.max_range_m > 0 ? options_.max_range_m : scene_.max_range_m),
       motion_(camera_motion(scene_, options_)),
-      bodies_(scene_.surface, motion_.at_a, sensor_.camera, options_),
+      bodies_(scene_.surface, trajectory(), sensor_.camera, options_),
       ray_scene_(with_frames(scene_, bodies_)),
       rays_(subpixel_rays(sensor_.camera, options_.subpixels)),
       noise_sigma_(noise_strength(options_.range_noise_m, sensor_.modulation)),
@@ -136,25 +147,23 @@ void Simulator::check_index(int index) const {
 
 SimulatedFrame Simulator::simulate(int index) const {
   check_index(index);
-  const StampedPose& at_a = motion_.at_a[static_cast<std::size_t>(index)];
+  const StampedPose& first = trajectory()[static_cast<std::size_t>(index)];
   SimulatedFrame simulated;
-  DualFrequencyFrame& frame = simulated.frame;
+  Frame& frame = simulated.frame;
   frame.index = index;
-  frame.timestamp_s = at_a.timestamp_s;
-  const auto readout = [&](ImageOfFrame image) {
-    return sensor_readout(options_, sensor_, index, image);
-  };
-  constexpr bool with_labels = true;
-  Exposed a = expose(exposure_a(index), readout(ImageOfFrame::a), with_labels);
-  Exposed b = expose(exposure_b(index), readout(ImageOfFrame::b), !with_labels);
-  frame.phase_a = std::move(a.phase);
-  frame.amplitude_a = std::move(a.amplitude);
-  frame.phase_b = std::move(b.phase);
-  frame.amplitude_b = std::move(b.amplitude);
-  // A pixel without a return at one of the frequencies has no range.
-  simulated.label =
-      frame.phase_b.isNaN().select(static_cast<std::uint8_t>(PixelLabel::no_return), a.label);
-  simulated.world_from_camera = at_a.world_from_camera;
+  frame.timestamp_s = first.timestamp_s;
+  for (std::size_t f = 0; f < sensor_.modulation.count(); ++f) {
+    const SensorReadout readout = sensor_readout(options_, sensor_, index, f);
+    Exposed exposed = expose(exposure(index, f), readout, f == 0);
+    // A pixel without a return at one of the frequencies has no range.
+    simulated.label = f == 0
+                          ? std::move(exposed.label)
+                          : ImageU8(exposed.phase.isNaN().select(
+                                static_cast<std::uint8_t>(PixelLabel::no_return), simulated.label));
+    frame.phases.push_back(std::move(exposed.phase));
+    frame.amplitudes.push_back(std::move(exposed.amplitude));
+  }
+  simulated.world_from_camera = first.world_from_camera;
   Truth truth = cast_truth(index);
   simulated.range_truth_m = std::move(truth.range_m);
   simulated.cos_incidence = std::move(truth.cos_incidence);
@@ -164,29 +173,21 @@ SimulatedFrame Simulator::simulate(int index) const {
 
 IdealFrame Simulator::ideal(int index) const {
   check_index(index);
-  const StampedPose& at_a = motion_.at_a[static_cast<std::size_t>(index)];
-  return {.index = index,
-          .timestamp_s = at_a.timestamp_s,
-          .signal_a = ideal_signals(exposure_a(index)),
-          .signal_b = ideal_signals(exposure_b(index)),
-          .world_from_camera = at_a.world_from_camera,
-          .range_truth_m = cast_truth(index).range_m};
-}
-
-Simulator::Exposure Simulator::exposure_a(int index) const {
-  return exposure_of(motion_.at_a, index, 0, sensor_.modulation.wavelength_a_m(),
-                     noise_key(options_, index, ImageOfFrame::a));
-}
-
-Simulator::Exposure Simulator::exposure_b(int index) const {
-  return exposure_of(motion_.at_b, index, options_.b_delay_share,
-                     sensor_.modulation.wavelength_b_m(),
-                     noise_key(options_, index, ImageOfFrame::b));
+  const StampedPose& first = trajectory()[static_cast<std::size_t>(index)];
+  IdealFrame ideal{.index = index,
+                   .timestamp_s = first.timestamp_s,
+                   .signals = {},
+                   .world_from_camera = first.world_from_camera,
+                   .range_truth_m = cast_truth(index).range_m};
+  for (std::size_t f = 0; f < sensor_.modulation.count(); ++f) {
+    ideal.signals.push_back(ideal_signals(exposure(index, f)));
+  }
+  return ideal;
 }
 
 /// The time `share` of a frame period after the timestamp of a frame.
 double Simulator::time_s(int index, double share) const {
-  const Trajectory& poses = motion_.at_a;
+  const Trajectory& poses = trajectory();
   const auto i = static_cast<std::size_t>(index);
   if (poses.size() == 1) return poses[i].timestamp_s + share / options_.frame_rate_hz;
   const std::size_t from = std::min(i, poses.size() - 2);
@@ -200,13 +201,14 @@ SceneAtTime Simulator::scene_at(double time_s) const {
   return {&ray_scene_, std::make_shared<const RayScene>(surface)};
 }
 
-/// The exposure of one image, which is taken `delay_share` of a frame period after the timestamp.
-/// Its four samples are evenly spaced around the time of the image.
-Simulator::Exposure Simulator::exposure_of(const Trajectory& poses, int index, double delay_share,
-                                           double wavelength_m, std::uint64_t key) const {
+/// The exposure of the image at one frequency. Its four samples are evenly spaced around the time
+/// of the image.
+Simulator::Exposure Simulator::exposure(int index, std::size_t frequency) const {
+  const Trajectory& poses = motion_.at[frequency];
+  const double delay_share = delay_shares(options_)[frequency];
   Exposure exposure;
-  exposure.wavelength_m = wavelength_m;
-  exposure.noise_key = key;
+  exposure.wavelength_m = sensor_.modulation.wavelength_m(frequency);
+  exposure.noise_key = noise_key(options_, index, frequency, sensor_.modulation.count());
   const auto i = static_cast<std::size_t>(index);
   if (options_.exposure_share == 0 || poses.size() == 1) {
     exposure.world_from_camera.fill(poses[i].world_from_camera);
@@ -322,7 +324,7 @@ Simulator::Exposed Simulator::expose(const Exposure& exposure, const SensorReado
 }
 
 Simulator::Truth Simulator::cast_truth(int index) const {
-  const Pose& world_from_camera = motion_.at_a[static_cast<std::size_t>(index)].world_from_camera;
+  const Pose& world_from_camera = trajectory()[static_cast<std::size_t>(index)].world_from_camera;
   const SceneAtTime scene = scene_at(time_s(index, 0));
   const ImageF nothing = ImageF::Constant(sensor_.camera.height_px, sensor_.camera.width_px, nan);
   Truth truth{nothing, nothing, ImageU8::Zero(nothing.rows(), nothing.cols())};

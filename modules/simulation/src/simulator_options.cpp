@@ -26,6 +26,10 @@ std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
       {"distortion_k3", &S::distortion_k3, -10, 10, "", "radial distortion, as OpenCV's k3"},
       {"frequency_a_hz", &S::frequency_a_hz, 1e6, 1e9, "Hz", "modulation frequency of image A"},
       {"frequency_b_hz", &S::frequency_b_hz, 1e6, 1e9, "Hz", "modulation frequency of image B"},
+      {"frequencies_hz", &S::frequencies_hz, 1e6, 1e9, "Hz",
+       "one to eight modulation frequencies in place of those of A and B; none: A and B"},
+      {"contrasts", &S::contrasts, 0.01, 1, "",
+       "factor of the signal at each frequency; 1 at those that the list does not have"},
       {"range_noise_m", &S::range_noise_m, 0, 10, "m",
        "standard deviation of A's range at 5 m on a surface of reflectance 0.5 facing the camera"},
       {"subpixels", &S::subpixels, 1, 16, "", "rays per pixel along each of its sides"},
@@ -54,8 +58,15 @@ std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
       {"amplitude_error_b_m", &S::amplitude_error_b_m, -0.2, 0.2, "m",
        "error of B's ranges at an amplitude of 60; it falls with the logarithm of the amplitude, "
        "to 0 at 60000"},
+      {"offsets_m", &S::offsets_m, -0.2, 0.2, "m",
+       "constant errors of all frequencies, in place of offset_a_m and offset_b_m"},
+      {"periodic_errors_m", &S::periodic_errors_m, 0, 0.2, "m",
+       "largest periodic errors of all frequencies, in place of periodic_a_m and periodic_b_m"},
+      {"amplitude_errors_m", &S::amplitude_errors_m, -0.2, 0.2, "m",
+       "errors with amplitude of all frequencies, in place of amplitude_error_a_m and "
+       "amplitude_error_b_m"},
       {"fixed_pattern_m", &S::fixed_pattern_m, 0, 0.2, "m",
-       "standard deviation of the constant range errors of individual pixels, at A and at B"},
+       "standard deviation of the constant range errors of individual pixels at each frequency"},
       {"errors_seed", &S::errors_seed, 0, 2147483647, "",
        "seed of the periodic errors and of the fixed pattern: it identifies the camera"},
       {"ambient_noise", &S::ambient_noise, 1, 20, "",
@@ -71,7 +82,7 @@ std::vector<OptionField<SimulatorOptions>> SimulatorOptions::fields() {
       {"phase_bits", &S::phase_bits, 0, 16, "",
        "rounds phases to 2^bits steps per cycle, with 4 bits or more; 0: no rounding"},
       {"b_delay_share", &S::b_delay_share, 0, 1, "",
-       "time from A to B, as a fraction of the frame period"},
+       "time from the first image of a frame to the last, as a fraction of the frame period"},
       {"frames", &S::frames, 0, 1000000, "",
        "number of frames to record; 0: as many as the path needs"},
       {"frame_rate_hz", &S::frame_rate_hz, 0.01, 10000, "Hz", "frames per second"},
@@ -107,10 +118,22 @@ SimulatorOptions checked_options(SimulatorOptions options) {
       if (!(value >= field.min && value <= field.max)) {
         table.set("simulator." + std::string(field.name), std::to_string(value));
       }
+    } else if (const auto* list =
+                   std::get_if<std::vector<double> SimulatorOptions::*>(&field.member)) {
+      for (const double value : options.*(*list)) {
+        table.set("simulator." + std::string(field.name), std::to_string(value));
+      }
     }
   }
   check_systematic_errors(options);
   return options;
+}
+
+Modulation modulation_of(const SimulatorOptions& options) {
+  if (options.frequencies_hz.empty()) return {options.frequency_a_hz, options.frequency_b_hz};
+  Modulation modulation;
+  modulation.frequencies_hz = options.frequencies_hz;
+  return modulation;
 }
 
 }  // namespace tofmap

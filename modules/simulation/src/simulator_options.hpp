@@ -10,4 +10,7 @@ namespace tofmap {
 /// UsageError.
 SimulatorOptions checked_options(SimulatorOptions options);
 
+/// The modulation frequencies of the options.
+Modulation modulation_of(const SimulatorOptions& options);
+
 }  // namespace tofmap

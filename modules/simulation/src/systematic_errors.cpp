@@ -48,7 +48,7 @@ std::vector<WiggleHarmonic> drawn_harmonics(double peak_m, std::uint64_t key) {
   return shape.harmonics;
 }
 
-RangeErrors range_errors(const SimulatorOptions& options, const ErrorSizes& sizes,
+RangeErrors drawn_errors(const SimulatorOptions& options, const ErrorSizes& sizes,
                          double wavelength_m, std::uint64_t key) {
   return {.wavelength_m = wavelength_m,
           .of_phase = {.offset_m = sizes.offset_m,
@@ -87,14 +87,19 @@ std::complex<double> RangeErrors::rotation(const std::complex<double>& signal,
   return std::polar(1.0, rad_per_cycle * at_m(signal, pixel) / wavelength_m);
 }
 
-RangeErrors range_errors_a(const SimulatorOptions& options, const Modulation& modulation) {
-  const ErrorSizes sizes{options.offset_a_m, options.periodic_a_m, options.amplitude_error_a_m};
-  return range_errors(options, sizes, modulation.wavelength_a_m(), camera_key(options, 0));
-}
-
-RangeErrors range_errors_b(const SimulatorOptions& options, const Modulation& modulation) {
-  const ErrorSizes sizes{options.offset_b_m, options.periodic_b_m, options.amplitude_error_b_m};
-  return range_errors(options, sizes, modulation.wavelength_b_m(), camera_key(options, 1));
+RangeErrors range_errors(const SimulatorOptions& options, const Modulation& modulation,
+                         std::size_t frequency) {
+  // The options of A and B, unless a list has the values of all frequencies.
+  const auto value = [&](const std::vector<double>& listed, double of_a, double of_b) {
+    if (!listed.empty()) return frequency < listed.size() ? listed[frequency] : 0;
+    return frequency == 0 ? of_a : frequency == 1 ? of_b : 0;
+  };
+  const ErrorSizes sizes{
+      value(options.offsets_m, options.offset_a_m, options.offset_b_m),
+      value(options.periodic_errors_m, options.periodic_a_m, options.periodic_b_m),
+      value(options.amplitude_errors_m, options.amplitude_error_a_m, options.amplitude_error_b_m)};
+  return drawn_errors(options, sizes, modulation.wavelength_m(frequency),
+                      camera_key(options, frequency));
 }
 
 double AmbientLight::noise_factor(Eigen::Index row, Eigen::Index col) const {

@@ -33,10 +33,9 @@ struct RangeErrors {
   std::complex<double> rotation(const std::complex<double>& signal, std::size_t pixel) const;
 };
 
-/// The errors of image A of a camera. `errors_seed` determines what the options leave open.
-RangeErrors range_errors_a(const SimulatorOptions& options, const Modulation& modulation);
-/// The errors of image B of a camera. `errors_seed` determines what the options leave open.
-RangeErrors range_errors_b(const SimulatorOptions& options, const Modulation& modulation);
+/// The errors of a camera at one frequency. `errors_seed` determines what the options leave open.
+RangeErrors range_errors(const SimulatorOptions& options, const Modulation& modulation,
+                         std::size_t frequency);
 
 /// A rectangle of the image in which ambient light increases the noise.
 struct AmbientLight {

@@ -3,9 +3,9 @@
 
 #include "tofmap/simulation/tum_recording.hpp"
 
-#include "noise.hpp"
 #include "pixel_signal.hpp"
 #include "sensor_effects.hpp"
+#include "simulator_options.hpp"
 #include "systematic_errors.hpp"
 
 #include <algorithm>
@@ -98,29 +98,20 @@ CameraModel thinned_camera(const TumOptions& options, const ImageU16& first) {
 }
 
 /// Options of the simulator that need no scene.
-constexpr std::string_view used_options[] = {"frequency_a_hz",
-                                             "frequency_b_hz",
-                                             "range_noise_m",
-                                             "wiggle_m",
-                                             "dark_level",
-                                             "full_well",
-                                             "offset_a_m",
-                                             "offset_b_m",
-                                             "periodic_a_m",
-                                             "periodic_b_m",
-                                             "amplitude_error_a_m",
-                                             "amplitude_error_b_m",
-                                             "fixed_pattern_m",
-                                             "errors_seed",
-                                             "ambient_noise",
-                                             "ambient_left",
-                                             "ambient_top",
-                                             "ambient_right",
-                                             "ambient_bottom",
-                                             "phase_bits",
-                                             "frames",
-                                             "max_range_m",
-                                             "seed"};
+constexpr std::string_view used_options[] = {"frequency_a_hz",      "frequency_b_hz",
+                                             "frequencies_hz",      "contrasts",
+                                             "range_noise_m",       "wiggle_m",
+                                             "dark_level",          "full_well",
+                                             "offset_a_m",          "offset_b_m",
+                                             "periodic_a_m",        "periodic_b_m",
+                                             "amplitude_error_a_m", "amplitude_error_b_m",
+                                             "offsets_m",           "periodic_errors_m",
+                                             "amplitude_errors_m",  "fixed_pattern_m",
+                                             "errors_seed",         "ambient_noise",
+                                             "ambient_left",        "ambient_top",
+                                             "ambient_right",       "ambient_bottom",
+                                             "phase_bits",          "frames",
+                                             "max_range_m",         "seed"};
 
 /// Throws UsageError if an option is set that would have no effect.
 void refuse_unused(SimulatorOptions options) {
@@ -168,6 +159,16 @@ std::complex<double> ideal_signal(double strength, double range_m, double wavele
   return effects.are_none() ? light.first : demodulate({light, light, light, light}, effects);
 }
 
+/// Takes the returns of pixels away that have none at one of the frequencies.
+void drop_partial_returns(Frame& frame) {
+  for (Eigen::Index i = 0; i < frame.phases.front().size(); ++i) {
+    const auto is_missing = [i](const ImageF& phase) { return std::isnan(phase.data()[i]); };
+    if (std::ranges::none_of(frame.phases, is_missing)) continue;
+    for (ImageF& phase : frame.phases) phase.data()[i] = nan;
+    for (ImageF& amplitude : frame.amplitudes) amplitude.data()[i] = 0;
+  }
+}
+
 }  // namespace
 
 std::vector<OptionField<TumOptions>> TumOptions::fields() {
@@ -202,36 +203,29 @@ TumRecording::TumRecording(std::filesystem::path folder, const TumOptions& optio
     damaged_poses_ = std::move(usable.damages);
   }
   sensor_.camera = thinned_camera(options_, thinned(typical_image(images_), options_.every_pixel));
-  sensor_.modulation = {simulator.frequency_a_hz, simulator.frequency_b_hz};
+  sensor_.modulation = modulation_of(simulator);
   sensor_.max_range_m = simulator.max_range_m;
   validate(sensor_.camera);
   validate(sensor_.modulation);
   rays_ = pixel_rays(sensor_.camera);
-  noise_sigma_ = std::hypot(noise_strength(simulator.range_noise_m, sensor_.modulation),
-                            dark_noise_sigma(sensor_effects(simulator_, sensor_.modulation)));
 }
 
-TumRecording::Frame TumRecording::read(int index) const {
+TumRecording::FrameWithTruth TumRecording::read(int index) const {
   const DepthImage& image = images_.at(static_cast<std::size_t>(index));
   const ImageU16 depth = thinned(read_png_16(image.file), options_.every_pixel);
   if (!same_size(depth, rays_.z)) {
     throw InputError(image.file.string() + ": differs in size from the other images");
   }
-  Frame out;
+  FrameWithTruth out;
   out.world_from_camera = pose_at(poses_, image.timestamp_s, options_.max_pose_gap_s);
-  DualFrequencyFrame& frame = out.frame;
-  frame.index = index;
-  frame.timestamp_s = image.timestamp_s;
-  const ImageF nothing = ImageF::Constant(depth.rows(), depth.cols(), nan);
-  out.range_truth_m = frame.phase_a = frame.phase_b = nothing;
-  frame.amplitude_a = frame.amplitude_b = ImageF::Zero(depth.rows(), depth.cols());
-  const auto key =
-      mix(static_cast<std::uint64_t>(simulator_.seed)) + 2 * static_cast<std::uint64_t>(index);
+  out.range_truth_m = ImageF::Constant(depth.rows(), depth.cols(), nan);
   const Modulation& modulation = sensor_.modulation;
   const SensorEffects effects = sensor_effects(simulator_, modulation);
-  const RangeErrors errors_a = range_errors_a(simulator_, modulation);
-  const RangeErrors errors_b = range_errors_b(simulator_, modulation);
-  const AmbientLight ambient = ambient_light(simulator_, sensor_.camera);
+  const std::complex<double> nothing(std::numeric_limits<double>::quiet_NaN(), 0);
+  IdealFrame ideal;
+  ideal.index = index;
+  ideal.timestamp_s = image.timestamp_s;
+  ideal.signals.assign(modulation.count(), ImageC::Constant(depth.rows(), depth.cols(), nothing));
   const float farthest_m = sensor_.max_range_m > 0
                                ? std::min(longest_range_m, static_cast<float>(sensor_.max_range_m))
                                : longest_range_m;
@@ -242,23 +236,13 @@ TumRecording::Frame TumRecording::read(int index) const {
     if (range_m > farthest_m) continue;
     out.range_truth_m.data()[i] = range_m;
     const double strength = amplitude_unit * options_.reflectance / (double{range_m} * range_m);
-    const double noise_sigma =
-        noise_sigma_ * ambient.noise_factor(i / depth.cols(), i % depth.cols());
-    const auto at = [&](const RangeErrors& errors, std::uint64_t image_key) {
-      const auto pixel = static_cast<std::size_t>(i);
-      const std::complex<double> ideal =
-          ideal_signal(strength, double{range_m}, errors.wavelength_m, effects);
-      const std::complex<double> noise = noise_sigma * complex_noise(mix(image_key), pixel);
-      return measure(errors.rotation(ideal, pixel) * ideal + noise);
-    };
-    const auto a = at(errors_a, key);
-    const auto b = at(errors_b, key + 1);
-    if (!a || !b) continue;
-    frame.phase_a.data()[i] = quantised(a->phase_cycles, simulator_.phase_bits);
-    frame.amplitude_a.data()[i] = a->amplitude;
-    frame.phase_b.data()[i] = quantised(b->phase_cycles, simulator_.phase_bits);
-    frame.amplitude_b.data()[i] = b->amplitude;
+    for (std::size_t f = 0; f < modulation.count(); ++f) {
+      ideal.signals[f].data()[i] =
+          ideal_signal(strength, double{range_m}, modulation.wavelength_m(f), effects);
+    }
   }
+  out.frame = measured_frame(ideal, sensor_, simulator_);
+  drop_partial_returns(out.frame);
   return out;
 }
 

@@ -4,24 +4,107 @@
 #include "tofmap/unwrap/unwrap.hpp"
 
 #include "common/counted_ranges.hpp"
+#include "common/pixel_counts.hpp"
 #include "joint/joint.hpp"
 #include "jump/jump.hpp"
-#include "tofmap/unwrap/common/residual_cost.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
 
 namespace tofmap {
 namespace {
 
-/// Ranges for the given wrap counts. The confidence of a pixel follows from its own residual alone.
+/// Ranges for the given wrap counts. The confidence of a pixel follows from its own residuals
+/// alone.
 UnwrapResult unwrap_by_pixel(const MeasuredFrame& frame, const ImageU8& counts,
                              const UnwrapLimits& limits) {
-  const ImageF confidence = ResidualCost(frame.returns, limits, frame.sigma).probability(counts);
-  return {.image = make_range_image(frame.returns.phase_a, frame.sigma.a_cycles, counts, confidence,
-                                    limits)};
+  const ImageF confidence = count_probability(frame.returns, counts, limits, frame.sigma);
+  return {.image = make_range_image(frame.returns.phases[0], frame.sigma.cycles[0], counts,
+                                    confidence, limits.wavelength_m())};
 }
 
 /// Wrap count 0 for all valid pixels.
 ImageU8 wrapped_counts(const ImageU8& valid) {
   return (valid != 0).select(ImageU8::Zero(valid.rows(), valid.cols()), invalid_wrap_count);
+}
+
+/// The frequencies A and B of a method that compares two, counted from 0. Throws UsageError if the
+/// sensor does not have them. `single` uses A alone.
+struct ComparedPair {
+  std::size_t a = 0;
+  std::size_t b = 1;
+
+  ComparedPair(const UnwrapOptions& options, std::size_t frequencies)
+      : a(static_cast<std::size_t>(options.pair_first) - 1),
+        b(static_cast<std::size_t>(options.pair_second) - 1) {
+    const bool is_alone = options.method == UnwrapMethod::single;
+    const std::string method(name_of(options.method));
+    if (!is_alone && frequencies == 1) {
+      throw UsageError("unwrap.method: " + method +
+                       " compares two frequencies, but the recording has one; use joint or single");
+    }
+    const auto check = [&](std::size_t f, const char* option) {
+      if (f < frequencies) return;
+      throw UsageError(std::string("unwrap.") + option + " is " + std::to_string(f + 1) +
+                       ", but the recording has " +
+                       counted(frequencies, "frequency", "frequencies"));
+    };
+    check(a, "pair_first");
+    if (is_alone) return;
+    check(b, "pair_second");
+    if (a == b) throw UsageError("unwrap.pair_first and unwrap.pair_second must differ");
+  }
+};
+
+/// The measurements of two frequencies alone; of one, if the frame has no second one.
+MeasuredFrame measured_pair(const MeasuredFrame& frame, const ComparedPair& pair) {
+  MeasuredFrame out;
+  out.valid = frame.valid;
+  out.saturated = frame.saturated;
+  out.ambient = frame.ambient;
+  out.returns.index = frame.returns.index;
+  out.returns.timestamp_s = frame.returns.timestamp_s;
+  const auto take = [&](std::size_t f) {
+    out.returns.phases.push_back(frame.returns.phases[f]);
+    if (frame.returns.has_amplitude()) {
+      out.returns.amplitudes.push_back(frame.returns.amplitudes[f]);
+    }
+    out.noise.push_back(frame.noise[f]);
+    out.sigma.cycles.push_back(frame.sigma.cycles[f]);
+    out.errors.push_back(frame.errors[f]);
+    out.residual_sigma_m.push_back(frame.residual_sigma_m[f]);
+  };
+  take(pair.a);
+  if (pair.b < frame.returns.frequencies()) take(pair.b);
+  // Both residuals are those to the first frequency.
+  if (out.residual_sigma_m.size() == 2) {
+    out.residual_sigma_m[1] = std::hypot(out.residual_sigma_m[0], out.residual_sigma_m[1]);
+  }
+  return out;
+}
+
+/// The wrap counts of the first frequency at ranges that another one has found.
+void count_first(const ImageF& phase, double wavelength_m, RangeImage& image) {
+  for (Eigen::Index i = 0; i < phase.size(); ++i) {
+    if (image.reason.data()[i] != 0) continue;
+    const double cycles = image.range_m.data()[i] / wavelength_m - phase.data()[i];
+    image.wrap_count.data()[i] =
+        static_cast<std::uint8_t>(std::clamp(std::lround(cycles), 0L, invalid_wrap_count - 1L));
+  }
+}
+
+/// The standard deviation of the systematic error of a range, from those of all frequencies.
+double systematic_error_m(const std::vector<FrameErrors>& errors) {
+  double sum_m2 = 0;
+  for (std::size_t f = 1; f < errors.size(); ++f) {
+    const double systematic_m = range_systematic_m(errors[f].camera);
+    sum_m2 += systematic_m * systematic_m;
+  }
+  return errors.size() > 1 ? std::sqrt(sum_m2 / static_cast<double>(errors.size() - 1)) : 0;
 }
 
 }  // namespace
@@ -30,10 +113,24 @@ Unwrapper::Unwrapper(const SensorModel& sensor, const UnwrapOptions& options)
     : options_(options),
       method_(options.method),
       limits_(unwrap_limits(sensor, options.max_range_m)),
-      measurer_(sensor, options) {}
+      measurer_(sensor, options) {
+  if (finds_jumps(method_)) ComparedPair(options_, limits_.frequencies());
+}
 
-UnwrapResult Unwrapper::unwrap(const DualFrequencyFrame& frame) {
-  return unwrap(measurer_.measure(frame));
+UnwrapResult Unwrapper::unwrap(const Frame& frame) { return unwrap(measurer_.measure(frame)); }
+
+UnwrapResult Unwrapper::unwrap_pair(const MeasuredFrame& measured) {
+  const ComparedPair pair(options_, limits_.frequencies());
+  const PairLimits limits = limits_.pair(pair.a, pair.b);
+  const JumpMethod method = jump_method(method_);
+  const bool has_others = limits_.frequencies() > 2 || pair.a > 0;
+  if (!has_others) return unwrap_by_jumps(jump_estimator_, measured, limits, method, options_);
+  UnwrapResult result =
+      unwrap_by_jumps(jump_estimator_, measured_pair(measured, pair), limits, method, options_);
+  if (pair.a > 0) {
+    count_first(measured.returns.phases.front(), limits_.wavelength_m(), result.image);
+  }
+  return result;
 }
 
 UnwrapResult Unwrapper::unwrap(const MeasuredFrame& measured) {
@@ -44,9 +141,10 @@ UnwrapResult Unwrapper::unwrap(const MeasuredFrame& measured) {
       case UnwrapMethod::jump:
       case UnwrapMethod::paper:
       case UnwrapMethod::single:
-        return unwrap_by_jumps(jump_estimator_, measured, limits_, jump_method(method_), options_);
+        return unwrap_pair(measured);
       case UnwrapMethod::pixel:
-        return unwrap_by_pixel(measured, nearest_pair_counts(measured.returns, limits_), limits_);
+        return unwrap_by_pixel(measured, nearest_counts(measured.returns, limits_, measured.sigma),
+                               limits_);
       case UnwrapMethod::none:
         break;
     }
@@ -54,15 +152,14 @@ UnwrapResult Unwrapper::unwrap(const MeasuredFrame& measured) {
   };
   UnwrapResult result = unwrap_measured();
   result.errors = measured.errors;
-  result.image.systematic_m = range_systematic_m(measured.errors.camera);
+  result.image.systematic_m = systematic_error_m(measured.errors);
   const auto because_saturated = static_cast<std::uint8_t>(InvalidReason::saturated);
   result.image.reason = (measured.saturated != 0).select(because_saturated, result.image.reason);
   result.phase_noise_cycles = median_phase_noise_cycles(measured);
   return result;
 }
 
-UnwrapResult unwrap(const DualFrequencyFrame& frame, const SensorModel& sensor,
-                    const UnwrapOptions& options) {
+UnwrapResult unwrap(const Frame& frame, const SensorModel& sensor, const UnwrapOptions& options) {
   return Unwrapper(sensor, options).unwrap(frame);
 }
 

@@ -56,11 +56,9 @@ RangeImage make_range_image(const ImageF& range_m, const ImageF& sigma_m, const 
   return counted(range_m, sigma_m, counts, confidence, 0, 1);
 }
 
-RangeImage make_range_image(const ImageF& phase_a, const ImageF& sigma_a_cycles,
-                            const ImageU8& counts, const ImageF& confidence,
-                            const UnwrapLimits& limits) {
-  return counted(phase_a, sigma_a_cycles, counts, confidence, 1,
-                 static_cast<float>(limits.wavelength_a_m));
+RangeImage make_range_image(const ImageF& phase, const ImageF& sigma_cycles, const ImageU8& counts,
+                            const ImageF& confidence, double wavelength_m) {
+  return counted(phase, sigma_cycles, counts, confidence, 1, static_cast<float>(wavelength_m));
 }
 
 }  // namespace tofmap

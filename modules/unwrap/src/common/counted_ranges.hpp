@@ -4,7 +4,6 @@
 
 #include <tofmap/core/image.hpp>
 #include <tofmap/core/range_image.hpp>
-#include <tofmap/unwrap/common/residual_cost.hpp>
 
 namespace tofmap {
 
@@ -13,10 +12,9 @@ namespace tofmap {
 RangeImage make_range_image(const ImageF& range_m, const ImageF& sigma_m, const ImageU8& counts,
                             const ImageF& confidence);
 
-/// The range image of known wrap counts of A, with the ranges (phase_a + n) λ_A. Pixels with
-/// invalid_wrap_count become invalid, for no return.
-RangeImage make_range_image(const ImageF& phase_a, const ImageF& sigma_a_cycles,
-                            const ImageU8& counts, const ImageF& confidence,
-                            const UnwrapLimits& limits);
+/// The range image of known wrap counts of one frequency, with the ranges (phase + n) λ. Pixels
+/// with invalid_wrap_count become invalid, for no return.
+RangeImage make_range_image(const ImageF& phase, const ImageF& sigma_cycles, const ImageU8& counts,
+                            const ImageF& confidence, double wavelength_m);
 
 }  // namespace tofmap

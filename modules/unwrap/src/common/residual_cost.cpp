@@ -19,15 +19,13 @@
 namespace tofmap {
 namespace {
 
-constexpr double noise_tolerance_cycles = 0.05;
-
 /// How a wrap count changes the residual, and where it is within the limits.
 struct CountStep {
   float shift;     ///< change of the residual, cycles of B, −1/2 … 1/2
   float farthest;  ///< farthest_phase_cycles()
 };
 
-CountStep count_step(const UnwrapLimits& limits, int n) {
+CountStep count_step(const PairLimits& limits, int n) {
   const double ratio = limits.wavelength_ratio();
   return {static_cast<float>(residual_shift_cycles(ratio, n)), farthest_phase_cycles(limits, n)};
 }
@@ -156,56 +154,31 @@ TOFMAP_VECTOR_CLONES void add_likelihoods(int pixels, const float* phase_a,
 
 }  // namespace
 
-UnwrapLimits unwrap_limits(const SensorModel& sensor, double max_range_m) {
-  UnwrapLimits limits;
-  limits.wavelength_a_m = sensor.modulation.wavelength_a_m();
-  limits.wavelength_b_m = sensor.modulation.wavelength_b_m();
-  const double most_m = invalid_wrap_count * limits.wavelength_a_m;  // 255 wrap counts fit 8 bits
-  limits.max_range_m =
-      max_range_m > 0 ? max_range_m
-      : sensor.max_range_m > 0
-          ? sensor.max_range_m
-          : std::min(most_m, combined_range_m(sensor.modulation, noise_tolerance_cycles));
-  limits.count_a = wrap_limits(sensor.modulation, limits.max_range_m).count_a;
-  if (limits.count_a > invalid_wrap_count) {
-    throw UsageError("max_range_m: " + std::to_string(limits.max_range_m) + " m needs " +
-                     std::to_string(limits.count_a) +
-                     " wrap counts; allowed: at most 255, that is " + std::to_string(most_m) +
-                     " m");
-  }
-  return limits;
-}
-
-float count_residual_m(const UnwrapLimits& limits, float phase_a, float phase_b, int n_a) {
+float count_residual_m(const PairLimits& limits, float phase_a, float phase_b, int n_a) {
   return static_cast<float>(frequency_residual_m(limits.wavelength_a_m, limits.wavelength_b_m,
                                                  double{phase_a} + n_a, phase_b));
 }
 
-float farthest_phase_cycles(const UnwrapLimits& limits, int n_a) {
+float farthest_phase_cycles(const PairLimits& limits, int n_a) {
   if (n_a == 0) return 1;
   if (n_a < 0 || n_a >= limits.count_a) return -1;
   return static_cast<float>(limits.max_range_m / limits.wavelength_a_m + noise_tolerance_cycles -
                             n_a);
 }
 
-double residual_step_m(const UnwrapLimits& limits) {
+double residual_step_m(const PairLimits& limits) {
   return residual_step_m(limits.wavelength_a_m, limits.wavelength_b_m, limits.count_a);
 }
 
-bool count_within_limits(const UnwrapLimits& limits, float phase_a, int n_a) {
+bool count_within_limits(const PairLimits& limits, float phase_a, int n_a) {
   if (n_a == 0) return true;
   const double range_m = (phase_a + n_a) * limits.wavelength_a_m;
   return n_a < limits.count_a &&
          range_m <= limits.max_range_m + noise_tolerance_cycles * limits.wavelength_a_m;
 }
 
-bool can_tell_apart(const UnwrapLimits& limits, int n_a, int other_n_a) {
-  return std::abs(residual_shift_cycles(limits.wavelength_ratio(), n_a - other_n_a)) >
-         noise_tolerance_cycles;
-}
-
-ImageU8 nearest_pair_counts(const DualFrequencyFrame& frame, const UnwrapLimits& limits) {
-  ImageU8 counts(frame.phase_a.rows(), frame.phase_a.cols());
+ImageU8 nearest_pair_counts(const Frame& frame, const PairLimits& limits) {
+  ImageU8 counts(frame.phases[0].rows(), frame.phases[0].cols());
   const auto ratio = static_cast<float>(limits.wavelength_a_m / limits.wavelength_b_m);
   Nearest nearest;
   for (Eigen::Index done = 0; done < counts.size(); done += block_pixels) {
@@ -213,8 +186,8 @@ ImageU8 nearest_pair_counts(const DualFrequencyFrame& frame, const UnwrapLimits&
         static_cast<int>(std::min<Eigen::Index>(block_pixels, counts.size() - done));
     nearest.cycles.fill(1);
     nearest.count.fill(0);
-    const float* phase_a = frame.phase_a.data() + done;
-    const float* phase_b = frame.phase_b.data() + done;
+    const float* phase_a = frame.phases[0].data() + done;
+    const float* phase_b = frame.phases[1].data() + done;
     for (int n = 0; n < limits.count_a; ++n) {
       take_nearer(pixels, phase_a, phase_b, ratio, count_step(limits, n), static_cast<float>(n),
                   nearest);
@@ -233,20 +206,20 @@ ImageF reconstruct_cycles(const ImageF& phase_a, const ImageU8& counts) {
   return (counts == invalid_wrap_count).select(nan, phase_a + counts.cast<float>());
 }
 
-ResidualCost::ResidualCost(const DualFrequencyFrame& frame, const UnwrapLimits& limits,
-                           const PhaseSigma& sigma, double residual_sigma_m)
+ResidualCost::ResidualCost(const Frame& frame, const PairLimits& limits, const PhaseSigma& sigma,
+                           double residual_sigma_m)
     : count_a_(limits.count_a),
       size_(static_cast<std::size_t>(DiagonalLayout::whole_vectors(count_a_ + 2))) {
   for (ImageF* plane : {&phase_a_, &residual_cycles_, &precision_}) {
-    plane->resize(frame.phase_a.rows(), frame.phase_a.cols());
+    plane->resize(frame.phases[0].rows(), frame.phases[0].cols());
   }
   const double residual_cycles = residual_sigma_m / limits.wavelength_b_m;
-  fill_residual(
-      static_cast<int>(phase_a_.size()),
-      {frame.phase_a.data(), frame.phase_b.data(), sigma.a_cycles.data(), sigma.b_cycles.data()},
-      static_cast<float>(limits.wavelength_a_m / limits.wavelength_b_m),
-      static_cast<float>(residual_cycles * residual_cycles), phase_a_.data(),
-      residual_cycles_.data(), precision_.data());
+  fill_residual(static_cast<int>(phase_a_.size()),
+                {frame.phases[0].data(), frame.phases[1].data(), sigma.cycles[0].data(),
+                 sigma.cycles[1].data()},
+                static_cast<float>(limits.wavelength_a_m / limits.wavelength_b_m),
+                static_cast<float>(residual_cycles * residual_cycles), phase_a_.data(),
+                residual_cycles_.data(), precision_.data());
   const int reach = static_cast<int>(size_);
   for (int n = -1 - reach; n < 2 * reach - 1; ++n) {
     const CountStep step = count_step(limits, n);

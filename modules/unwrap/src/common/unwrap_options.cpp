@@ -22,7 +22,7 @@ std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
       {"method", &O::method, 0, 0, "", "method that finds the wrap counts"},
       {"max_range_m", &O::max_range_m, 0, 100000, "m",
        "longest range in the scene, which limits the wrap counts; 0: the limit that the recording "
-       "states, or else the range up to which the pair of frequencies is unambiguous; paper always "
+       "states, or else the range up to which the frequencies are unambiguous; paper always "
        "uses two wrap counts"},
       {"count_iterations", &O::count_iterations, 1, 1000, "",
        "joint: iterations of belief propagation over wrap counts"},
@@ -39,14 +39,18 @@ std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
        "joint: ignore the residual of mixed pixels, those whose amplitude lies between the "
        "amplitudes of two opposite neighbours"},
       {"fuse_frequencies", &O::fuse_frequencies, 0, 1, "",
-       "joint: the range is the mean of both frequencies, weighted by inverse variances; false: "
-       "the range of A"},
+       "joint: the range is the mean of all frequencies, weighted by inverse variances; false: "
+       "the range of the first one"},
       {"correct_exposure", &O::correct_exposure, 0, 1, "",
-       "joint, jump: estimate the camera's motion between the exposures of A and B and correct "
-       "for it; no effect without systematic_errors"},
+       "joint, jump: estimate the camera's motion between the exposures of the frequencies and "
+       "correct for it; no effect without systematic_errors"},
       {"systematic_errors", &O::systematic_errors, 0, 1, "",
        "joint, jump: estimate the systematic errors in which the frequencies differ, from all "
        "frames so far; false: residuals are attributed to noise alone"},
+      {"pair_first", &O::pair_first, 1, 8, "",
+       "jump, paper, single: the frequency whose phase jumps are found, counted from 1"},
+      {"pair_second", &O::pair_second, 1, 8, "",
+       "jump, paper: the frequency with which it is compared, counted from 1"},
       {"iterations", &O::iterations, 1, 1000, "",
        "jump, paper, single: largest number of iterations of belief propagation"},
       {"trust_discontinuity", &O::trust_discontinuity, 0, 1, "",

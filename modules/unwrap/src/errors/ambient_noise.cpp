@@ -196,12 +196,14 @@ ImageF exp_between(const ImageF& blocks, Eigen::Index rows, Eigen::Index cols) {
 
 }  // namespace
 
-ImageF find_ambient_noise(const DualFrequencyFrame& frame, const PhaseNoise& noise) {
-  BlockShares shares(frame.phase_a.rows(), frame.phase_a.cols());
-  shares.add(frame.phase_a, frame.amplitude_a, noise.scale_a, 0, 1);
-  shares.add(frame.phase_a, frame.amplitude_a, noise.scale_a, 1, 0);
-  shares.add(frame.phase_b, frame.amplitude_b, noise.scale_b, 0, 1);
-  shares.add(frame.phase_b, frame.amplitude_b, noise.scale_b, 1, 0);
+ImageF find_ambient_noise(const Frame& frame, const std::vector<PhaseNoise>& noise) {
+  BlockShares shares(frame.rows(), frame.cols());
+  const ImageF none;
+  for (std::size_t f = 0; f < frame.frequencies(); ++f) {
+    const ImageF& amplitude = frame.has_amplitude() ? frame.amplitudes[f] : none;
+    shares.add(frame.phases[f], amplitude, noise[f].scale, 0, 1);
+    shares.add(frame.phases[f], amplitude, noise[f].scale, 1, 0);
+  }
   ImageF logarithms(shares.rows(), shares.cols());
   for (Eigen::Index r = 0; r < logarithms.rows(); ++r) {
     for (Eigen::Index c = 0; c < logarithms.cols(); ++c) {
@@ -209,7 +211,7 @@ ImageF find_ambient_noise(const DualFrequencyFrame& frame, const PhaseNoise& noi
     }
   }
   if ((logarithms == 0).all()) return {};
-  return exp_between(logarithms, frame.phase_a.rows(), frame.phase_a.cols());
+  return exp_between(logarithms, frame.rows(), frame.cols());
 }
 
 }  // namespace tofmap

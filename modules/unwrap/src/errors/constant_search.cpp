@@ -20,7 +20,7 @@ namespace {
 /// best wrap count, and thereby gets a residual error and a range.
 class ConstantScore {
  public:
-  ConstantScore(const UnwrapLimits& limits, const ConstantPrior& prior,
+  ConstantScore(const PairLimits& limits, const ConstantPrior& prior,
                 const PredictedSamples& samples)
       : limits_(limits),
         prior_(prior),
@@ -63,7 +63,7 @@ class ConstantScore {
     return count / samples_of_material * std::log(sum / count + least);
   }
 
-  const UnwrapLimits& limits_;
+  const PairLimits& limits_;
   const ConstantPrior& prior_;
   const PredictedSamples& samples_;
   std::vector<float> shifted_m_;
@@ -74,12 +74,12 @@ class ConstantScore {
 
 }  // namespace
 
-double largest_constant_m(const UnwrapLimits& limits) {
+double largest_constant_m(const PairLimits& limits) {
   constexpr double least_m = 0.12;
   return std::max(least_m, residual_step_m(limits) / 2);
 }
 
-double likeliest_constant_m(const UnwrapLimits& limits, const ConstantPrior& prior,
+double likeliest_constant_m(const PairLimits& limits, const ConstantPrior& prior,
                             const PredictedSamples& samples) {
   constexpr double spacing_m = 0.01;
   if (samples.phase_a.empty()) return 0;

@@ -27,12 +27,12 @@ struct ConstantPrior {
 
 /// The largest absolute value of a constant that is searched, metres: half of the residual step,
 /// and at least 12 cm.
-double largest_constant_m(const UnwrapLimits& limits);
+double largest_constant_m(const PairLimits& limits);
 
 /// The most likely constant that is added to the residuals of all samples, metres. It minimises
 /// equation 24 of docs/unwrapping.md over constants a centimetre apart, up to largest_constant_m()
 /// in both directions. 0 if there are no samples.
-double likeliest_constant_m(const UnwrapLimits& limits, const ConstantPrior& prior,
+double likeliest_constant_m(const PairLimits& limits, const ConstantPrior& prior,
                             const PredictedSamples& samples);
 
 }  // namespace tofmap

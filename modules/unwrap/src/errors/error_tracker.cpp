@@ -166,20 +166,23 @@ void read_image(std::istream& in, ImageF& image) {
 
 }  // namespace
 
-ErrorTracker::ErrorTracker(const UnwrapLimits& limits, const CameraModel& camera)
+ErrorTracker::ErrorTracker(const PairLimits& limits, const CameraModel& camera)
     : limits_(limits), camera_(camera) {
   if (camera.width_px > 0 && camera.fx_px > 0) rays_ = pixel_rays(camera);
 }
 
-ErrorTracker::Tracked ErrorTracker::track(const DualFrequencyFrame& frame,
-                                          const PhaseSigma& sigma) {
+ErrorTracker::Tracked ErrorTracker::track(const Frame& frame, const PhaseSigma& sigma,
+                                          std::size_t b) {
   const PixelRays no_rays;
+  const ImageF no_amplitude;
+  const bool has_amplitude = frame.has_amplitude();
   const PairGeometry geometry{limits_, camera_,
-                              same_size(rays_.x, frame.phase_a) ? rays_ : no_rays};
-  const ExposurePair pair{frame.phase_a, frame.amplitude_a, sigma.a_cycles,
-                          frame.phase_b, frame.amplitude_b, sigma.b_cycles};
-  if (camera_errors_.frames == 0 && frame.has_amplitude()) {
-    camera_errors_.reference_amplitude = median_amplitude(frame.amplitude_a);
+                              same_size(rays_.x, frame.phases[0]) ? rays_ : no_rays};
+  const ExposurePair pair{
+      frame.phases[0], has_amplitude ? frame.amplitudes[0] : no_amplitude, sigma.cycles[0],
+      frame.phases[b], has_amplitude ? frame.amplitudes[b] : no_amplitude, sigma.cycles[b]};
+  if (camera_errors_.frames == 0 && has_amplitude) {
+    camera_errors_.reference_amplitude = median_amplitude(pair.amplitude_a);
   }
   Tracked tracked{{}, unmatched(pair)};
   tracked.errors.camera = camera_errors_;
@@ -195,7 +198,7 @@ ErrorTracker::Tracked ErrorTracker::track(const DualFrequencyFrame& frame,
   } else {
     match_moved(samples, pair, geometry, tracked);
   }
-  last_ = {frame.phase_b, frame.amplitude_b, sigma.b_cycles, tracked.errors.motion};
+  last_ = {pair.phase_b, pair.amplitude_b, pair.sigma_b_cycles, tracked.errors.motion};
   return tracked;
 }
 

@@ -197,7 +197,7 @@ class StillMatching : Matching {
     matching::subtract_lateral(in.cols, lateral_m2_.data(), range_m_.data(), predicted_m_.data());
   }
 
-  UnwrapLimits near_limits_;
+  PairLimits near_limits_;
   ImageF kept_phase_b_;  ///< B's phases without those beside edges; empty if all are kept
   Row lateral_m2_;
   Row unused_;

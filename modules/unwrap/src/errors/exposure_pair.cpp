@@ -194,7 +194,7 @@ void predict_camera_errors(const CameraErrors& errors, int count, const float* p
   add_errors_of_b(errors, count, phase_b, mean_m);
 }
 
-void find_nearest(const UnwrapLimits& limits, int count, const float* phase_a, const float* phase_b,
+void find_nearest(const PairLimits& limits, int count, const float* phase_a, const float* phase_b,
                   const float* predicted_m, float* error_m, float* range_m) {
   const double ratio = limits.wavelength_a_m / limits.wavelength_b_m;
   const auto wavelength_a_m = static_cast<float>(limits.wavelength_a_m);

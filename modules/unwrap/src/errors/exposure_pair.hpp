@@ -33,7 +33,7 @@ struct ExposurePair {
 
 /// References to what is the same for all frames. `rays` is empty if the camera is unknown.
 struct PairGeometry {
-  const UnwrapLimits& limits;
+  const PairLimits& limits;
   const CameraModel& camera;
   const PixelRays& rays;
 
@@ -76,7 +76,7 @@ void add_errors_of_b(const CameraErrors& errors, int count, const float* phase_b
 /// (docs/unwrapping.md, equation 19). Writes the residual minus `predicted_m` to `error_m`, and the
 /// range of A at that wrap count to `range_m`. Errors are NaN where a phase is NaN; ranges are NaN
 /// where A's phase is NaN.
-void find_nearest(const UnwrapLimits& limits, int count, const float* phase_a, const float* phase_b,
+void find_nearest(const PairLimits& limits, int count, const float* phase_a, const float* phase_b,
                   const float* predicted_m, float* error_m, float* range_m);
 
 }  // namespace tofmap

@@ -16,16 +16,23 @@
 #include <vector>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
 #include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
 namespace {
 
-/// Throws UsageError unless all images of the frame have the same size.
-void check(const DualFrequencyFrame& frame) {
-  const bool agree = same_size(frame.phase_a, frame.phase_b) &&
-                     (!frame.has_amplitude() || (same_size(frame.phase_a, frame.amplitude_a) &&
-                                                 same_size(frame.phase_a, frame.amplitude_b)));
+/// Throws UsageError unless the frame has these frequencies and all its images have the same size.
+void check(const Frame& frame, std::size_t frequencies) {
+  if (frame.frequencies() != frequencies) {
+    throw UsageError("unwrap: frame " + std::to_string(frame.index) + " has " +
+                     counted(frame.frequencies(), "frequency", "frequencies") +
+                     ", but the sensor has " + std::to_string(frequencies));
+  }
+  const auto fits = [&](const ImageF& image) { return same_size(image, frame.phases.front()); };
+  const bool agree = std::ranges::all_of(frame.phases, fits) &&
+                     (!frame.has_amplitude() || (frame.amplitudes.size() == frequencies &&
+                                                 std::ranges::all_of(frame.amplitudes, fits)));
   if (!agree) {
     throw UsageError("unwrap: frame " + std::to_string(frame.index) +
                      ": images differ in size; phases and amplitudes must have the same size, or "
@@ -33,63 +40,76 @@ void check(const DualFrequencyFrame& frame) {
   }
 }
 
-/// Flags valid and saturated pixels, and sets the phases of all invalid pixels to NaN. A pixel is
-/// valid if it has a finite phase and some light at both frequencies, and neither is saturated.
-TOFMAP_VECTOR_CLONES void keep_lit(int pixels, const float* amplitude_a, const float* amplitude_b,
-                                   float saturation, float* phase_a, float* phase_b,
-                                   std::uint8_t* valid, std::uint8_t* saturated) {
+/// Flags pixels that one frequency makes invalid: `lit` becomes 0 where the phase is not finite or
+/// there is no light, and `saturated` 1 where there is too much.
+TOFMAP_VECTOR_CLONES void mark_unusable(int pixels, const float* phase, const float* amplitude,
+                                        float saturation, std::uint8_t* lit,
+                                        std::uint8_t* saturated) {
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
-    const float a = amplitude_a[i];
-    const float b = amplitude_b[i];
-    // NaN if a phase is infinite or missing.
-    const float present = 0 * phase_a[i] + 0 * phase_b[i];
-    const bool is_lit = present == 0 && a > 0 && b > 0;
-    const bool is_saturated = is_lit && (a >= saturation || b >= saturation);
-    const bool is_valid = is_lit && !is_saturated;
-    valid[i] = is_valid ? 1 : 0;
-    saturated[i] = is_saturated ? 1 : 0;
-    phase_a[i] = is_valid ? phase_a[i] : nan;
-    phase_b[i] = is_valid ? phase_b[i] : nan;
+    const float present = 0 * phase[i];  // NaN if the phase is infinite or missing
+    const bool is_lit = present == 0 && amplitude[i] > 0;
+    lit[i] = is_lit ? lit[i] : 0;
+    saturated[i] = amplitude[i] >= saturation ? 1 : saturated[i];
   }
 }
 
-/// Measures valid pixels and noise of a frame, but no systematic errors.
-MeasuredFrame measured_alone(const DualFrequencyFrame& frame, double saturation_amplitude) {
-  check(frame);
-  const Eigen::Index rows = frame.phase_a.rows();
-  const Eigen::Index cols = frame.phase_a.cols();
+/// A pixel is saturated only if it is lit, and valid only if it is not saturated.
+void finish_flags(ImageU8& valid, ImageU8& saturated) {
+  saturated *= valid;
+  valid *= 1 - saturated;
+}
+
+/// Sets the phases of invalid pixels to NaN.
+TOFMAP_VECTOR_CLONES void keep_valid(int pixels, const std::uint8_t* valid, float* phase) {
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) phase[i] = valid[i] != 0 ? phase[i] : nan;
+}
+
+/// Measures valid pixels and noise of a frame, but no systematic errors. A pixel is valid if it has
+/// a finite phase and some light at all frequencies, and none is saturated.
+MeasuredFrame measured_alone(const Frame& frame, double saturation_amplitude) {
+  const Eigen::Index rows = frame.rows();
+  const Eigen::Index cols = frame.cols();
   MeasuredFrame out;
   out.returns = frame;
-  out.valid.resize(rows, cols);
-  out.saturated.resize(rows, cols);
+  out.valid.setOnes(rows, cols);
+  out.saturated.setZero(rows, cols);
+  const auto pixels = static_cast<int>(out.valid.size());
   const ImageF lit = frame.has_amplitude() ? ImageF() : ImageF::Ones(rows, cols);
   const bool can_saturate = frame.has_amplitude() && saturation_amplitude > 0;
-  keep_lit(static_cast<int>(out.valid.size()),
-           frame.has_amplitude() ? frame.amplitude_a.data() : lit.data(),
-           frame.has_amplitude() ? frame.amplitude_b.data() : lit.data(),
-           can_saturate ? static_cast<float>(saturation_amplitude)
-                        : std::numeric_limits<float>::infinity(),
-           out.returns.phase_a.data(), out.returns.phase_b.data(), out.valid.data(),
-           out.saturated.data());
+  const float saturation = can_saturate ? static_cast<float>(saturation_amplitude)
+                                        : std::numeric_limits<float>::infinity();
+  for (std::size_t f = 0; f < frame.frequencies(); ++f) {
+    const ImageF& amplitude = frame.has_amplitude() ? frame.amplitudes[f] : lit;
+    mark_unusable(pixels, frame.phases[f].data(), amplitude.data(), saturation, out.valid.data(),
+                  out.saturated.data());
+  }
+  finish_flags(out.valid, out.saturated);
+  for (ImageF& phase : out.returns.phases) keep_valid(pixels, out.valid.data(), phase.data());
   out.noise = estimate_phase_noise(out.returns);
   out.ambient = find_ambient_noise(out.returns, out.noise);
   out.sigma = PhaseSigma(out.returns, out.noise, out.ambient);
+  out.errors.resize(frame.frequencies());
+  out.residual_sigma_m.resize(frame.frequencies());
   return out;
 }
 
-/// Replaces B by B matched to A, and fills in the estimated errors of camera and frame.
-void match_exposures(ErrorTracker& tracker, const UnwrapLimits& limits, MeasuredFrame& frame) {
+/// Replaces the images of frequency `b` by those matched to the first frequency, and fills in the
+/// estimated errors of camera and frame.
+void take_matched(ErrorTracker::Tracked tracked, const PairLimits& limits, std::size_t b,
+                  MeasuredFrame& frame) {
   // The tracker does not see errors that vary within the image, such as multipath. Residuals
   // smaller than this share of the residual step must not count as evidence against a wrap count.
   constexpr double least_share_of_step = 1.0 / 30;
-  ErrorTracker::Tracked tracked = tracker.track(frame.returns, frame.sigma);
-  frame.returns.phase_b = std::move(tracked.b.phase_b);
-  if (frame.returns.has_amplitude()) frame.returns.amplitude_b = std::move(tracked.b.amplitude_b);
-  frame.sigma.b_cycles = std::move(tracked.b.sigma_b_cycles);
-  frame.residual_sigma_m =
+  frame.returns.phases[b] = std::move(tracked.b.phase_b);
+  if (frame.returns.has_amplitude()) {
+    frame.returns.amplitudes[b] = std::move(tracked.b.amplitude_b);
+  }
+  frame.sigma.cycles[b] = std::move(tracked.b.sigma_b_cycles);
+  frame.residual_sigma_m[b] =
       std::max(tracked.errors.camera.systematic_m, least_share_of_step * residual_step_m(limits));
-  frame.errors = std::move(tracked.errors);
+  frame.errors[b] = std::move(tracked.errors);
 }
 
 }  // namespace
@@ -99,33 +119,39 @@ FrameMeasurer::FrameMeasurer(const SensorModel& sensor, const UnwrapOptions& opt
       saturation_amplitude_(sensor.saturation_amplitude) {
   const UnwrapMethod method = options.method;
   const bool compares_frequencies = method == UnwrapMethod::joint || method == UnwrapMethod::jump;
-  if (compares_frequencies && options.systematic_errors) {
-    tracker_.emplace(limits_, options.correct_exposure ? sensor.camera : CameraModel());
+  if (!compares_frequencies || !options.systematic_errors) return;
+  for (std::size_t f = 1; f < limits_.frequencies(); ++f) {
+    trackers_.emplace_back(limits_.pair(0, f),
+                           options.correct_exposure ? sensor.camera : CameraModel());
   }
 }
 
-void FrameMeasurer::look_ahead(std::span<const DualFrequencyFrame> frames) {
-  if (!tracker_) return;
-  for (const DualFrequencyFrame& frame : frames) measure(frame);
-  tracker_->forget_last_frame();
+void FrameMeasurer::look_ahead(std::span<const Frame> frames) {
+  if (trackers_.empty()) return;
+  for (const Frame& frame : frames) measure(frame);
+  for (ErrorTracker& tracker : trackers_) tracker.forget_last_frame();
 }
 
-MeasuredFrame FrameMeasurer::measure(const DualFrequencyFrame& frame) {
+MeasuredFrame FrameMeasurer::measure(const Frame& frame) {
+  check(frame, limits_.frequencies());
   MeasuredFrame measured = measured_alone(frame, saturation_amplitude_);
-  if (tracker_) match_exposures(*tracker_, limits_, measured);
+  for (std::size_t b = 1; b <= trackers_.size(); ++b) {
+    take_matched(trackers_[b - 1].track(measured.returns, measured.sigma, b), limits_.pair(0, b), b,
+                 measured);
+  }
   return measured;
 }
 
 void FrameMeasurer::save(std::ostream& out) const {
-  if (tracker_) tracker_->save(out);
+  for (const ErrorTracker& tracker : trackers_) tracker.save(out);
 }
 
 void FrameMeasurer::load(std::istream& in) {
-  if (tracker_) tracker_->load(in);
+  for (ErrorTracker& tracker : trackers_) tracker.load(in);
 }
 
 double median_phase_noise_cycles(const MeasuredFrame& frame) {
-  const ImageF& sigma = frame.sigma.a_cycles;
+  const ImageF& sigma = frame.sigma.cycles.front();
   std::vector<float> sigmas;
   sigmas.reserve(static_cast<std::size_t>(sigma.size()));
   std::copy_if(sigma.data(), sigma.data() + sigma.size(), std::back_inserter(sigmas),

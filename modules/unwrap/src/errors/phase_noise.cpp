@@ -162,13 +162,16 @@ double noise_scale(const ImageF& phase, const ImageF& amplitude, double quantisa
 
 }  // namespace
 
-PhaseNoise estimate_phase_noise(const DualFrequencyFrame& frame) {
-  const double step_a_cycles = quantisation_step_cycles(frame.phase_a);
-  const double step_b_cycles = quantisation_step_cycles(frame.phase_b);
-  return {.scale_a = noise_scale(frame.phase_a, frame.amplitude_a, step_a_cycles),
-          .scale_b = noise_scale(frame.phase_b, frame.amplitude_b, step_b_cycles),
-          .quantisation_a_cycles = step_a_cycles,
-          .quantisation_b_cycles = step_b_cycles};
+std::vector<PhaseNoise> estimate_phase_noise(const Frame& frame) {
+  std::vector<PhaseNoise> noise;
+  const ImageF none;
+  for (std::size_t f = 0; f < frame.frequencies(); ++f) {
+    const ImageF& amplitude = frame.has_amplitude() ? frame.amplitudes[f] : none;
+    const double step_cycles = quantisation_step_cycles(frame.phases[f]);
+    noise.push_back({.scale = noise_scale(frame.phases[f], amplitude, step_cycles),
+                     .quantisation_cycles = step_cycles});
+  }
+  return noise;
 }
 
 }  // namespace tofmap

@@ -20,8 +20,8 @@ WrapCountOptions count_estimation(const UnwrapOptions& options) {
           .scales = options.scales};
 }
 
-/// Invalidates pixels whose runner-up is nearly as probable as the chosen wrap count, if the pair
-/// of frequencies cannot tell the two apart.
+/// Invalidates pixels whose runner-up is nearly as probable as the chosen wrap count, if the
+/// frequencies cannot tell the two apart.
 void drop_ambiguous(const WrapCountBeliefs& beliefs, const UnwrapLimits& limits,
                     RangeImage& image) {
   constexpr float nearly = 0.1F;
@@ -41,15 +41,15 @@ UnwrapResult unwrap_jointly(WrapCountEstimator& estimator, const MeasuredFrame& 
                             const UnwrapLimits& limits, const UnwrapOptions& options) {
   const WrapCountBeliefs beliefs = estimator.estimate(
       frame.returns, limits, frame.sigma, frame.residual_sigma_m, count_estimation(options));
-  const ImageF confidence = wrap_count_confidence(beliefs, frame.sigma.a_cycles, limits);
+  const ImageF confidence = wrap_count_confidence(beliefs, frame.sigma.cycles[0], limits);
   UnwrapResult result;
   if (options.fuse_frequencies) {
     const FusedRanges fused =
         fuse_ranges(frame.returns, beliefs.count, limits, frame.sigma, frame.residual_sigma_m);
     result.image = make_range_image(fused.range_m, fused.sigma_m, beliefs.count, confidence);
   } else {
-    result.image = make_range_image(frame.returns.phase_a, frame.sigma.a_cycles, beliefs.count,
-                                    confidence, limits);
+    result.image = make_range_image(frame.returns.phases[0], frame.sigma.cycles[0], beliefs.count,
+                                    confidence, limits.wavelength_m());
   }
   drop_ambiguous(beliefs, limits, result.image);
   result.iterations = beliefs.iterations;

@@ -8,8 +8,9 @@
 
 namespace tofmap {
 
-/// The method `joint`: finds wrap counts by belief propagation and fuses the ranges of both
-/// frequencies. `frame` must have been measured for `joint`, so that its B is matched to A.
+/// The method `joint`: finds wrap counts by belief propagation and fuses the ranges of all
+/// frequencies. `frame` must have been measured for `joint`, so that its images are matched to
+/// those of the first frequency.
 UnwrapResult unwrap_jointly(WrapCountEstimator& estimator, const MeasuredFrame& frame,
                             const UnwrapLimits& limits, const UnwrapOptions& options);
 

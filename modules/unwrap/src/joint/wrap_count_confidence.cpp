@@ -101,8 +101,7 @@ TOFMAP_VECTOR_CLONES void fill_confidence(int count, const Pixels& pixels_, floa
 
 ImageF wrap_count_confidence(const WrapCountBeliefs& beliefs, const ImageF& sigma_a_cycles,
                              const UnwrapLimits& limits) {
-  const double steps_per_cycle =
-      std::numbers::sqrt2 * limits.wavelength_a_m / residual_step_m(limits);
+  const double steps_per_cycle = residual_noise_steps(limits);
   ImageF confidence(beliefs.count.rows(), beliefs.count.cols());
   fill_confidence(static_cast<int>(confidence.size()),
                   {beliefs.probability.data(), beliefs.other_probability.data(),

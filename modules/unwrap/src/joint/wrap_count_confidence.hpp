@@ -3,7 +3,7 @@
 #pragma once
 
 #include <tofmap/core/image.hpp>
-#include <tofmap/unwrap/common/residual_cost.hpp>
+#include <tofmap/unwrap/common/unwrap_limits.hpp>
 #include <tofmap/unwrap/joint/wrap_count_propagation.hpp>
 
 namespace tofmap {
@@ -12,9 +12,10 @@ namespace tofmap {
 /// right (docs/unwrapping.md, equation 22). At the same noise, it rises with the log odds of the
 /// belief. 0 where the wrap count is invalid; `sigma_a_cycles` is not used there.
 ///
-/// `sigma_a_cycles` is the noise of A's phase. The calibration depends on the noise of the residual
-/// relative to the residual step. That noise is computed as if B had the noise of A, since B may
-/// come from another exposure.
+/// `sigma_a_cycles` is the noise of the first frequency's phase. The calibration depends on the
+/// noise of the residuals relative to their changes by another wrap count (residual_noise_steps).
+/// That noise is computed as if all frequencies had the noise of the first one, since the others
+/// may come from another exposure.
 ImageF wrap_count_confidence(const WrapCountBeliefs& beliefs, const ImageF& sigma_a_cycles,
                              const UnwrapLimits& limits);
 

@@ -4,6 +4,7 @@
 #include "tofmap/unwrap/joint/wrap_count_estimate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -30,8 +31,8 @@ float phase_of(std::complex<float> sum) {
 }
 
 bool is_loud(const PhaseSigma& sigma) {
-  const auto returns = static_cast<float>((sigma.a_cycles == sigma.a_cycles).count());
-  const auto loud = static_cast<float>((sigma.a_cycles > loud_cycles).count());
+  const auto returns = static_cast<float>((sigma.cycles[0] == sigma.cycles[0]).count());
+  const auto loud = static_cast<float>((sigma.cycles[0] > loud_cycles).count());
   return loud > loud_share * returns;
 }
 
@@ -66,14 +67,13 @@ void set_factors(const WrapCountBeliefs& coarse, Eigen::Index row, Eigen::Index 
 
 /// Multiplies the unary factors of noisy pixels by the coarse-to-fine prior of their blocks, which
 /// have 2 x 2 pixels.
-void apply_coarse_prior(const DualFrequencyFrame& pixels, const PhaseSigma& sigma,
-                        const DualFrequencyFrame& blocks, const WrapCountBeliefs& coarse,
-                        WrapCountModel& model) {
+void apply_coarse_prior(const Frame& pixels, const PhaseSigma& sigma, const Frame& blocks,
+                        const WrapCountBeliefs& coarse, WrapCountModel& model) {
   std::vector<float> factors(static_cast<std::size_t>(model.counts()));
-  for (Eigen::Index v = 0; v < pixels.phase_a.rows(); ++v) {
-    for (Eigen::Index u = 0; u < pixels.phase_a.cols(); ++u) {
-      if (std::isnan(pixels.phase_a(v, u)) || sigma.a_cycles(v, u) < loud_cycles) continue;
-      set_factors(coarse, v / 2, u / 2, blocks.phase_a(v / 2, u / 2), pixels.phase_a(v, u),
+  for (Eigen::Index v = 0; v < pixels.phases[0].rows(); ++v) {
+    for (Eigen::Index u = 0; u < pixels.phases[0].cols(); ++u) {
+      if (std::isnan(pixels.phases[0](v, u)) || sigma.cycles[0](v, u) < loud_cycles) continue;
+      set_factors(coarse, v / 2, u / 2, blocks.phases[0](v / 2, u / 2), pixels.phases[0](v, u),
                   factors);
       model.weigh_evidence(static_cast<int>(v), static_cast<int>(u), factors);
     }
@@ -88,17 +88,17 @@ float joint_probability(float coarse, float fine, bool agree) {
 }
 
 /// Replaces the beliefs of noisy pixels by those of their blocks where the block is surer.
-void take_coarse_counts(const DualFrequencyFrame& pixels, const NoisyFrame& blocks, int block_px,
+void take_coarse_counts(const Frame& pixels, const NoisyFrame& blocks, int block_px,
                         const WrapCountBeliefs& coarse, int counts, WrapCountBeliefs& fine) {
-  for (Eigen::Index v = 0; v < pixels.phase_a.rows(); ++v) {
-    for (Eigen::Index u = 0; u < pixels.phase_a.cols(); ++u) {
+  for (Eigen::Index v = 0; v < pixels.phases[0].rows(); ++v) {
+    for (Eigen::Index u = 0; u < pixels.phases[0].cols(); ++u) {
       const Eigen::Index row = v / block_px;
       const Eigen::Index col = u / block_px;
-      const float pixel_sigma = static_cast<float>(block_px) * blocks.sigma.a_cycles(row, col);
-      if (std::isnan(pixels.phase_a(v, u)) || pixel_sigma <= loud_cycles) continue;
+      const float pixel_sigma = static_cast<float>(block_px) * blocks.sigma.cycles[0](row, col);
+      if (std::isnan(pixels.phases[0](v, u)) || pixel_sigma <= loud_cycles) continue;
       if (coarse.other_probability(row, col) >= fine.other_probability(v, u)) continue;
-      const float phase = pixels.phase_a(v, u);
-      const float block_phase = blocks.frame.phase_a(row, col);
+      const float phase = pixels.phases[0](v, u);
+      const float block_phase = blocks.frame.phases[0](row, col);
       const auto count = [&](std::uint8_t n) {
         return nearest_count(block_phase + static_cast<float>(n), phase, counts);
       };
@@ -137,42 +137,43 @@ struct BlockSum {
 
 }  // namespace
 
-NoisyFrame halve(const DualFrequencyFrame& frame, const PhaseSigma& sigma) {
-  const Eigen::Index rows = (frame.phase_a.rows() + 1) / 2;
-  const Eigen::Index cols = (frame.phase_a.cols() + 1) / 2;
+NoisyFrame halve(const Frame& frame, const PhaseSigma& sigma) {
+  const Eigen::Index rows = (frame.rows() + 1) / 2;
+  const Eigen::Index cols = (frame.cols() + 1) / 2;
+  const std::size_t frequencies = frame.frequencies();
   NoisyFrame out;
   out.frame.index = frame.index;
   out.frame.timestamp_s = frame.timestamp_s;
-  for (ImageF* image :
-       {&out.frame.phase_a, &out.frame.phase_b, &out.sigma.a_cycles, &out.sigma.b_cycles}) {
-    image->setConstant(rows, cols, nan);
-  }
-  for (ImageF* image : {&out.frame.amplitude_a, &out.frame.amplitude_b}) {
-    image->setZero(rows, cols);
-  }
+  out.frame.phases.assign(frequencies, ImageF::Constant(rows, cols, nan));
+  out.frame.amplitudes.assign(frequencies, ImageF::Zero(rows, cols));
+  out.sigma.cycles.assign(frequencies, ImageF::Constant(rows, cols, nan));
   const bool weighted = frame.has_amplitude();
+  const auto is_missing = [](const ImageF& phase, Eigen::Index v, Eigen::Index u) {
+    return std::isnan(phase(v, u));
+  };
   for (Eigen::Index row = 0; row < rows; ++row) {
     for (Eigen::Index col = 0; col < cols; ++col) {
-      BlockSum a;
-      BlockSum b;
+      std::array<BlockSum, most_frequencies> sums;
       int count = 0;
-      for (Eigen::Index v = 2 * row; v < std::min(2 * row + 2, frame.phase_a.rows()); ++v) {
-        for (Eigen::Index u = 2 * col; u < std::min(2 * col + 2, frame.phase_a.cols()); ++u) {
-          if (std::isnan(frame.phase_a(v, u)) || std::isnan(frame.phase_b(v, u))) continue;
-          a.add(frame.phase_a(v, u), weighted ? frame.amplitude_a(v, u) : 1.0F,
-                sigma.a_cycles(v, u));
-          b.add(frame.phase_b(v, u), weighted ? frame.amplitude_b(v, u) : 1.0F,
-                sigma.b_cycles(v, u));
+      for (Eigen::Index v = 2 * row; v < std::min(2 * row + 2, frame.rows()); ++v) {
+        for (Eigen::Index u = 2 * col; u < std::min(2 * col + 2, frame.cols()); ++u) {
+          if (std::ranges::any_of(frame.phases,
+                                  [&](const ImageF& phase) { return is_missing(phase, v, u); })) {
+            continue;
+          }
+          for (std::size_t f = 0; f < frequencies; ++f) {
+            sums[f].add(frame.phases[f](v, u), weighted ? frame.amplitudes[f](v, u) : 1.0F,
+                        sigma.cycles[f](v, u));
+          }
           ++count;
         }
       }
       if (count == 0) continue;
-      out.frame.phase_a(row, col) = phase_of(a.phasor);
-      out.frame.phase_b(row, col) = phase_of(b.phasor);
-      out.frame.amplitude_a(row, col) = a.amplitude() / static_cast<float>(count);
-      out.frame.amplitude_b(row, col) = b.amplitude() / static_cast<float>(count);
-      out.sigma.a_cycles(row, col) = a.sigma_cycles();
-      out.sigma.b_cycles(row, col) = b.sigma_cycles();
+      for (std::size_t f = 0; f < frequencies; ++f) {
+        out.frame.phases[f](row, col) = phase_of(sums[f].phasor);
+        out.frame.amplitudes[f](row, col) = sums[f].amplitude() / static_cast<float>(count);
+        out.sigma.cycles[f](row, col) = sums[f].sigma_cycles();
+      }
     }
   }
   return out;
@@ -180,9 +181,9 @@ NoisyFrame halve(const DualFrequencyFrame& frame, const PhaseSigma& sigma) {
 
 /// Builds the pyramid: blocks and noise of the levels that the noise requires, at most `most`
 /// levels. Returns the number of levels.
-int WrapCountEstimator::divide(const DualFrequencyFrame& frame, const PhaseSigma& sigma, int most) {
+int WrapCountEstimator::divide(const Frame& frame, const PhaseSigma& sigma, int most) {
   scales_.resize(static_cast<std::size_t>(most));
-  const DualFrequencyFrame* finer = &frame;
+  const Frame* finer = &frame;
   const PhaseSigma* finer_sigma = &sigma;
   int count = 1;
   while (count < most && is_loud(*finer_sigma)) {
@@ -195,12 +196,12 @@ int WrapCountEstimator::divide(const DualFrequencyFrame& frame, const PhaseSigma
   return count;
 }
 
-WrapCountBeliefs WrapCountEstimator::estimate(const DualFrequencyFrame& frame,
-                                              const UnwrapLimits& limits, const PhaseSigma& sigma,
-                                              double residual_sigma_m,
+WrapCountBeliefs WrapCountEstimator::estimate(const Frame& frame, const UnwrapLimits& limits,
+                                              const PhaseSigma& sigma,
+                                              const std::vector<double>& residual_sigma_m,
                                               const WrapCountOptions& options) {
   const int count = divide(frame, sigma, options.scales);
-  const auto seen_at = [&](std::size_t s) -> const DualFrequencyFrame& {
+  const auto seen_at = [&](std::size_t s) -> const Frame& {
     return s == 0 ? frame : scales_[s].blocks.frame;
   };
   for (auto s = static_cast<std::size_t>(count); s-- > 0;) {
@@ -219,13 +220,13 @@ WrapCountBeliefs WrapCountEstimator::estimate(const DualFrequencyFrame& frame,
   WrapCountBeliefs beliefs = std::move(scales_[0].beliefs);
   for (std::size_t s = 1; s < static_cast<std::size_t>(count); ++s) {
     const Scale& coarse = scales_[s];
-    take_coarse_counts(frame, coarse.blocks, 1 << s, coarse.beliefs, limits.count_a, beliefs);
+    take_coarse_counts(frame, coarse.blocks, 1 << s, coarse.beliefs, limits.count, beliefs);
     beliefs.iterations += coarse.beliefs.iterations;
     beliefs.largest_message_change =
         std::max(beliefs.largest_message_change, coarse.beliefs.largest_message_change);
   }
-  beliefs.count = frame.phase_a.isNaN().select(invalid_wrap_count, beliefs.count);
-  beliefs.probability = frame.phase_a.isNaN().select(0.0F, beliefs.probability);
+  beliefs.count = frame.phases[0].isNaN().select(invalid_wrap_count, beliefs.count);
+  beliefs.probability = frame.phases[0].isNaN().select(0.0F, beliefs.probability);
   return beliefs;
 }
 

@@ -33,7 +33,7 @@ struct Integrated {
 };
 
 Integrated integrated(const JumpEstimate& jumps, const MeasuredFrame& frame,
-                      const UnwrapLimits& limits, const JumpMethod& method) {
+                      const PairLimits& limits, const JumpMethod& method) {
   const RelativeCounts relative =
       integrate_jumps(jumps.beliefs.marginals, jumps.evidence, frame.valid);
   // The paper corrects a wrapped range by adding λ_A once (section II.C), so it has two wrap
@@ -44,8 +44,8 @@ Integrated integrated(const JumpEstimate& jumps, const MeasuredFrame& frame,
 }
 
 Integrated integrated_with_residual(const JumpEstimate& jumps, const MeasuredFrame& frame,
-                                    const UnwrapLimits& limits, const UnwrapOptions& options) {
-  const ResidualCost residual(frame.returns, limits, frame.sigma, frame.residual_sigma_m);
+                                    const PairLimits& limits, const UnwrapOptions& options) {
+  const ResidualCost residual(frame.returns, limits, frame.sigma, frame.residual_sigma_m[1]);
   const RelativeCounts relative =
       integrate_jumps_with_residual(jumps.beliefs.marginals, jumps.evidence, frame.valid, residual,
                                     jumps.inputs.pixel_counts, options.objection_share);
@@ -57,7 +57,7 @@ Integrated integrated_with_residual(const JumpEstimate& jumps, const MeasuredFra
 }  // namespace
 
 UnwrapResult unwrap_by_jumps(JumpEstimator& estimator, const MeasuredFrame& frame,
-                             const UnwrapLimits& limits, const JumpMethod& method,
+                             const PairLimits& limits, const JumpMethod& method,
                              const UnwrapOptions& options) {
   const JumpEstimate& jumps =
       estimator.estimate(frame.returns, frame.sigma, limits, method, options);
@@ -65,8 +65,8 @@ UnwrapResult unwrap_by_jumps(JumpEstimator& estimator, const MeasuredFrame& fram
                                ? integrated_with_residual(jumps, frame, limits, options)
                                : integrated(jumps, frame, limits, method);
   UnwrapResult result;
-  result.image = make_range_image(frame.returns.phase_a, frame.sigma.a_cycles, found.counts,
-                                  found.confidence, limits);
+  result.image = make_range_image(frame.returns.phases[0], frame.sigma.cycles[0], found.counts,
+                                  found.confidence, limits.wavelength_a_m);
   result.iterations = jumps.beliefs.iterations;
   result.curl_violations = jumps.beliefs.curl_violations;
   result.converged = jumps.beliefs.converged;

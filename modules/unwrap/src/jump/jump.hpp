@@ -11,7 +11,7 @@ namespace tofmap {
 /// The methods `paper`, `jump` and `single`: computes the evidence for phase jumps, propagates
 /// beliefs, and integrates the jumps into absolute wrap counts.
 UnwrapResult unwrap_by_jumps(JumpEstimator& estimator, const MeasuredFrame& frame,
-                             const UnwrapLimits& limits, const JumpMethod& method,
+                             const PairLimits& limits, const JumpMethod& method,
                              const UnwrapOptions& options);
 
 }  // namespace tofmap

@@ -46,22 +46,21 @@ double neighbour_variance_cycles2(const ImageF& phase) {
   return std::max(differences.variance(), quantisation_cycles * quantisation_cycles);
 }
 
-ImageU8 threshold_counts(const DualFrequencyFrame& frame, const UnwrapLimits& limits,
-                         double threshold_m) {
+ImageU8 threshold_counts(const Frame& frame, const PairLimits& limits, double threshold_m) {
   const auto count_of = [&](float phase_a, float phase_b) {
     if (std::isnan(phase_a) || std::isnan(phase_b)) return invalid_wrap_count;
     const double projected_a_m = std::fmod(phase_a * limits.wavelength_a_m, limits.wavelength_b_m);
     const double difference_m = std::abs(projected_a_m - phase_b * limits.wavelength_b_m);
     return static_cast<std::uint8_t>(difference_m > threshold_m ? 1 : 0);
   };
-  ImageU8 counts(frame.phase_a.rows(), frame.phase_a.cols());
+  ImageU8 counts(frame.phases[0].rows(), frame.phases[0].cols());
   for (Eigen::Index i = 0; i < counts.size(); ++i) {
-    counts.data()[i] = count_of(frame.phase_a.data()[i], frame.phase_b.data()[i]);
+    counts.data()[i] = count_of(frame.phases[0].data()[i], frame.phases[1].data()[i]);
   }
   return counts;
 }
 
-double halfway_threshold_m(const UnwrapLimits& limits) {
+double halfway_threshold_m(const PairLimits& limits) {
   return std::abs(limits.wavelength_a_m - limits.wavelength_b_m) / 2;
 }
 

@@ -46,8 +46,8 @@ struct CameraCalibration {
   std::filesystem::path file;  ///< the file of the calibration, for messages; empty if not from one
   std::optional<CalibratedWith> with;  ///< if not empty, other recordings are refused
   std::optional<CameraModel> camera;   ///< replaces the camera of the recording, if not empty
-  PhaseError error_a;                  ///< at frequency A
-  PhaseError error_b;                  ///< at frequency B
+  /// The error at each frequency; frequencies beyond the last element have none.
+  std::vector<PhaseError> errors;
   /// A pixel with this amplitude or a larger one is saturated. 0: unknown; the value of the
   /// recording remains.
   double saturation_amplitude = 0;
@@ -72,9 +72,8 @@ bool is_calibration(const std::filesystem::path& file);
 /// or if an error rises so fast with the phase that a longer range would measure shorter.
 SensorModel calibrated(const SensorModel& sensor, const CameraCalibration& calibration);
 
-/// Subtracts the errors of the calibration from both phases of a frame. The phases stay in [0, 1);
+/// Subtracts the errors of the calibration from the phases of a frame. The phases stay in [0, 1);
 /// NaN stays NaN.
-void calibrate(DualFrequencyFrame& frame, const Modulation& modulation,
-               const CameraCalibration& calibration);
+void calibrate(Frame& frame, const Modulation& modulation, const CameraCalibration& calibration);
 
 }  // namespace tofmap

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -19,20 +20,20 @@ struct RangeScale {
 /// The description of a frame that a device writes into the last rows of its images.
 struct FrameTag {
   std::uint32_t number = 0;  ///< number of the frame, counted by the device
-  double timestamp_s = 0;    ///< time of image A, by the device's clock
+  double timestamp_s = 0;    ///< time of the first image, by the device's clock
   SensorModel sensor;
   RangeScale scale;
 };
 
-/// One dual-frequency frame as a depth image and an infrared image (docs/cameras.md). Each holds A,
-/// B and the tag, one below the other.
+/// One frame as a depth image and an infrared image (docs/cameras.md). Each holds the images of all
+/// frequencies and the tag, one below the other.
 struct StackedImages {
   ImageU16 range;      ///< wrapped ranges; 0: no return
   ImageU16 amplitude;  ///< 0: no return
 };
 
-/// Number of rows of the tag in images of this width.
-int tag_rows(int width_px);
+/// Number of rows of the tag in images of this width, for frames of this number of frequencies.
+int tag_rows(int width_px, std::size_t frequencies);
 
 /// The tag at the bottom of an image. Empty if the image has no tag or a damaged one.
 std::optional<FrameTag> read_tag(const ImageU16& image);
@@ -47,12 +48,12 @@ class DeviceImageCodec {
 
   /// Encodes a frame with its tag. `number` becomes FrameTag::number. If the frame has no
   /// amplitudes, they are 0.
-  StackedImages stack(const DualFrequencyFrame& frame, std::uint32_t number) const;
+  StackedImages stack(const Frame& frame, std::uint32_t number) const;
 
   /// Decodes images with or without a tag. The caller sets index and timestamp of the frame.
-  /// `amplitude` may be empty. Throws UsageError if an image does not hold two images of the
-  /// camera's size.
-  DualFrequencyFrame unstack(const ImageU16& range, const ImageU16& amplitude) const;
+  /// `amplitude` may be empty. Throws UsageError if an image does not hold an image of the camera's
+  /// size for each frequency.
+  Frame unstack(const ImageU16& range, const ImageU16& amplitude) const;
 
   /// Encodes the phases of one frequency, an image of the camera's size. NaN becomes 0.
   ImageU16 encode_range(const ImageF& phase, double wavelength_m) const;
@@ -67,7 +68,7 @@ class DeviceImageCodec {
   int count_beyond(const Eigen::Ref<const ImageU16>& range, double wavelength_m) const;
 
  private:
-  int rows_of_both(const ImageU16& image) const;
+  void check_stack(const ImageU16& image) const;
 
   SensorModel sensor_;
   RangeScale scale_;

@@ -11,9 +11,9 @@ namespace tofmap {
 
 /// What a source delivers for one instant: a frame, or the reason why the frame is damaged.
 struct SourcedFrame {
-  int index = 0;                            ///< counts all frames from 0, including damaged ones
-  double timestamp_s = 0;                   ///< time of image A
-  std::optional<DualFrequencyFrame> frame;  ///< empty if the frame is damaged
+  int index = 0;               ///< counts all frames from 0, including damaged ones
+  double timestamp_s = 0;      ///< time of image A
+  std::optional<Frame> frame;  ///< empty if the frame is damaged
   std::string damage;  ///< names the file and what is wrong; empty if the frame is not damaged
 };
 

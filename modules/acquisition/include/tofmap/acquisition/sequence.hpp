@@ -19,11 +19,12 @@ struct SequenceFrameFiles {
   /// A line that cannot be parsed has the timestamp of the nearest valid line before it or, at the
   /// beginning of the file, of the first valid line.
   double timestamp_s = 0;
-  std::filesystem::path phase_a;      ///< empty if the line cannot be parsed
-  std::filesystem::path phase_b;      ///< empty if the line cannot be parsed
-  std::filesystem::path amplitude_a;  ///< empty if the line has no amplitude A
-  std::filesystem::path amplitude_b;  ///< empty if the line has no amplitude B
-  std::string damage;                 ///< why the line cannot be used; empty if it can
+  /// The phase image of each frequency; empty if the line cannot be parsed.
+  std::vector<std::filesystem::path> phases;
+  /// The amplitude image of each frequency; empty if the line does not have all of them. Amplitudes
+  /// of some frequencies alone are not used: they do not tell the noise of the other phases.
+  std::vector<std::filesystem::path> amplitudes;
+  std::string damage;  ///< why the line cannot be used; empty if it can
 };
 
 /// Reads a sequence folder (docs/sequence-format.md) frame by frame, in any order.
@@ -51,7 +52,7 @@ class SequenceReader final : public FrameSource {
   std::optional<int> frame_count() const override { return static_cast<int>(files_.size()); }
 
   /// The frame of this index, 0 … frame_count() − 1; throws UsageError for other indices. May be
-  /// called from several threads. The frame has amplitudes if frames.txt lists them for both
+  /// called from several threads. The frame has amplitudes if frames.txt lists them for all
   /// frequencies. Phases are NaN where the amplitude is 0.
   SourcedFrame read(int index) const;
 
@@ -68,7 +69,7 @@ class SequenceReader final : public FrameSource {
 
  private:
   const SequenceFrameFiles& files_at(int index) const;
-  DualFrequencyFrame read_frame(int index) const;
+  Frame read_frame(int index) const;
 
   std::filesystem::path folder_;
   CameraCalibration calibration_;
@@ -94,7 +95,7 @@ class SequenceWriter {
   /// Amplitudes above 0 are written as 1 … 65535: 0 means no return, and 65535 that the amplitude
   /// may have been larger. True ranges below 0.5 mm or beyond 65.535 m are written as unknown.
   /// Throws InputError, which names the file, if a file cannot be written.
-  void add(const DualFrequencyFrame& frame, const std::optional<Pose>& world_from_camera = {},
+  void add(const Frame& frame, const std::optional<Pose>& world_from_camera = {},
            const std::optional<ImageF>& range_truth_m = {},
            const std::optional<ImageU8>& label_truth = {},
            const std::optional<ImageU8>& moving_truth = {});

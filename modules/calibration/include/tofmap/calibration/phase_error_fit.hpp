@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -9,8 +10,8 @@
 
 namespace tofmap {
 
-/// The ranges that both frequencies measure at one pixel, and a reference range, which is either
-/// known or the result of unwrapping. All ranges are radial.
+/// The ranges that two frequencies, A and B, measure at one pixel, and a reference range, which is
+/// either known or the result of unwrapping. All ranges are radial.
 struct RangeSample {
   float a_m = 0;  ///< range of A, with the wrap count that brings it nearest to the reference
   float b_m = 0;  ///< range of B, with the wrap count that brings it nearest to the reference
@@ -23,11 +24,11 @@ struct RangeSample {
 
 /// Appends samples of the pixels `first`, `first` + `stride`, … of a frame, counted row by row.
 /// Leaves out pixels without a return at one of the frequencies, saturated pixels, and pixels
-/// without a reference range (NaN). Throws UsageError if `reference_m` has another size than the
-/// frame, `first` is negative or `stride` is less than 1.
-void append_range_samples(const DualFrequencyFrame& frame, const SensorModel& sensor,
-                          const ImageF& reference_m, int first, int stride,
-                          std::vector<RangeSample>& samples);
+/// without a reference range (NaN). A is the first frequency of the frame, `b` is that of B,
+/// counted from 0; it may be that of A, of cameras with one frequency. Throws UsageError if
+/// `reference_m` has another size than the frame, `first` is negative or `stride` is less than 1.
+void append_range_samples(const Frame& frame, const SensorModel& sensor, const ImageF& reference_m,
+                          std::size_t b, int first, int stride, std::vector<RangeSample>& samples);
 
 /// How well the phases of A agree with the reference ranges apart from a common offset, 0 … 1: the
 /// length of the mean of exp(i ψ), where ψ is the difference of the phases in radians. It is 0 if

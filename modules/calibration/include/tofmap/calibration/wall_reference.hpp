@@ -32,7 +32,6 @@ void check_wall_distances(const WallDistances& distances_m, const std::filesyste
 /// `distance_m` must be above 0. Empty if less than half of the returns lie on one plane at this
 /// distance. The tilt can be found if at least half of the wall is within half a wavelength of
 /// where it would be without tilt, and if the offset of A is below a quarter of a wavelength.
-std::optional<ImageF> wall_range(const DualFrequencyFrame& frame, const SensorModel& sensor,
-                                 double distance_m);
+std::optional<ImageF> wall_range(const Frame& frame, const SensorModel& sensor, double distance_m);
 
 }  // namespace tofmap

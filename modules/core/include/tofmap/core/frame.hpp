@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include <tofmap/core/camera.hpp>
 #include <tofmap/core/image.hpp>
 #include <tofmap/core/modulation.hpp>
@@ -12,7 +15,7 @@ namespace tofmap {
 struct SensorModel {
   CameraModel camera;
   Modulation modulation;
-  /// Largest range in the scene. 0: unknown; the combined range of the two frequencies then limits
+  /// Largest range in the scene. 0: unknown; the combined range of the frequencies then limits
   /// the wrap counts.
   double max_range_m = 0;
   /// A pixel with this amplitude or a larger one is saturated, and its phase is not used. 0: no
@@ -20,34 +23,42 @@ struct SensorModel {
   double saturation_amplitude = 0;
 };
 
-/// One measurement of a dual-frequency time-of-flight camera.
+/// One measurement of a time-of-flight camera, at one to eight modulation frequencies.
 ///
 /// All images that are present have the camera's size. A pixel without a return at one frequency
-/// may have one at the other.
-struct DualFrequencyFrame {
+/// may have one at another.
+struct Frame {
   int index = 0;           ///< position in the recording, from 0
-  double timestamp_s = 0;  ///< of image A; B may have been taken up to one frame period later
-  /// Phase in cycles, [0, 1): `phase = (range / λ) mod 1`. NaN where there is no return.
-  ImageF phase_a;
-  ImageF phase_b;  ///< like phase_a, at frequency B
-  /// Amplitude, linear in the signal, in an arbitrary scale. Both amplitude images are empty
-  /// (0 x 0) if the camera delivers no amplitudes.
-  ImageF amplitude_a;
-  ImageF amplitude_b;  ///< like amplitude_a, at frequency B
+  double timestamp_s = 0;  ///< of the first frequency; the others may have been taken up to one
+                           ///< frame period later (Modulation::exposure_offsets_s)
+  /// Phase at each frequency in cycles, [0, 1): `phase = (range / λ) mod 1`. NaN where there is no
+  /// return.
+  std::vector<ImageF> phases;
+  /// Amplitude at each frequency, linear in the signal, in an arbitrary scale. No images, or empty
+  /// ones (0 x 0), if the camera delivers no amplitudes.
+  std::vector<ImageF> amplitudes;
 
-  bool has_amplitude() const { return amplitude_a.size() > 0; }
+  /// The number of frequencies.
+  std::size_t frequencies() const { return phases.size(); }
+  bool has_amplitude() const { return !amplitudes.empty() && amplitudes.front().size() > 0; }
+  Eigen::Index rows() const { return phases.empty() ? 0 : phases.front().rows(); }
+  Eigen::Index cols() const { return phases.empty() ? 0 : phases.front().cols(); }
 };
 
-/// Whether no pixel has a return at both frequencies.
-inline bool is_without_return(const DualFrequencyFrame& frame) {
-  return (frame.phase_a.isNaN() || frame.phase_b.isNaN()).all();
-}
+/// A frame of empty images (0 x 0) at this number of frequencies.
+Frame blank_frame(std::size_t frequencies);
 
-/// Whether a frame has the same phases as the frame `last` before it, at both frequencies. Frames
+/// The images of the frequencies `a` and `b` alone, which are counted from 0.
+Frame frequency_pair(const Frame& frame, std::size_t a, std::size_t b);
+
+/// The sensor as if it had the frequencies `a` and `b` alone.
+SensorModel frequency_pair(const SensorModel& sensor, std::size_t a, std::size_t b);
+
+/// Whether no pixel has a return at all frequencies.
+bool is_without_return(const Frame& frame);
+
+/// Whether a frame has the same phases as the frame `last` before it, at all frequencies. Frames
 /// without any return do not repeat each other: the camera may be covered.
-inline bool repeats(const DualFrequencyFrame& frame, const DualFrequencyFrame& last) {
-  return same_values(frame.phase_a, last.phase_a) && same_values(frame.phase_b, last.phase_b) &&
-         !is_without_return(frame);
-}
+bool repeats(const Frame& frame, const Frame& last);
 
 }  // namespace tofmap

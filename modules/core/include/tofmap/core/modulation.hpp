@@ -2,43 +2,76 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
 namespace tofmap {
 
 inline constexpr double speed_of_light_m_per_s = 299792458.0;
 
-/// The two modulation frequencies of a dual-frequency camera. The phase of each frequency repeats
-/// after its wavelength, the non-ambiguity range λ = c / 2f. Either frequency may be the higher
-/// one.
-struct Modulation {
-  double frequency_a_hz = 0;  ///< of the image that is exposed first
-  double frequency_b_hz = 0;  ///< of the image that is exposed second
+/// The largest number of modulation frequencies of a camera.
+inline constexpr std::size_t most_frequencies = 8;
 
-  double wavelength_a_m() const { return speed_of_light_m_per_s / (2 * frequency_a_hz); }
-  double wavelength_b_m() const { return speed_of_light_m_per_s / (2 * frequency_b_hz); }
+/// The modulation frequencies of a time-of-flight camera, one to eight, in any order. The phase of
+/// each frequency repeats after its wavelength, the non-ambiguity range λ = c / 2f. Wrap counts are
+/// those of the first frequency.
+struct Modulation {
+  std::vector<double> frequencies_hz;
+  /// When the image of each frequency was exposed, seconds after the timestamp of the frame. Empty
+  /// if it is unknown.
+  std::vector<double> exposure_offsets_s;
+
+  Modulation() = default;
+  Modulation(std::initializer_list<double> hz) : frequencies_hz(hz) {}
+
+  /// The number of frequencies.
+  std::size_t count() const { return frequencies_hz.size(); }
+
+  /// The wavelength of a frequency, which is counted from 0.
+  double wavelength_m(std::size_t frequency) const {
+    return speed_of_light_m_per_s / (2 * frequencies_hz[frequency]);
+  }
+
+  bool operator==(const Modulation&) const = default;
 };
 
-/// Throws InputError if a frequency is not a positive number, if it is implausible (below 10 kHz or
-/// above 100 GHz, which suggests a wrong unit), or if both frequencies are equal, so that they
-/// cannot tell wrap counts apart.
+/// The letter by which messages and file names call a frequency: 'a' for the first one.
+constexpr char frequency_letter(std::size_t frequency) {
+  return static_cast<char>('a' + frequency);
+}
+
+/// The same letter as a capital, as texts name images: "A" for the first one.
+inline std::string frequency_name(std::size_t frequency) {
+  return std::string(1, static_cast<char>('A' + frequency));
+}
+
+/// All wavelengths, in the order of the frequencies.
+std::vector<double> wavelengths_m(const Modulation& modulation);
+
+/// The shortest and the longest wavelength.
+double shortest_wavelength_m(const Modulation& modulation);
+double longest_wavelength_m(const Modulation& modulation);
+
+/// Throws InputError if there is no frequency or more than most_frequencies, if a frequency is not
+/// a positive number, if it is implausible (below 10 kHz or above 100 GHz, which suggests a wrong
+/// unit), if two frequencies are equal, so that they cannot tell wrap counts apart, or if
+/// exposure_offsets_s is neither empty nor has one finite number for each frequency.
 void validate(const Modulation& modulation);
 
-/// The combined range in metres: the smallest positive range at which both phases are zero again,
-/// within `tolerance_cycles`. Ranges below it are unambiguous.
+/// The combined range in metres: the smallest positive range at which the phases of all frequencies
+/// are zero again, within `tolerance_cycles`. Ranges below it are unambiguous. With one frequency,
+/// it is the wavelength.
 ///
-/// With a tolerance near zero the combined range is c / 2 gcd(f_A, f_B): 149.9 m for 29 and 31 MHz,
-/// 7.5 m for 80 and 100 MHz. A tolerance as large as the phase noise gives the range that is
-/// unambiguous in practice: 72.4 m for 29 and 31 MHz at 0.05 cycles. If the frequencies have no
-/// common divisor, the tolerance alone determines the result.
+/// With a tolerance near zero the combined range is c / 2 gcd(f_1, f_2, …): 149.9 m for 29 and
+/// 31 MHz, 7.5 m for 80 and 100 MHz, 18.7 m for 80, 16 and 120 MHz. A tolerance as large as the
+/// phase noise gives the range that is unambiguous in practice: 72.4 m for 29 and 31 MHz at 0.05
+/// cycles. If the frequencies have no common divisor, the tolerance alone determines the result.
 double combined_range_m(const Modulation& modulation, double tolerance_cycles = 1e-3);
 
-/// The number of possible wrap counts of each frequency. The wrap counts are 0 … count − 1.
-struct WrapLimits {
-  int count_a = 0;
-  int count_b = 0;
-};
-
-/// The possible wrap counts of ranges in [0, max_range_m). Throws UsageError unless `max_range_m`
-/// is a finite number above 0.
-WrapLimits wrap_limits(const Modulation& modulation, double max_range_m);
+/// The number of possible wrap counts, 0 … count − 1, of a frequency with this wavelength for
+/// ranges in [0, max_range_m). Throws UsageError unless `max_range_m` is a finite number above 0.
+int wrap_limit(double wavelength_m, double max_range_m);
 
 }  // namespace tofmap

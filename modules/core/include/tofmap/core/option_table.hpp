@@ -78,10 +78,10 @@ template <class Struct>
 struct OptionField {
   std::string_view name;
   std::variant<bool Struct::*, int Struct::*, double Struct::*, std::string Struct::*,
-               EnumMember<Struct>>
+               std::vector<double> Struct::*, EnumMember<Struct>>
       member;
-  double min = -std::numeric_limits<double>::infinity();  ///< smallest allowed value of a number
-  double max = std::numeric_limits<double>::infinity();   ///< largest allowed value of a number
+  double min = -std::numeric_limits<double>::infinity();  ///< smallest allowed value of numbers
+  double max = std::numeric_limits<double>::infinity();   ///< largest allowed value of numbers
   std::string_view unit;                                  ///< empty if the option has no unit
   std::string_view meaning;                               ///< one line of help
 };
@@ -134,7 +134,8 @@ class OptionTable {
     }
   }
 
-  /// Sets the option `key`, which is `group.name`, from text.
+  /// Sets the option `key`, which is `group.name`, from text. The numbers of a list are separated
+  /// by commas, in brackets or without: "80e6, 16e6".
   void set(const std::string& key, const std::string& value);
 
   /// Sets one option from `group.name=value`, the argument of `--set`.
@@ -163,7 +164,7 @@ class OptionTable {
     double max = 0;
     std::string unit;
     std::string meaning;
-    std::variant<bool*, int*, double*, std::string*, EnumReference> value;
+    std::variant<bool*, int*, double*, std::string*, std::vector<double>*, EnumReference> value;
 
     std::string key() const { return group.empty() ? name : group + "." + name; }
     std::string allowed() const;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/image.hpp>
 
@@ -18,17 +20,15 @@ namespace tofmap {
 //   ε_f     the unknown systematic error, which averaging over pixels does not reduce
 //
 // `PhaseNoise` and `PhaseSigma` describe the noise. `CameraErrors` in
-// tofmap/unwrap/common/frame_errors.hpp describes μ_A − μ_B and the standard deviation of ε_A −
-// ε_B.
+// tofmap/unwrap/common/frame_errors.hpp describes the differences μ_A − μ_B between two frequencies
+// and the standard deviation of ε_A − ε_B.
 
-/// Parameters of the phase noise of one frame.
+/// Parameters of the phase noise of one frame at one frequency.
 struct PhaseNoise {
-  /// c_A in cycles times the unit of the amplitude: σ = c m / amplitude. Without amplitudes, σ of
-  /// all pixels in cycles.
-  double scale_a = 0;
-  double scale_b = 0;                ///< c_B, like scale_a
-  double quantisation_a_cycles = 0;  ///< q_A, the difference between adjacent values of the phase
-  double quantisation_b_cycles = 0;  ///< q_B, like quantisation_a_cycles
+  /// c in cycles times the unit of the amplitude: σ = c m / amplitude. Without amplitudes, σ of all
+  /// pixels in cycles.
+  double scale = 0;
+  double quantisation_cycles = 0;  ///< q, the difference between adjacent values of the phase
 };
 
 /// Standard deviation of the phase of every pixel, in cycles. NaN where the phase is NaN or the
@@ -37,17 +37,16 @@ struct PhaseNoise {
 ImageF phase_sigma_cycles(const ImageF& phase, const ImageF& amplitude, double scale,
                           double quantisation_cycles = 0, const ImageF& ambient = {});
 
-/// Standard deviation of the phases of a frame at both frequencies, as phase_sigma_cycles()
+/// Standard deviation of the phases of a frame at each frequency, as phase_sigma_cycles()
 /// computes it.
 struct PhaseSigma {
-  ImageF a_cycles;
-  ImageF b_cycles;
+  std::vector<ImageF> cycles;  ///< an image for each frequency
 
-  /// Empty images.
+  /// No images.
   PhaseSigma() = default;
 
-  /// `ambient` may be empty.
-  PhaseSigma(const DualFrequencyFrame& frame, const PhaseNoise& noise, const ImageF& ambient = {});
+  /// `noise` has an element for each frequency; `ambient` may be empty.
+  PhaseSigma(const Frame& frame, const std::vector<PhaseNoise>& noise, const ImageF& ambient = {});
 };
 
 }  // namespace tofmap

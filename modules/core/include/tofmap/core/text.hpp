@@ -30,4 +30,9 @@ inline std::string counted(std::size_t count, std::string_view what) {
   return std::to_string(count) + " " + std::string(what) + (count == 1 ? "" : "s");
 }
 
+/// A number and a noun whose plural has no mere s: "1 frequency", "2 frequencies".
+inline std::string counted(std::size_t count, std::string_view one, std::string_view several) {
+  return std::to_string(count) + " " + std::string(count == 1 ? one : several);
+}
+
 }  // namespace tofmap

@@ -15,11 +15,10 @@ namespace tofmap {
 /// from depth reach up to cos θ cycles, where θ is the angle between the pixel's ray and the
 /// optical axis. The difference shows only towards the border of the image and in scenes that reach
 /// beyond one wavelength; returns false if the frames do not show it.
-bool looks_like_axial_depth(const std::vector<DualFrequencyFrame>& frames,
-                            const SensorModel& sensor);
+bool looks_like_axial_depth(const std::vector<Frame>& frames, const SensorModel& sensor);
 
 /// A warning, with the remedy, if looks_like_axial_depth(); otherwise empty.
-std::optional<std::string> axial_depth_warning(const std::vector<DualFrequencyFrame>& frames,
+std::optional<std::string> axial_depth_warning(const std::vector<Frame>& frames,
                                                const SensorModel& sensor);
 
 }  // namespace tofmap

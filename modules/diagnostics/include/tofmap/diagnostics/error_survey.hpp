@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -15,9 +16,12 @@ namespace tofmap {
 
 /// The errors of a camera, as the frames of a recording show them.
 struct ErrorSurvey {
-  CameraErrors camera;  ///< systematic errors, as estimated up to the last frame
-  /// Median over the frames of the image motion from A's exposure to B's. Frames with more than a
-  /// quarter of the image are left out: their A and B do not belong together. 0 if none is left.
+  /// Systematic errors of each frequency relative to the first one, as estimated up to the last
+  /// frame; those of the first one are 0.
+  std::vector<CameraErrors> cameras;
+  /// Median over the frames of the image motion from the first exposure to the one with the largest
+  /// motion. Frames with more than a quarter of the image are left out: their images do not belong
+  /// together. 0 if none is left.
   double flow_px = 0;
   /// Share of the valid pixels whose noise is at least 1.4 times what their amplitudes predict,
   /// 0 … 1. Ambient light raises the noise in this way.
@@ -30,6 +34,11 @@ struct ErrorSurvey {
   bool has_amplitudes = true;
   int frames = 0;  ///< number of frames with enough pixels to estimate systematic errors
 };
+
+/// The systematic errors of a frequency; null if they were not estimated.
+inline const CameraErrors* camera_at(const ErrorSurvey& survey, std::size_t frequency) {
+  return frequency < survey.cameras.size() ? &survey.cameras[frequency] : nullptr;
+}
 
 /// Collects an ErrorSurvey from measured frames.
 class ErrorTally {
@@ -45,18 +54,18 @@ class ErrorTally {
   template <class Archive>
   void serialize(Archive& archive, unsigned version);  // tofmap/pipeline saves runs
 
-  CameraErrors camera_;          ///< of the last frame
-  int frames_ = 0;               ///< number of frames whose errors could be estimated
-  std::vector<float> flows_px_;  ///< of those frames whose images A and B belong together
-  double pixels_ = 0;            ///< valid pixels
-  double ambient_pixels_ = 0;    ///< those with raised noise
-  double ambient_factors_ = 0;   ///< sum of the factors of pixels with raised noise
+  std::vector<CameraErrors> cameras_;  ///< of the last frame, as in ErrorSurvey
+  int frames_ = 0;                     ///< number of frames whose errors could be estimated
+  std::vector<float> flows_px_;        ///< of those frames whose images belong together
+  double pixels_ = 0;                  ///< valid pixels
+  double ambient_pixels_ = 0;          ///< those with raised noise
+  double ambient_factors_ = 0;         ///< sum of the factors of pixels with raised noise
   bool has_amplitudes_ = true;
 };
 
 /// Measures the frames of one camera, which must be in order, and returns their survey. Throws
 /// UsageError if the options are not allowed or the images of a frame differ in size.
-ErrorSurvey survey_errors(const std::vector<DualFrequencyFrame>& frames, const SensorModel& sensor,
+ErrorSurvey survey_errors(const std::vector<Frame>& frames, const SensorModel& sensor,
                           const UnwrapOptions& options = {});
 
 /// Sentences that say which errors were found and what unwrapping does about each of them. Empty if

@@ -13,9 +13,9 @@ namespace tofmap {
 /// A frame together with the ranges that were found for it. Frame and image have the same size and
 /// must outlive this struct.
 struct RangedFrame {
-  const DualFrequencyFrame* frame = nullptr;  ///< may be null if no phases are used
-  const RangeImage* image = nullptr;          ///< not null
-  std::optional<Pose> world_from_camera;      ///< empty if the frame was not registered
+  const Frame* frame = nullptr;           ///< may be null if no phases are used
+  const RangeImage* image = nullptr;      ///< not null
+  std::optional<Pose> world_from_camera;  ///< empty if the frame was not registered
 };
 
 }  // namespace tofmap

@@ -18,21 +18,21 @@ struct RecordingSurvey {
   int frames = 0;                    ///< number of frames looked at, including damaged ones
   std::vector<std::string> damages;  ///< one message per frame that could not be read
   int without_amplitude = 0;         ///< number of frames without amplitudes
-  int without_return = 0;  ///< number of frames in which no pixel has a return at both frequencies
+  int without_return = 0;  ///< number of frames in which no pixel has a return at all frequencies
   int repeated = 0;        ///< number of frames with the same phases as the previous frame
-  /// Number of frames with the same phases as the previous frame at one frequency only.
+  /// Number of frames with the same phases as the previous frame at some frequencies only.
   int repeated_single = 0;
   /// File names of phase images that have the same phase in all pixels with a return.
   std::vector<std::string> constant_images;
-  double no_return_share = 0;  ///< share of all pixels without a return at A or B, 0 … 1
-  double saturated_share = 0;  ///< share of all pixels that are saturated at A or B, 0 … 1
+  double no_return_share = 0;  ///< share of all pixels without a return at one frequency, 0 … 1
+  double saturated_share = 0;  ///< share of all pixels that are saturated at one frequency, 0 … 1
   double median_period_s = 0;  ///< median time between consecutive frames; 0 if unknown
   double longest_gap_s = 0;    ///< longest time between consecutive frames; 0 if unknown
   int frame_before_gap = 0;    ///< index of the frame at which the longest gap begins
   std::optional<std::string> swapped_amplitude_warning;  ///< see swapped_amplitude.hpp
   std::optional<std::string> axial_depth_warning;        ///< see axial_depth.hpp
-  std::optional<ResidualSurvey> residual;  ///< empty if too few pixels have both returns
-  ErrorSurvey errors;                      ///< of up to twelve frames, spread over the recording
+  std::vector<ResidualSurvey> residuals;  ///< without those of which too few pixels have returns
+  ErrorSurvey errors;                     ///< of up to twelve frames, spread over the recording
 };
 
 /// A warning that `repeated` frames repeat the previous frame. Empty if `repeated` is 0.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,9 +12,10 @@
 
 namespace tofmap {
 
-/// How well the two frequencies of a recording agree. Each pixel is considered by itself, with the
-/// wrap counts that make its two ranges agree best.
+/// How well the first frequency of a recording, A, and another one, B, agree. Each pixel is
+/// considered by itself, with the wrap counts that make its two ranges agree best.
 struct ResidualSurvey {
+  std::size_t frequency = 1;  ///< that of B, counted from 0
   /// Median difference of A's range minus B's range. If several offsets fit equally well, the one
   /// nearest to zero.
   double offset_m = 0;
@@ -26,10 +28,10 @@ struct ResidualSurvey {
   double ambiguity_m = 0;
 };
 
-/// Compares the frequencies of some frames of a recording. Empty if fewer than 300 of the pixels
-/// looked at, which are every third, have returns at both frequencies.
-std::optional<ResidualSurvey> survey_residual(const std::vector<DualFrequencyFrame>& frames,
-                                              const SensorModel& sensor);
+/// Compares the first frequency with each other one, in some frames of a recording. A frequency is
+/// left out if fewer than 300 of the pixels looked at, which are every third, have returns at both.
+std::vector<ResidualSurvey> survey_residuals(const std::vector<Frame>& frames,
+                                             const SensorModel& sensor);
 
 /// A warning, with the remedy, if the images of A and B seem not to belong together. Otherwise
 /// empty. Much noise looks the same, unless the frames agree on a map (`map_agrees`).
@@ -44,7 +46,7 @@ std::optional<std::string> pairing_warning(const ResidualSurvey& residual, bool 
 std::optional<std::string> offset_warning(const ResidualSurvey& residual,
                                           const CameraErrors* camera, bool map_agrees = false);
 
-/// A warning if the pair of frequencies cannot tell wrap counts apart. Otherwise empty.
-std::optional<std::string> frequency_pair_warning(const Modulation& modulation);
+/// A warning if the frequencies cannot tell wrap counts apart. Otherwise empty.
+std::optional<std::string> frequency_warning(const Modulation& modulation);
 
 }  // namespace tofmap

@@ -14,9 +14,9 @@ namespace tofmap {
 /// of two frequencies differ by nearly a cycle where one has wrapped and the other has not, while
 /// amplitudes of both are similar everywhere. Returns false if nothing wraps, or without
 /// amplitudes.
-bool looks_like_swapped_amplitude(const std::vector<DualFrequencyFrame>& frames);
+bool looks_like_swapped_amplitude(const std::vector<Frame>& frames);
 
 /// A warning, with the remedy, if looks_like_swapped_amplitude(); otherwise empty.
-std::optional<std::string> swapped_amplitude_warning(const std::vector<DualFrequencyFrame>& frames);
+std::optional<std::string> swapped_amplitude_warning(const std::vector<Frame>& frames);
 
 }  // namespace tofmap

@@ -41,7 +41,7 @@ struct FilterOptions {
   std::vector<Filter> chain = {Filter::amplitude, Filter::confidence, Filter::phasor_mean,
                                Filter::isolated_wrap, Filter::plane_edge};
 
-  /// `amplitude`: drops pixels whose weaker amplitude of both frequencies is below this, in the
+  /// `amplitude`: drops pixels whose weakest amplitude of all frequencies is below this, in the
   /// units of the camera, 0 … 1e9. 0 keeps all pixels.
   double min_amplitude = 0;
 
@@ -123,7 +123,7 @@ struct FilterResult {
 /// Applies the filters of `options.chain`, in that order. Each filter sees the image that the
 /// previous filters left. A dropped pixel keeps the reason of the filter that dropped it. Throws
 /// UsageError if a filter finds that `image`, `frame` and `rays` differ in size.
-FilterResult apply_filters(const RangeImage& image, const DualFrequencyFrame& frame,
+FilterResult apply_filters(const RangeImage& image, const Frame& frame,
                            const Modulation& modulation, const PixelRays& rays,
                            const FilterOptions& options);
 

@@ -7,11 +7,10 @@
 
 namespace tofmap {
 
-/// Drops pixels whose amplitude, the weaker one of both frequencies, is below `min_amplitude`, in
+/// Drops pixels whose amplitude, the weakest one of all frequencies, is below `min_amplitude`, in
 /// the units of the camera. Keeps all pixels if the frame has no amplitudes. Dropped pixels get the
 /// reason `low_amplitude`. Throws UsageError if image and frame differ in size.
-RangeImage drop_low_amplitude(const RangeImage& image, const DualFrequencyFrame& frame,
-                              double min_amplitude);
+RangeImage drop_low_amplitude(const RangeImage& image, const Frame& frame, double min_amplitude);
 
 /// Drops pixels whose confidence is below `min_confidence`, 0 … 1. Dropped pixels get the reason
 /// `low_confidence`.

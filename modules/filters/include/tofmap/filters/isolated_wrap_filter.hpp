@@ -31,7 +31,7 @@ struct IsolatedWrapLimits {
 ///
 /// An image in which all wrap counts are 0 was not unwrapped, and is returned unchanged. Throws
 /// UsageError if image and frame differ in size.
-RangeImage mend_isolated_wraps(const RangeImage& image, const DualFrequencyFrame& frame,
+RangeImage mend_isolated_wraps(const RangeImage& image, const Frame& frame,
                                const Modulation& modulation, const IsolatedWrapLimits& limits);
 
 }  // namespace tofmap

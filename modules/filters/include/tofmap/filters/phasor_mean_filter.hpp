@@ -33,7 +33,7 @@ struct PhasorMeanLimits {
 /// unchanged if fewer than half of its valid pixels are noisy. No pixel becomes valid or invalid.
 /// Throws UsageError if image, frame and rays differ in size; the frame is checked only if there
 /// are enough noisy pixels.
-RangeImage average_phasors(const RangeImage& image, const DualFrequencyFrame& frame,
+RangeImage average_phasors(const RangeImage& image, const Frame& frame,
                            const Modulation& modulation, const PixelRays& rays,
                            const PhasorMeanLimits& limits);
 

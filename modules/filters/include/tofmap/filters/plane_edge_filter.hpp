@@ -39,7 +39,7 @@ struct PlaneEdgeLimits {
 ///
 /// Objects that are thinner than two pixels are lost. Apply it after unwrapping. Throws UsageError
 /// if image, frame and rays differ in size.
-RangeImage drop_off_planes(const RangeImage& image, const DualFrequencyFrame& frame,
+RangeImage drop_off_planes(const RangeImage& image, const Frame& frame,
                            const Modulation& modulation, const PixelRays& rays,
                            const PlaneEdgeLimits& limits);
 

@@ -17,9 +17,9 @@ std::vector<int> spread_indices(int total, int wanted);
 
 /// A frame of a run, with what unwrapping and filters made of it.
 struct SampledFrame {
-  DualFrequencyFrame recorded;
-  DualFrequencyFrame returns;  ///< PreparedFrame::returns, without amplitudes
-  UnwrapResult unwrapped;      ///< without errors
+  Frame recorded;
+  Frame returns;           ///< PreparedFrame::returns, without amplitudes
+  UnwrapResult unwrapped;  ///< without errors
   RangeImage filtered;
 };
 
@@ -39,7 +39,7 @@ class FrameSample {
 
   /// Keeps the frame if it belongs to the sample, and ignores it otherwise. Frames must be added in
   /// ascending order of their indices.
-  void add(const DualFrequencyFrame& recorded, const PreparedFrame& prepared);
+  void add(const Frame& recorded, const PreparedFrame& prepared);
 
   /// Invalidates the filtered ranges of what moves in a frame that was added (reason
   /// `free_space_violation`). `still` is its cloud without the surface of what moves

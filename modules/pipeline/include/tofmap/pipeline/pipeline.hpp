@@ -37,7 +37,7 @@ void bind_options(OptionTable& table, PipelineOptions& options);
 struct PreparedFrame {
   int index = 0;
   double timestamp_s = 0;
-  DualFrequencyFrame returns;  ///< the phases that were unwrapped: MeasuredFrame::returns
+  Frame returns;  ///< the phases that were unwrapped: MeasuredFrame::returns
   UnwrapResult unwrapped;
   FilterResult filtered;
   std::shared_ptr<const SurfaceCloud> cloud;  ///< camera frame; null from prepare_ranges()
@@ -52,7 +52,7 @@ struct TimedMeasurement {
 
 /// Measures the next frame. One measurer must be given all frames of a recording in order. Throws
 /// UsageError if the frame's images differ in size.
-TimedMeasurement measure_frame(const DualFrequencyFrame& frame, FrameMeasurer& measurer);
+TimedMeasurement measure_frame(const Frame& frame, FrameMeasurer& measurer);
 
 /// Unwraps and filters a measured frame, and fits its surface. The result depends on no other
 /// frame, so that measured frames can be prepared in parallel if each thread has its own unwrapper.
@@ -73,7 +73,7 @@ struct MapHooks {
   /// if it returns false.
   std::function<bool(int frames_done)> keep_going;
   /// Called with every frame that was unwrapped, in order, before it is registered.
-  std::function<void(const DualFrequencyFrame& recorded, const PreparedFrame&)> on_frame;
+  std::function<void(const Frame& recorded, const PreparedFrame&)> on_frame;
   /// Called after a frame in which something moves was registered, with the index of the frame and
   /// its cloud without the surface of what moves (Motion::still).
   std::function<void(int index, const SurfaceCloud& still)> on_motion;
@@ -126,7 +126,7 @@ class MapRun {
   std::vector<SourcedFrame> ahead_;    ///< frames measured ahead that are still to be mapped
   std::vector<Unwrapper> unwrappers_;  ///< one per thread
   std::vector<FrameRecord> frames_;
-  DualFrequencyFrame last_;  ///< the last frame that could be read and repeats none; empty at first
+  Frame last_;  ///< the last frame that could be read and repeats none; empty at first
   bool is_interrupted_ = false;
 };
 

@@ -57,11 +57,10 @@ class CameraPath {
   bool closed_ = false;
 };
 
-/// The poses of the camera when it takes the images A and B of each frame. The timestamps of both
-/// are those of A.
+/// The poses of the camera when it takes the images of each frame.
 struct CameraMotion {
-  Trajectory at_a;
-  Trajectory at_b;
+  /// A trajectory for each image of a frame, all with the timestamps of the frames.
+  std::vector<Trajectory> at;
 };
 
 /// Moves a camera along a path. All steps between frames have the same size, which is the root of
@@ -69,15 +68,18 @@ struct CameraMotion {
 ///
 /// If `frames` is 0, there are as many frames as the whole path needs, but at least `min_frames`.
 /// With more frames than the path needs the camera moves more slowly; with fewer frames it stops
-/// before the end of the path. B is taken `b_delay_share` of a frame period after A. The last B of
-/// an open path lies beyond the end of the path, by the same fraction of the last step.
+/// before the end of the path. Each image is taken `delay_shares` of a frame period after the
+/// timestamp of its frame, 0 … 1. The late images of the last frame of an open path lie beyond the
+/// end of the path, by the same fraction of the last step.
 CameraMotion plan_motion(const CameraPath& path, const MotionLimits& limits, int frames,
-                         int min_frames, double frame_rate_hz, double b_delay_share);
+                         int min_frames, double frame_rate_hz,
+                         const std::vector<double>& delay_shares);
 
 /// Replays recorded poses, one per frame: the first `frames` of them, or all if `frames` is 0. The
-/// pose of B is interpolated between the pose of A and the next pose, at the fraction
-/// `b_delay_share`; after the last pose, the last step is extrapolated. Throws UsageError if
-/// `poses` is empty.
-CameraMotion replay_motion(const Trajectory& poses, int frames, double b_delay_share);
+/// pose at an image is interpolated between the pose of its frame and the next pose, at the
+/// fraction `delay_shares` of the image; after the last pose, the last step is extrapolated. Throws
+/// UsageError if `poses` is empty.
+CameraMotion replay_motion(const Trajectory& poses, int frames,
+                           const std::vector<double>& delay_shares);
 
 }  // namespace tofmap

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <complex>
+#include <vector>
 
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/trajectory.hpp>
@@ -19,11 +20,10 @@ using ImageC = Image<std::complex<double>>;
 /// Weak signals are kept, even those that a sensor would lose.
 struct IdealFrame {
   int index = 0;
-  double timestamp_s = 0;  ///< of A
-  ImageC signal_a;
-  ImageC signal_b;
-  Pose world_from_camera;  ///< when A is taken
-  ImageF range_truth_m;    ///< along the ray of the pixel's centre; NaN if it meets no surface
+  double timestamp_s = 0;       ///< of the first image
+  std::vector<ImageC> signals;  ///< an image for each frequency
+  Pose world_from_camera;       ///< when the first image is taken
+  ImageF range_truth_m;         ///< along the ray of the pixel's centre; NaN if it meets no surface
 };
 
 /// The frame that the sensor measures from ideal signals. It uses the options that do not need the
@@ -36,7 +36,7 @@ struct IdealFrame {
 /// to Simulator::simulate(ideal.index), bit by bit. Image size and frequencies must be those of
 /// that simulator. Throws UsageError if the images have another size than the camera of `sensor`,
 /// or if options contradict each other.
-DualFrequencyFrame measured_frame(const IdealFrame& ideal, const SensorModel& sensor,
-                                  const SimulatorOptions& options);
+Frame measured_frame(const IdealFrame& ideal, const SensorModel& sensor,
+                     const SimulatorOptions& options);
 
 }  // namespace tofmap

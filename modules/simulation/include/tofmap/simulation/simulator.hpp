@@ -47,6 +47,14 @@ struct SimulatorOptions {
   double frequency_a_hz = 29e6;  ///< modulation frequency of image A, 1e6 … 1e9 Hz
   double frequency_b_hz = 31e6;  ///< modulation frequency of image B, 1e6 … 1e9 Hz
 
+  /// One to eight modulation frequencies in place of A's and B's, 1e6 … 1e9 Hz. Empty: A and B.
+  /// Options of A apply to the first one, options of B to the second one.
+  std::vector<double> frequencies_hz;
+
+  /// Factor of the signal at each frequency, 0.01 … 1: cameras demodulate high frequencies less
+  /// well. Frequencies beyond the end of the list have 1.
+  std::vector<double> contrasts;
+
   /// Noise: standard deviation of A's range for a surface of reflectance 0.5 that faces the camera
   /// at 5 m, 0 … 10 m (equation 4). The noise of the signal is the same in all pixels and at both
   /// frequencies.
@@ -96,8 +104,14 @@ struct SimulatorOptions {
   /// logarithm of the amplitude, to 0 at 60000 (equation 11).
   double amplitude_error_b_m = 0;
 
-  /// Standard deviation of the constant errors of individual pixels, which differ between A and B,
-  /// 0 … 0.2 m (equation 12).
+  /// Lists of the three errors above for all frequencies; a list replaces the values of A and B.
+  /// Frequencies beyond the end of a list have no such error.
+  std::vector<double> offsets_m;
+  std::vector<double> periodic_errors_m;   ///< see `offsets_m`
+  std::vector<double> amplitude_errors_m;  ///< see `offsets_m`
+
+  /// Standard deviation of the constant errors of individual pixels, which differ between the
+  /// frequencies, 0 … 0.2 m (equation 12).
   double fixed_pattern_m = 0;
 
   /// Seed of periodic errors and fixed pattern, 0 or larger. It identifies the individual camera.
@@ -120,7 +134,8 @@ struct SimulatorOptions {
 
   // Motion.
 
-  /// Time from A to B, as a fraction of the frame period, 0 … 1.
+  /// Time from the first image of a frame to the last, as a fraction of the frame period, 0 … 1.
+  /// The images between them are evenly spaced.
   double b_delay_share = 0.1;
 
   /// Number of frames, 0 … 1 000 000. 0: as many as the path or the trajectory file needs. More
@@ -172,8 +187,8 @@ inline constexpr double amplitude_unit = 6000;
 
 /// One frame with its ground truth.
 struct SimulatedFrame {
-  DualFrequencyFrame frame;
-  Pose world_from_camera;  ///< when A is taken
+  Frame frame;
+  Pose world_from_camera;  ///< when the first image is taken
   ImageF range_truth_m;    ///< along the ray of the pixel's centre; NaN if it meets no surface
   ImageF cos_incidence;    ///< of that ray at the surface, 0 … 1; NaN if it meets no surface
   ImageU8 label;           ///< PixelLabel as a number
@@ -187,7 +202,8 @@ struct SensorEffects;
 struct SensorReadout;
 struct SubRay;
 
-/// A dual-frequency time-of-flight camera on a path through a scene (docs/simulator.md).
+/// A time-of-flight camera with one to eight frequencies on a path through a scene
+/// (docs/simulator.md).
 ///
 /// At each frequency, the signal of a pixel is the mean of the complex signals of a grid of rays
 /// over its area, plus complex Gaussian noise whose strength does not depend on the signal. So
@@ -211,7 +227,7 @@ class Simulator final : public FrameSource {
 
   /// The next frame. Empty at the end, or if `keep_going` returned false.
   std::optional<SourcedFrame> next() override;
-  std::optional<int> frame_count() const override { return static_cast<int>(motion_.at_a.size()); }
+  std::optional<int> frame_count() const override { return static_cast<int>(trajectory().size()); }
 
   /// The frame of this index, 0 … frame_count() − 1. Frames may be simulated in any order. The
   /// frame is unfinished if is_stopped() is true afterwards. Throws UsageError if there is no such
@@ -226,8 +242,8 @@ class Simulator final : public FrameSource {
   /// Whether `keep_going` now returns false.
   bool is_stopped() const { return keep_going_ && !keep_going_(); }
 
-  /// Camera poses when the images A are taken.
-  const Trajectory& trajectory() const { return motion_.at_a; }
+  /// Camera poses when the first image of each frame is taken.
+  const Trajectory& trajectory() const { return motion_.at.front(); }
 
   /// The surface that does not move, with the frames of doors.
   const TriangleMesh& surface() const { return scene_.surface; }
@@ -245,12 +261,9 @@ class Simulator final : public FrameSource {
   struct Exposure;
   struct Exposed;
   void check_index(int index) const;
-  Exposure exposure_a(int index) const;
-  Exposure exposure_b(int index) const;
+  Exposure exposure(int index, std::size_t frequency) const;
   double time_s(int index, double share) const;
   SceneAtTime scene_at(double time_s) const;
-  Exposure exposure_of(const Trajectory& poses, int index, double delay_share, double wavelength_m,
-                       std::uint64_t key) const;
   template <class Visit>
   void for_each_signal(const Exposure& exposure, const Visit& visit) const;
   ImageC ideal_signals(const Exposure& exposure) const;

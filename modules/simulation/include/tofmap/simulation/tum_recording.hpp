@@ -35,11 +35,11 @@ struct TumOptions {
   static std::vector<OptionField<TumOptions>> fields();
 };
 
-/// Recorded depth, as a dual-frequency camera would have measured it. Depth images are converted to
-/// radial ranges, which are wrapped at both frequencies of the simulator options, with their noise,
+/// Recorded depth, as a time-of-flight camera would have measured it. Depth images are converted to
+/// radial ranges, which are wrapped at the frequencies of the simulator options, with their noise,
 /// wiggling, dark charge, full wells, systematic errors, ambient light, phase bits and seeds. All
-/// surfaces have the same reflectance and face the camera. B is taken at the same instant as A. The
-/// other options of the simulator need a scene.
+/// surfaces have the same reflectance and face the camera. All frequencies are taken at the same
+/// instant. The other options of the simulator need a scene.
 class TumRecording {
  public:
   /// Reads depth.txt and, if it exists, groundtruth.txt. Lines that cannot be used are left out.
@@ -59,15 +59,15 @@ class TumRecording {
   const std::vector<std::string>& damaged_poses() const { return damaged_poses_; }
 
   /// A frame with its ground truth.
-  struct Frame {
-    DualFrequencyFrame frame;
+  struct FrameWithTruth {
+    Frame frame;
     ImageF range_truth_m;  ///< NaN where there is no depth, or the range exceeds its limit
     std::optional<Pose> world_from_camera;  ///< empty if no pose is close in time
   };
 
   /// The frame of this index, 0 … frame_count() − 1. Throws InputError if its image cannot be read
   /// or differs in size from the other images.
-  Frame read(int index) const;
+  FrameWithTruth read(int index) const;
 
   /// An image that depth.txt lists.
   struct DepthImage {
@@ -81,7 +81,6 @@ class TumRecording {
   SensorModel sensor_;
   PixelRays rays_;
   SimulatorOptions simulator_;
-  double noise_sigma_ = 0;
   std::vector<DepthImage> images_;
   std::vector<std::string> left_out_;
   std::vector<std::string> damaged_poses_;

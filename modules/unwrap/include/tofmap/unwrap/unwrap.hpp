@@ -5,7 +5,7 @@
 #include <span>
 
 #include <tofmap/core/frame.hpp>
-#include <tofmap/unwrap/common/residual_cost.hpp>
+#include <tofmap/unwrap/common/unwrap_limits.hpp>
 #include <tofmap/unwrap/common/unwrap_options.hpp>
 #include <tofmap/unwrap/common/unwrap_result.hpp>
 #include <tofmap/unwrap/errors/measured_frame.hpp>
@@ -14,24 +14,27 @@
 
 namespace tofmap {
 
-/// Finds the wrap count of A in every pixel of the frames of one camera (Droeschel, Holz, Behnke:
-/// Multi-frequency Phase Unwrapping for Time-of-Flight Cameras, IROS 2010; docs/unwrapping.md).
+/// Finds the wrap count of the first frequency in every pixel of the frames of one camera
+/// (Droeschel, Holz, Behnke: Multi-frequency Phase Unwrapping for Time-of-Flight Cameras, IROS
+/// 2010; docs/unwrapping.md).
 ///
 /// The planes of the resulting RangeImage have the size of the frame:
-///   range_m     radial: (phase_a + n) λ_A, with the wrap count n. For `joint`, by default, the
-///               weighted mean of the ranges of both frequencies (fuse_ranges).
+///   range_m     radial: (phase + n) λ of the first frequency, with the wrap count n. For `joint`,
+///               by default, the weighted mean of the ranges of all frequencies (fuse_ranges). For
+///               `jump`, `paper` and `single`, that of the frequency `pair_first`.
 ///   sigma_m     standard deviation of range_m by phase noise, which is estimated for each frame.
 ///   confidence  the probability that the wrap count is right. The confidence of `joint` is
 ///               calibrated (docs/unwrapping.md has the measurement); that of other methods only
 ///               ranks the pixels of a frame.
 ///
 /// Invalid pixels:
-///   no_return   no return at A or at B. These pixels take no part in any method, so that the
-///               methods can be compared.
-///   saturated   the amplitude at A or B reaches the sensor's saturation_amplitude. These pixels
+///   no_return   no return at one of the frequencies. These pixels take no part in any method, so
+///               that the methods can be compared.
+///   saturated   the amplitude at one of the frequencies reaches the sensor's saturation_amplitude.
+///   These pixels
 ///               are otherwise treated like those without a return.
 ///   ambiguous   of `joint` alone: the runner-up is at least a tenth as probable as the chosen wrap
-///               count, and the pair of frequencies cannot tell the two apart.
+///               count, and the frequencies cannot tell the two apart.
 ///
 /// `joint` and `jump` estimate the camera's systematic errors from all frames so far, so frames
 /// must be passed in the order of their recording. The same frames and options give the same bits.
@@ -42,24 +45,27 @@ namespace tofmap {
 /// used by two threads at once.
 class Unwrapper {
  public:
-  /// Throws UsageError if the range limit needs more than 255 wrap counts (unwrap_limits). Does not
-  /// check the other options; OptionTable checks their ranges when they are set.
+  /// Throws UsageError if the range limit needs more than 255 wrap counts (unwrap_limits), or if
+  /// the method needs frequencies that the sensor does not have. Does not check the other options;
+  /// OptionTable checks their ranges when they are set.
   Unwrapper(const SensorModel& sensor, const UnwrapOptions& options);
 
   /// Learns the camera's systematic errors from the first frames of a recording, so that they are
   /// known when the first frame is unwrapped. Call this before any other function, then pass the
   /// same frames to unwrap().
-  void look_ahead(std::span<const DualFrequencyFrame> frames) { measurer_.look_ahead(frames); }
+  void look_ahead(std::span<const Frame> frames) { measurer_.look_ahead(frames); }
 
   /// Measures and unwraps the next frame of the camera. Throws UsageError if the frame's images
   /// differ in size.
-  UnwrapResult unwrap(const DualFrequencyFrame& frame);
+  UnwrapResult unwrap(const Frame& frame);
 
   /// Unwraps a frame that a FrameMeasurer of the same sensor and options has measured. The result
   /// does not depend on frames that were unwrapped before.
   UnwrapResult unwrap(const MeasuredFrame& measured);
 
  private:
+  UnwrapResult unwrap_pair(const MeasuredFrame& measured);
+
   UnwrapOptions options_;
   UnwrapMethod method_;
   UnwrapLimits limits_;
@@ -70,7 +76,6 @@ class Unwrapper {
 
 /// Unwraps a single frame, without knowledge from other frames. Throws UsageError if the range
 /// limit needs more than 255 wrap counts, or if the frame's images differ in size.
-UnwrapResult unwrap(const DualFrequencyFrame& frame, const SensorModel& sensor,
-                    const UnwrapOptions& options);
+UnwrapResult unwrap(const Frame& frame, const SensorModel& sensor, const UnwrapOptions& options);
 
 }  // namespace tofmap

@@ -9,8 +9,8 @@
 
 namespace tofmap {
 
-/// The systematic errors of a camera as far as they differ between its two frequencies. The model
-/// is
+/// The systematic errors of a camera as far as they differ between two of its frequencies, A and B.
+/// The model is
 ///
 ///   μ = o + Σ_k (a_k cos 2πkφ_A + b_k sin 2πkφ_A + c_k cos 2πkφ_B + d_k sin 2πkφ_B)
 ///       + e log10(amplitude_A / reference_amplitude),                         k = 1 … harmonics

@@ -5,57 +5,36 @@
 #include <span>
 #include <vector>
 
-#include <tofmap/core/frame.hpp>
 #include <tofmap/core/frequency_residual.hpp>
 #include <tofmap/core/image.hpp>
 #include <tofmap/core/range_error.hpp>
+#include <tofmap/unwrap/common/unwrap_limits.hpp>
 
 namespace tofmap {
-
-/// The wrap counts that a frame can have.
-struct UnwrapLimits {
-  double wavelength_a_m = 0;  ///< λ_A
-  double wavelength_b_m = 0;  ///< λ_B
-  double max_range_m = 0;     ///< longest range in the scene
-  int count_a = 0;            ///< wrap counts of A are 0 … count_a − 1
-
-  double wavelength_ratio() const { return wavelength_a_m / wavelength_b_m; }
-};
-
-/// The limits for ranges up to `max_range_m`. If it is 0, the sensor's max_range_m is used; if that
-/// is 0 as well, the range up to which the pair of frequencies is unambiguous at a noise of 0.05
-/// cycles (29 and 31 MHz: 72.4 m), but at most 255 wavelengths of A.
-/// Throws UsageError if the ranges need more than 255 wrap counts, which 8-bit images cannot hold.
-UnwrapLimits unwrap_limits(const SensorModel& sensor, double max_range_m);
 
 /// The inter-frequency residual of one pixel for wrap count n_A: the range at A minus the nearest
 /// range that B's phase allows; metres, −λ_B / 2 … λ_B / 2. It is near zero for the true wrap
 /// count; NaN if a phase is NaN. B's wrap count is not limited: near both ends of the range limits,
 /// noise may carry B across a wrap boundary that A has not crossed.
-float count_residual_m(const UnwrapLimits& limits, float phase_a, float phase_b, int n_a);
+float count_residual_m(const PairLimits& limits, float phase_a, float phase_b, int n_a);
 
 /// The largest phase of A, in cycles, at which the range for wrap count n_A is within the limits
 /// (see count_within_limits); −1 if n_A is not in 0 … count_a − 1.
-float farthest_phase_cycles(const UnwrapLimits& limits, int n_a);
+float farthest_phase_cycles(const PairLimits& limits, int n_a);
 
 /// The smallest change of the residual by another wrap count within the limits, metres; the
 /// function of this name in tofmap/core/frequency_residual.hpp has the definition.
-double residual_step_m(const UnwrapLimits& limits);
+double residual_step_m(const PairLimits& limits);
 
 /// True if the wrap count n_A ≥ 0 gives a range at A of at most max_range_m plus λ_A / 20, a
 /// tolerance for noise at the limit. Always true for n_A = 0.
-bool count_within_limits(const UnwrapLimits& limits, float phase_a, int n_a);
-
-/// Whether the pair of frequencies can tell two wrap counts apart: false if their residuals differ
-/// by at most 0.05 cycles of B, because the difference of their ranges is a multiple of the
-/// combined range.
-bool can_tell_apart(const UnwrapLimits& limits, int n_a, int other_n_a);
+bool count_within_limits(const PairLimits& limits, float phase_a, int n_a);
 
 /// Equation 2 of Droeschel et al. 2010, extended to any number of wraps: the wrap count with the
 /// smallest absolute residual in each pixel, within the limits; of equal ones the smallest wrap
 /// count. invalid_wrap_count where either phase is NaN. For two wrap counts this is a threshold at
 /// |λ_A − λ_B| / 2. threshold_counts() is the equation as the paper prints it.
-ImageU8 nearest_pair_counts(const DualFrequencyFrame& frame, const UnwrapLimits& limits);
+ImageU8 nearest_pair_counts(const Frame& frame, const PairLimits& limits);
 
 /// R̂ of equation 2: phase_a + n_A, cycles; NaN where the wrap count is invalid.
 ImageF reconstruct_cycles(const ImageF& phase_a, const ImageU8& counts);
@@ -76,7 +55,7 @@ class ResidualCost {
 
   /// `sigma` is the noise of both phases, `residual_sigma_m` the standard deviation of the residual
   /// besides noise.
-  ResidualCost(const DualFrequencyFrame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
+  ResidualCost(const Frame& frame, const PairLimits& limits, const PhaseSigma& sigma,
                double residual_sigma_m = 0);
 
   /// The cost of wrap count n_A in a pixel, whose index counts row by row; 0 … bound. n_A may be

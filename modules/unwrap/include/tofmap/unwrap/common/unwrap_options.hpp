@@ -12,10 +12,10 @@ namespace tofmap {
 /// The methods of unwrapping. "The paper" is Droeschel, Holz, Behnke: Multi-frequency Phase
 /// Unwrapping for Time-of-Flight Cameras, IROS 2010; docs/unwrapping.md describes each method.
 enum class UnwrapMethod {
-  joint,   ///< belief propagation over the wrap counts of all pixels, from both frequencies
+  joint,   ///< belief propagation over the wrap counts of all pixels, from all frequencies
   none,    ///< no unwrapping: wrap count 0 in every pixel
   pixel,   ///< equation 2 of the paper in each pixel by itself, for any number of wraps
-  single,  ///< phase jumps from frequency A alone: `jump` without frequency term and residual
+  single,  ///< phase jumps from one frequency alone: `jump` without frequency term and residual
   jump,    ///< the paper's phase jumps, integrated so that wrap counts agree with the residual
   paper,   ///< the paper as printed: phase jumps and two wrap counts
 };
@@ -33,7 +33,7 @@ struct UnwrapOptions {
   UnwrapMethod method = UnwrapMethod::joint;
 
   /// Longest range in the scene, metres, 0 … 100000. It limits the wrap counts. 0: the limit that
-  /// the recording states, or else the range up to which the pair of frequencies is unambiguous at
+  /// the recording states, or else the range up to which the frequencies are unambiguous at
   /// a noise of 0.05 cycles. `paper` uses two wrap counts, whatever the limit is.
   double max_range_m = 0;
 
@@ -63,22 +63,29 @@ struct UnwrapOptions {
   /// opposite neighbours. Needs amplitudes.
   bool mixed_pixels = true;
 
-  /// Whether the range is the mean of both frequencies, weighted by inverse variances
-  /// (fuse_ranges). False: the range of A alone.
+  /// Whether the range is the mean of all frequencies, weighted by inverse variances
+  /// (fuse_ranges). False: the range of the first frequency alone.
   bool fuse_frequencies = true;
 
   // Options of joint and jump.
 
-  /// Whether the camera's motion between the exposures of A and B is estimated and removed from B.
+  /// Whether the camera's motion between the exposures of the first frequency and each other one is
+  /// estimated and removed from the latter.
   /// False: an offset between the frequencies absorbs the motion. No effect without
   /// `systematic_errors`.
   bool correct_exposure = true;
 
   /// Whether the systematic errors in which the frequencies differ are estimated, from all frames
-  /// so far, and removed from B (ErrorTracker). False: residuals are attributed to noise alone.
+  /// so far, and removed from all but the first (ErrorTracker). False: residuals are attributed to
+  /// noise alone.
   bool systematic_errors = true;
 
   // Options of jump, paper and single.
+
+  /// The two frequencies that are compared, counted from 1 in the order of the recording; 1 … 8.
+  /// `single` uses the first of them alone.
+  int pair_first = 1;
+  int pair_second = 2;  ///< see pair_first
 
   /// Largest number of iterations of belief propagation over phase jumps, 1 … 1000. It stops
   /// earlier if every loop of 2 x 2 pixels satisfies the zero-curl constraint.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <tofmap/core/range_image.hpp>
 #include <tofmap/unwrap/common/frame_errors.hpp>
@@ -12,8 +13,8 @@ namespace tofmap {
 /// The result of unwrapping one frame.
 struct UnwrapResult {
   RangeImage image;
-  /// Estimated by `joint` and `jump`; of the other methods as constructed.
-  FrameErrors errors = {};
+  /// Of each frequency relative to the first one (MeasuredFrame::errors).
+  std::vector<FrameErrors> errors = {};
   /// Iterations of belief propagation, for `joint` added over all pyramid levels; 0 for `none` and
   /// `pixel`.
   int iterations = 0;

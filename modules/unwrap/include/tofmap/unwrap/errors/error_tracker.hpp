@@ -33,7 +33,8 @@ struct MatchedExposure {
   ImageF sigma_b_cycles;  ///< noise of phase_b
 };
 
-/// Estimates the systematic errors of a camera from its frames, one frame after the other
+/// Estimates the systematic errors in which two frequencies of a camera, A and B, differ, from its
+/// frames, one frame after the other
 /// (docs/unwrapping.md, equations 17 to 21).
 ///
 /// On bright, smooth surfaces the inter-frequency residual of a frame shows how the camera moved
@@ -48,7 +49,7 @@ class ErrorTracker {
  public:
   /// If `camera` has no size or no focal length, motion cannot be estimated, and the offset absorbs
   /// it.
-  ErrorTracker(const UnwrapLimits& limits, const CameraModel& camera);
+  ErrorTracker(const PairLimits& limits, const CameraModel& camera);
 
   /// The errors of a frame, and its B matched to A.
   struct Tracked {
@@ -58,9 +59,9 @@ class ErrorTracker {
 
   /// Estimates the errors of the next frame, matches its B to A, and learns from the frame. Phases
   /// must be NaN at both frequencies where either has no return; `sigma` is the noise of the
-  /// phases. From a frame with fewer than 100 samples nothing is estimated or learned: its errors
-  /// are those known of the camera.
-  Tracked track(const DualFrequencyFrame& frame, const PhaseSigma& sigma);
+  /// phases. A is the first frequency of the frame, `b` is that of B. From a frame with fewer than
+  /// 100 samples nothing is estimated or learned: its errors are those known of the camera.
+  Tracked track(const Frame& frame, const PhaseSigma& sigma, std::size_t b = 1);
 
   /// The camera's errors, estimated from all frames so far.
   const CameraErrors& camera_errors() const { return camera_errors_; }
@@ -97,7 +98,7 @@ class ErrorTracker {
   void match_moved(const SurfaceSamples& samples, const ExposurePair& pair,
                    const PairGeometry& geometry, Tracked& tracked);
 
-  UnwrapLimits limits_;
+  PairLimits limits_;
   CameraModel camera_;
   PixelRays rays_;
   CameraErrors camera_errors_;

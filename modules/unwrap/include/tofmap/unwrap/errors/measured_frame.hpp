@@ -3,14 +3,14 @@
 #pragma once
 
 #include <iosfwd>
-#include <optional>
 #include <span>
+#include <vector>
 
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/image.hpp>
 #include <tofmap/core/range_error.hpp>
 #include <tofmap/unwrap/common/frame_errors.hpp>
-#include <tofmap/unwrap/common/residual_cost.hpp>
+#include <tofmap/unwrap/common/unwrap_limits.hpp>
 #include <tofmap/unwrap/common/unwrap_options.hpp>
 #include <tofmap/unwrap/errors/error_tracker.hpp>
 
@@ -19,24 +19,26 @@ namespace tofmap {
 /// A frame and its estimated errors: the input of every method of unwrapping. All images have the
 /// size of the frame.
 struct MeasuredFrame {
-  /// The frame, with phases that are NaN at both frequencies where `valid` is 0. For `joint` and
-  /// `jump`, B is matched to A (MatchedExposure).
-  DualFrequencyFrame returns;
-  /// 1 where both frequencies have a return and none is saturated, else 0.
+  /// The frame, with phases that are NaN at all frequencies where `valid` is 0. For `joint` and
+  /// `jump`, the other frequencies are matched to the first one (MatchedExposure).
+  Frame returns;
+  /// 1 where all frequencies have a return and none is saturated, else 0.
   ImageU8 valid;
-  /// 1 where the amplitude of either frequency reaches the sensor's saturation_amplitude, else 0.
+  /// 1 where the amplitude of a frequency reaches the sensor's saturation_amplitude, else 0.
   ImageU8 saturated;
-  /// Estimated noise of the phases.
-  PhaseNoise noise;
+  /// Estimated noise of the phases of each frequency.
+  std::vector<PhaseNoise> noise;
   /// Factor by which ambient light raises the noise of each pixel; empty: 1 everywhere.
   ImageF ambient;
   /// Standard deviation of the phase noise of each pixel, from `noise` and `ambient`.
   PhaseSigma sigma;
-  /// Estimated for `joint` and `jump`; for the other methods as constructed.
-  FrameErrors errors;
-  /// Standard deviation of the inter-frequency residual besides noise; 0 for methods whose
-  /// systematic errors are not estimated.
-  double residual_sigma_m = 0;
+  /// The errors of each frequency relative to the first one. Those of the first one are as
+  /// constructed; those of all are for methods other than `joint` and `jump`.
+  std::vector<FrameErrors> errors;
+  /// Standard deviation, besides noise, of the inter-frequency residual of each frequency relative
+  /// to the first one; 0 for the first one, and for methods whose systematic errors are not
+  /// estimated.
+  std::vector<double> residual_sigma_m;
 };
 
 /// Estimates noise, systematic errors and the motion between exposures for the frames of one
@@ -52,10 +54,11 @@ class FrameMeasurer {
   /// Learns the camera's systematic errors from the first frames of a recording, so that they are
   /// known when the first frame is measured. Call this before any other function, then pass the
   /// same frames to measure().
-  void look_ahead(std::span<const DualFrequencyFrame> frames);
+  void look_ahead(std::span<const Frame> frames);
 
-  /// Measures the next frame. Throws UsageError if the frame's images differ in size.
-  MeasuredFrame measure(const DualFrequencyFrame& frame);
+  /// Measures the next frame. Throws UsageError if the frame does not have the sensor's
+  /// frequencies, or if its images differ in size.
+  MeasuredFrame measure(const Frame& frame);
 
   /// The number of frames that look_ahead() should be given.
   static constexpr int frames_ahead = 8;
@@ -71,10 +74,12 @@ class FrameMeasurer {
  private:
   UnwrapLimits limits_;
   double saturation_amplitude_;
-  std::optional<ErrorTracker> tracker_;  ///< empty if systematic errors are not estimated
+  /// A tracker for each frequency but the first; none if systematic errors are not estimated.
+  std::vector<ErrorTracker> trackers_;
 };
 
-/// Median of the noise of A's phase over the pixels with a return, cycles; 0 if no pixel has one.
+/// Median of the noise of the first frequency's phase over the pixels with a return, cycles; 0 if
+/// no pixel has one.
 double median_phase_noise_cycles(const MeasuredFrame& frame);
 
 }  // namespace tofmap

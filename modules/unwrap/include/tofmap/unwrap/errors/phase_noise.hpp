@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/image.hpp>
 #include <tofmap/core/range_error.hpp>
 
 namespace tofmap {
 
-/// Estimates the phase noise of one frame at both frequencies (docs/unwrapping.md, 'Noise').
+/// Estimates the phase noise of one frame at each frequency (docs/unwrapping.md, 'Noise').
 ///
 /// The scale of the noise is the median absolute second difference of the wrapped phase along rows
 /// and columns, each difference divided by the relative noise that the amplitudes predict for it.
@@ -21,6 +23,6 @@ namespace tofmap {
 /// The estimate is at least the quantisation step of the phases, and that is at least the step of
 /// 16-bit phases. With fewer than 16 second differences, the estimate is a noise of 0.01 cycles at
 /// the median amplitude.
-PhaseNoise estimate_phase_noise(const DualFrequencyFrame& frame);
+std::vector<PhaseNoise> estimate_phase_noise(const Frame& frame);
 
 }  // namespace tofmap

@@ -7,7 +7,7 @@
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/image.hpp>
 #include <tofmap/core/range_error.hpp>
-#include <tofmap/unwrap/common/residual_cost.hpp>
+#include <tofmap/unwrap/common/unwrap_limits.hpp>
 #include <tofmap/unwrap/joint/wrap_count_model.hpp>
 #include <tofmap/unwrap/joint/wrap_count_propagation.hpp>
 
@@ -26,7 +26,7 @@ struct WrapCountOptions {
 
 /// A frame and the noise of its phases; both NaN where there is no return.
 struct NoisyFrame {
-  DualFrequencyFrame frame;
+  Frame frame;
   PhaseSigma sigma;
 };
 
@@ -34,19 +34,20 @@ struct NoisyFrame {
 /// and propagates their noise. Pixels without a return at either frequency are left out; a block
 /// without any return has NaN phases and amplitude 0. If the frame has no amplitudes, all its
 /// phasors have length 1; the result has amplitudes in any case, the lengths of the mean phasors.
-NoisyFrame halve(const DualFrequencyFrame& frame, const PhaseSigma& sigma);
+NoisyFrame halve(const Frame& frame, const PhaseSigma& sigma);
 
 /// Estimates the wrap counts of frames by belief propagation, in noisy frames at several pyramid
 /// levels from coarse to fine (docs/unwrapping.md, 'Joint: beliefs over counts'). The object keeps
 /// its buffers, so frames of the same size need few allocations.
 class WrapCountEstimator {
  public:
-  /// Estimates the wrap counts of a frame whose phases are NaN at both frequencies where either has
-  /// no return; in these pixels the wrap count is invalid_wrap_count and its probability 0. `sigma`
-  /// is the noise of the phases, `residual_sigma_m` the standard deviation of the inter-frequency
-  /// residual besides noise. `iterations` of the result is the sum over all pyramid levels.
-  WrapCountBeliefs estimate(const DualFrequencyFrame& frame, const UnwrapLimits& limits,
-                            const PhaseSigma& sigma, double residual_sigma_m,
+  /// Estimates the wrap counts of a frame whose phases are NaN at all frequencies where one of them
+  /// has no return; in these pixels the wrap count is invalid_wrap_count and its probability 0.
+  /// `sigma` is the noise of the phases, `residual_sigma_m` has for each frequency the standard
+  /// deviation of its residual to the first one besides noise. `iterations` of the result is the
+  /// sum over all pyramid levels.
+  WrapCountBeliefs estimate(const Frame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
+                            const std::vector<double>& residual_sigma_m,
                             const WrapCountOptions& options);
 
  private:
@@ -58,7 +59,7 @@ class WrapCountEstimator {
     WrapCountBeliefs beliefs;
   };
 
-  int divide(const DualFrequencyFrame& frame, const PhaseSigma& sigma, int most);
+  int divide(const Frame& frame, const PhaseSigma& sigma, int most);
 
   std::vector<Scale> scales_;
 };

@@ -10,7 +10,7 @@
 #include <tofmap/core/image.hpp>
 #include <tofmap/core/range_error.hpp>
 #include <tofmap/unwrap/common/diagonal_layout.hpp>
-#include <tofmap/unwrap/common/residual_cost.hpp>
+#include <tofmap/unwrap/common/unwrap_limits.hpp>
 #include <tofmap/unwrap/common/unwrap_options.hpp>
 
 namespace tofmap {
@@ -41,8 +41,8 @@ struct WrapCountPrior {
 /// (docs/unwrapping.md, equations 11 to 14). All values are stored diagonal by diagonal
 /// (DiagonalLayout).
 ///
-/// Unary factors, `evidence`: how well each wrap count of a pixel fits the pixel's residual,
-/// tempered, relative to the best wrap count, which has 1.
+/// Unary factors, `evidence`: how well each wrap count of a pixel fits the pixel's
+/// residuals, tempered, relative to the best wrap count, which has 1.
 ///
 /// Pairwise factors, `right` and `down`: ψ(i) of a pixel p and its neighbour q for the step
 /// i = n(q) − n(p), tempered. Only two steps can bring the ranges of p and q close together: 0, and
@@ -57,11 +57,11 @@ class WrapCountModel {
   };
 
   /// Builds the model of a frame, which replaces the previous one. Phases must be NaN where there
-  /// is no return. `sigma` is the noise of the phases, `residual_sigma_m` the standard deviation of
-  /// the inter-frequency residual besides noise. Reuses the memory of the previous model if the
-  /// frame has the same size.
-  void assign(const DualFrequencyFrame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
-              double residual_sigma_m, const WrapCountPrior& prior);
+  /// is no return. `sigma` is the noise of the phases; `residual_sigma_m` has for each frequency
+  /// the standard deviation of its residual to the first one besides noise. Reuses the memory of
+  /// the previous model if the frame has the same size.
+  void assign(const Frame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
+              const std::vector<double>& residual_sigma_m, const WrapCountPrior& prior);
 
   /// Multiplies the unary factors of a pixel by `factors`, one for each wrap count, and scales them
   /// so that the largest is 1.
@@ -82,7 +82,11 @@ class WrapCountModel {
   const Edges& down() const { return down_; }
 
  private:
-  void resize(int rows, int cols, int counts);
+  void resize(int rows, int cols, int counts, std::size_t frequencies);
+  void load(const Frame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
+            const std::vector<double>& residual_sigma_m);
+  void fill_unary(const UnwrapLimits& limits);
+  void fill_pairwise(const UnwrapLimits& limits, const WrapCountPrior& prior);
   void mark_mixed_pixels(const ImageF& amplitude, const ImageF& sigma_cycles);
 
   DiagonalLayout layout_;
@@ -91,11 +95,9 @@ class WrapCountModel {
   Edges right_;
   Edges down_;
   // Measurements of the frame and parameters of its pixels, diagonal by diagonal.
-  std::vector<float> phase_a_;
-  std::vector<float> phase_b_;
-  std::vector<float> amplitude_;
-  std::vector<float> variance_a_m2_;
-  std::vector<float> variance_b_m2_;
+  std::vector<std::vector<float>> phases_;        ///< of each frequency
+  std::vector<std::vector<float>> variances_m2_;  ///< of each frequency
+  std::vector<float> amplitude_;                  ///< of the first frequency
   std::vector<float> outlier_share_;
 };
 

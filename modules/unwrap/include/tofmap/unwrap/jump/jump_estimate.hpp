@@ -56,8 +56,8 @@ class JumpEstimator {
   /// Estimates the phase jumps of a frame whose phases are NaN at both frequencies where either has
   /// no return; `sigma` is the noise of the phases. The result refers to memory of this object and
   /// is valid until the next call.
-  const JumpEstimate& estimate(const DualFrequencyFrame& frame, const PhaseSigma& sigma,
-                               const UnwrapLimits& limits, const JumpMethod& method,
+  const JumpEstimate& estimate(const Frame& frame, const PhaseSigma& sigma,
+                               const PairLimits& limits, const JumpMethod& method,
                                const UnwrapOptions& options);
 
  private:

@@ -22,11 +22,10 @@ double neighbour_variance_cycles2(const ImageF& phase);
 /// Equation 2 as printed: wrap count 1 where |a mod λ_B − b| > τ, else 0, with the wrapped ranges a
 /// and b of both frequencies and τ = `threshold_m`, metres. invalid_wrap_count where either phase
 /// is NaN.
-ImageU8 threshold_counts(const DualFrequencyFrame& frame, const UnwrapLimits& limits,
-                         double threshold_m);
+ImageU8 threshold_counts(const Frame& frame, const PairLimits& limits, double threshold_m);
 
 /// τ of equation 2, metres: |λ_A − λ_B| / 2, halfway between the difference 0 of pixels with wrap
 /// count 0 and the difference |λ_A − λ_B| of pixels with wrap count 1.
-double halfway_threshold_m(const UnwrapLimits& limits);
+double halfway_threshold_m(const PairLimits& limits);
 
 }  // namespace tofmap
