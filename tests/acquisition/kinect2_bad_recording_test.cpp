@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -175,6 +176,34 @@ TEST_F(BadKinect2Recording, HasAManifestThatIsNotJson) {
   expect_refusal({"manifest.json: is too large"});
   write("manifest.json", "[1, 2]");
   expect_refusal({"manifest.json: version is missing"});
+}
+
+TEST_F(BadKinect2Recording, HasAManifestThatIsCutOffAnywhere) {
+  const std::string whole = manifest;
+  for (std::size_t kept = 0; kept < whole.size(); kept += 7) {
+    write("manifest.json", whole.substr(0, kept));
+    expect_refusal({"manifest.json: line ", " is not valid JSON; is the file damaged?"});
+  }
+}
+
+TEST_F(BadKinect2Recording, WithRandomBytesInItsTextsIsReadOrRefusedByName) {
+  std::mt19937 random(8);
+  int refused = 0;
+  for (int i = 0; i < 300; ++i) {
+    const std::string file = i % 2 == 0 ? "manifest.json" : "frames.ndjson";
+    const std::string whole = text_of(file);
+    std::string text = whole;
+    for (int k = 0; k < 3; ++k) text[random() % text.size()] = static_cast<char>(random());
+    write(file, text);
+    try {
+      EXPECT_FALSE(open_recording(folder_).packets.empty());
+    } catch (const InputError& error) {
+      ++refused;
+      test::expect_part(error.what(), folder_.string());
+    }
+    write(file, whole);
+  }
+  EXPECT_GT(refused, 30);
 }
 
 TEST_F(BadKinect2Recording, HasAManifestThatNestsWithoutEnd) {
