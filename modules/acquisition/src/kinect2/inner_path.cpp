@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "inner_path.hpp"
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap::kinect2 {
+
+std::filesystem::path inner_path(const std::string& text) {
+  if (text.empty() || text.find('\0') != std::string::npos) {
+    throw InputError("the path is empty or not valid");
+  }
+  std::filesystem::path path = std::filesystem::path(text).lexically_normal();
+  if (path.is_absolute() || *path.begin() == "..") {
+    throw InputError("the path '" + text +
+                     "' leads out of the recording; paths are relative to its folder");
+  }
+  return path;
+}
+
+}  // namespace tofmap::kinect2
