@@ -153,6 +153,7 @@ ArrayContent open_raw(const std::filesystem::path& file, const ArrayFileOptions&
 }
 
 ArrayContent open_array(const std::filesystem::path& file, const ArrayFileOptions& options) {
+  refuse_no_file(file);
   const std::string extension = lower_extension(file);
   const bool is_archive = extension == ".npz";
   const bool is_tiff = extension == ".tif" || extension == ".tiff";

@@ -49,9 +49,10 @@ void fit_row(const Eigen::MatrixXd& values, const StepDesign& design, Eigen::Ind
   const Eigen::ArrayXd largest = values.cwiseAbs().colwise().maxCoeff().transpose();
   for (Eigen::Index col = 0; col < values.cols(); ++col) {
     double amplitude = std::hypot(cosine(col), sine(col));
+    if (!std::isfinite(amplitude)) continue;
     if (amplitude <= rounding * largest(col)) amplitude = 0;
-    fit.amplitude(row, col) = std::isfinite(amplitude) ? static_cast<float>(amplitude) : nan;
-    if (!(amplitude > 0 && std::isfinite(amplitude))) continue;
+    fit.amplitude(row, col) = static_cast<float>(amplitude);
+    if (amplitude == 0) continue;
     const double angle_rad = design.phase_sign() * std::atan2(sine(col), cosine(col));
     const double cycles = angle_rad / (2 * std::numbers::pi);
     const auto phase = static_cast<float>(cycles - std::floor(cycles));

@@ -22,6 +22,11 @@ constexpr std::size_t most_bins = 16;
 /// Pixels beyond this number are sampled: medians do not get better than they need to be.
 constexpr std::size_t most_pixels = 100000;
 
+/// How often the noise is estimated, each time without the pixels that the last estimate makes
+/// inconsistent: with a third of them in the image, the first estimate of the variance is three
+/// times too large.
+constexpr int passes = 4;
+
 struct Residual {
   float signal = 0;
   float squared = 0;
@@ -47,6 +52,7 @@ double chi_square_tail(int degrees_of_freedom, double x) {
   return tail;
 }
 
+/// In the order of their signals.
 std::vector<Residual> usable_residuals(const ImageF& signal, const ImageF& squared_residual,
                                        const ImageU8& excluded) {
   std::vector<Residual> residuals;
@@ -57,12 +63,12 @@ std::vector<Residual> usable_residuals(const ImageF& signal, const ImageF& squar
         excluded.data()[i] == 0 && std::isfinite(signal.data()[i]) && std::isfinite(one.squared);
     if (is_usable) residuals.push_back(one);
   }
+  std::ranges::stable_sort(residuals, {}, &Residual::signal);
   return residuals;
 }
 
-std::vector<BinVariance> bin_variances(std::vector<Residual> residuals, int degrees_of_freedom,
-                                       double least_variance) {
-  std::ranges::stable_sort(residuals, {}, &Residual::signal);
+std::vector<BinVariance> bin_variances(const std::vector<Residual>& residuals,
+                                       int degrees_of_freedom, double least_variance) {
   const std::size_t bins = std::clamp<std::size_t>(residuals.size() / pixels_a_bin, 1, most_bins);
   const double median_of_unit_noise = chi_square_quantile(degrees_of_freedom, 0.5);
   std::vector<BinVariance> variances;
@@ -110,6 +116,23 @@ bool is_possible(const StepNoise& noise) {
   return noise.constant >= 0 && noise.per_signal >= 0 && noise.per_squared_signal >= 0;
 }
 
+/// The curve with the least misfit.
+StepNoise best_curve(const std::vector<BinVariance>& bins) {
+  StepNoise best;
+  double least_misfit = std::numeric_limits<double>::infinity();
+  for (const BinVariance& one : bins) {
+    for (const BinVariance& other : bins) {
+      for (const StepNoise& curve : curves_through(one, other)) {
+        const double sum = is_possible(curve) ? misfit(curve, bins) : least_misfit;
+        if (sum >= least_misfit) continue;
+        least_misfit = sum;
+        best = curve;
+      }
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 double chi_square_quantile(int degrees_of_freedom, double upper_tail) {
@@ -126,25 +149,19 @@ double chi_square_quantile(int degrees_of_freedom, double upper_tail) {
 StepNoise estimate_step_noise(const ImageF& signal, const ImageF& squared_residual,
                               const ImageU8& excluded, int degrees_of_freedom,
                               double least_variance) {
-  const std::vector<Residual> residuals = usable_residuals(signal, squared_residual, excluded);
-  if (residuals.size() < fewest_pixels) return {};
-  const std::vector<BinVariance> bins =
-      bin_variances(residuals, degrees_of_freedom, least_variance);
-  StepNoise best;
-  double least_misfit = std::numeric_limits<double>::infinity();
-  for (const BinVariance& one : bins) {
-    for (const BinVariance& other : bins) {
-      for (const StepNoise& curve : curves_through(one, other)) {
-        const double sum = is_possible(curve) ? misfit(curve, bins) : least_misfit;
-        if (sum >= least_misfit) continue;
-        least_misfit = sum;
-        best = curve;
-      }
-    }
+  std::vector<Residual> residuals = usable_residuals(signal, squared_residual, excluded);
+  const double most = chi_square_quantile(degrees_of_freedom, inconsistent_by_chance);
+  StepNoise noise;
+  for (int pass = 0; pass < passes; ++pass) {
+    if (residuals.size() < fewest_pixels) break;
+    noise = best_curve(bin_variances(residuals, degrees_of_freedom, least_variance));
+    noise.constant = std::max(noise.constant, least_variance);
+    noise.pixels = static_cast<int>(residuals.size());
+    std::erase_if(residuals, [&](const Residual& one) {
+      return one.squared > most * noise.variance_at(one.signal);
+    });
   }
-  best.constant = std::max(best.constant, least_variance);
-  best.pixels = static_cast<int>(residuals.size());
-  return best;
+  return noise;
 }
 
 ImageU8 inconsistent_pixels(const ImageF& signal, const ImageF& squared_residual,

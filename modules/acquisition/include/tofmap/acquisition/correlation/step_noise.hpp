@@ -41,6 +41,8 @@ double chi_square_quantile(int degrees_of_freedom, double upper_tail);
 /// estimate of v at its median signal. Of all curves through two bins that have a constant and
 /// one other term, or a single term, the one with the least sum of |log(estimate / v)| is taken.
 /// The logarithm counts dark and bright bins alike; the absolute value ignores some wrong bins.
+/// This is repeated without the pixels that the estimate makes inconsistent (reweighting; Rousseeuw
+/// and Leroy 1987, 'Robust Regression and Outlier Detection').
 ///
 /// `signal`: shot noise grows with it. Pixels where it or the residual is NaN, or `excluded` is
 /// not 0, are not used. `least_variance` is that of rounding, 1/12 for whole numbers; v is nowhere
