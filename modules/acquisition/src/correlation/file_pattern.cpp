@@ -147,7 +147,16 @@ std::set<std::int64_t> FilePattern::frames_below(const std::filesystem::path& fo
   for (const std::filesystem::path& file : files) {
     const std::string name = base + file.lexically_relative(folder / base).generic_string();
     std::smatch match;
-    if (std::regex_match(name, match, expression)) frames.insert(std::stoll(match[1].str()));
+    if (!std::regex_match(name, match, expression)) continue;
+    const std::int64_t number = std::stoll(match[1].str());
+    const auto is_frame = [](const Piece& piece) {
+      return piece.has_field && piece.field == ArrayAxis::frame;
+    };
+    // With other leading zeros, it is not a name that the pattern has.
+    const bool is_written_so = std::ranges::all_of(pieces_, [&](const Piece& piece) {
+      return !is_frame(piece) || text_of(piece, {.frame = number}) == match[1].str();
+    });
+    if (is_written_so) frames.insert(number);
   }
   return frames;
 }
