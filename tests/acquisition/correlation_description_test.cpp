@@ -62,6 +62,7 @@ TEST_F(CorrelationDescriptionFile, WithWrongKeysNamesThemAndWhatIsAllowed) {
   EXPECT_THAT(complaint("tofmap-correlation", "tofmap-sequence"), HasSubstr("tofmap-correlation"));
   EXPECT_THAT(complaint("version: 1", "version: 2"), HasSubstr("version is 2"));
   EXPECT_THAT(complaint("phase_sign", "phase_sgn"), HasSubstr("phase_sgn is an unknown key"));
+  EXPECT_THAT(complaint("{value: 3}", "{[]: 3}"), HasSubstr("dark must have words as keys"));
   EXPECT_THAT(complaint("phase_sign: 1", "phase_sign: 0"),
               HasSubstr("phase_sign must be 1 or -1, not 0"));
   EXPECT_THAT(complaint("phase_sign: 1\n", ""), HasSubstr("phase_sign is missing"));

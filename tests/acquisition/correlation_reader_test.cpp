@@ -505,29 +505,31 @@ TEST_F(CorrelationReading, OfRawNumbersKnowsMissingFramesFromTheTimes) {
 }
 
 TEST_F(CorrelationReading, FlagsWhatMovesBetweenTheSteps) {
-  // A wide image, so that its noise can be estimated: rows of 200 pixels.
+  // An image of 200 x 20 pixels, from which noise can be estimated. The value of the third step of
+  // 50 pixels is off.
   std::vector<float> numbers;
   for (int k = 0; k < 4; ++k) {
     for (int n = 0; n < 20 * 200; ++n) {
-      const double noise = 5 * std::sin(12345.678 * (n + 1) * (k + 2)) * std::numbers::sqrt2;
-      const bool moves = n >= 10 * 200 && n < 10 * 200 + 50 && k >= 2;
-      numbers.push_back(static_cast<float>(1000 +
-                                           300 * std::cos(0.01 * n - k * std::numbers::pi / 2) +
-                                           noise + (moves ? 80 : 0) * (k == 2 ? 1 : 0)));
+      const double noise = 7 * std::sin(12345.678 * (n + 1) * (k + 2));
+      const bool is_off = k == 2 && n >= 10 * 200 && n < 10 * 200 + 50;
+      numbers.push_back(static_cast<float>(
+          1000 + 300 * std::cos(0.01 * n - k * std::numbers::pi / 2) + noise + (is_off ? 80 : 0)));
     }
   }
   write_bytes(path("a.npy"), npy("<f4", "(1, 4, 20, 200)", bytes_of(numbers)));
-  std::ofstream(path("wide.yaml"))
-      << "format: tofmap-correlation\nversion: 1\n"
-      << "camera: {width: 200, height: 20, fx: 200, fy: 200, cx: 100, cy: 10}\n"
-      << "frequencies_hz: [20.0e6]\nstep_angles_deg: [0, 90, 180, 270]\nphase_sign: 1\n"
-      << "steps: single_ended\ndata: {files: a.npy, axes: [frame, step, row, column]}\n";
-  CorrelationReader reader(read_correlation_description(path("wide.yaml")));
-  const FrequencyMeasurement measured = reader.read(0).frequencies.at(0);
-  EXPECT_EQ(measured.inconsistent.row(10).leftCols(50).cast<int>().sum(), 50);
-  EXPECT_EQ(measured.inconsistent.cast<int>().sum(), 50);
-  EXPECT_GT(measured.residual(10, 10), 30);
-  EXPECT_GT(measured.noise.pixels, 3000);
+  for (const std::string steps : {"single_ended", "differential"}) {
+    std::ofstream(path("wide.yaml"))
+        << "format: tofmap-correlation\nversion: 1\n"
+        << "camera: {width: 200, height: 20, fx: 200, fy: 200, cx: 100, cy: 10}\n"
+        << "frequencies_hz: [20.0e6]\nstep_angles_deg: [0, 90, 180, 270]\nphase_sign: 1\n"
+        << "steps: " << steps << "\ndata: {files: a.npy, axes: [frame, step, row, column]}\n";
+    CorrelationReader reader(read_correlation_description(path("wide.yaml")));
+    const FrequencyMeasurement measured = reader.read(0).frequencies.at(0);
+    EXPECT_EQ(measured.inconsistent.row(10).leftCols(50).cast<int>().sum(), 50) << steps;
+    EXPECT_EQ(measured.inconsistent.cast<int>().sum(), 50) << steps;
+    EXPECT_GT(measured.residual(10, 10), 30);
+    EXPECT_GT(measured.noise.pixels, 3000);
+  }
 }
 
 }  // namespace

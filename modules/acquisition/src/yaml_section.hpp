@@ -29,6 +29,9 @@ class YamlSection {
     if (!node_.IsMap()) fail(name_.empty() ? "the file" : name_, "must be a map of keys");
     std::set<std::string> keys;
     for (const auto& entry : node_) {
+      if (!entry.first.IsScalar()) {
+        fail(name_.empty() ? "the file" : name_, "must have words as keys, not lists or maps");
+      }
       if (!keys.insert(entry.first.as<std::string>()).second) {
         fail(key(entry.first.as<std::string>()), "is given twice");
       }

@@ -14,6 +14,9 @@ const std::vector<std::pair<std::string, ArrayAxis>> axis_words = {
     {"step", ArrayAxis::step},   {"image", ArrayAxis::image},
     {"row", ArrayAxis::row},     {"column", ArrayAxis::column}};
 
+/// Eight frequencies of 64 steps each, and as many images that are not used.
+constexpr std::size_t most_images = 1024;
+
 constexpr const char* axes_expected =
     "a list of axes, of frame, frequency, step, image, row and column, the one that varies fastest "
     "at the end";
@@ -59,6 +62,9 @@ std::vector<StepPlace> read_images(const YamlSection& section, const ArraySizes&
     }
     if (std::ranges::count(places, place) > 0) section.fail(key, "has " + text + " twice");
     places.push_back(place);
+  }
+  if (places.size() > most_images) {
+    section.fail(key, "has more than " + std::to_string(most_images) + " images");
   }
   return places;
 }
