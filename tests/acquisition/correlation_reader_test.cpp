@@ -401,6 +401,47 @@ TEST_F(CorrelationReading, SubtractsDarkFrames) {
       HasSubstr("dark.npy: has the shape 2 x 4 x 3 x 5"));
 }
 
+TEST_F(CorrelationReading, OfFrequenciesWithDifferentStepsTakesListedImages) {
+  // Four steps at the first frequency, three at the second.
+  const std::string angles = "[[0, 90, 180, 270], [0, 120, 240]]";
+  std::vector<std::uint16_t> numbers;
+  for (int i = 0; i < frames; ++i) {
+    for (int n = 0; n < 7; ++n) {
+      const double angle_deg = n < 4 ? 90 * n : 120 * (n - 4);
+      for (int v = 0; v < scene_.rows; ++v) {
+        for (int u = 0; u < scene_.cols; ++u) {
+          const double number = scene_.value(i, n < 4 ? 0 : 1, angle_deg, v, u);
+          numbers.push_back(static_cast<std::uint16_t>(number));
+        }
+      }
+    }
+  }
+  write_bytes(path("a.npy"), npy("<u2", "(4, 7, 3, 5)", bytes_of(numbers)));
+  const std::string data =
+      "files: a.npy, axes: [frame, image, row, column], images: [[0, 0], [0, 1], [0, 2], [0, 3], "
+      "[1, 0], [1, 1], [1, 2]]";
+  CorrelationReader reader(read_correlation_description(describe(data, "", angles)));
+  const CorrelationFrame frame = reader.read(3);
+  ASSERT_EQ(frame.damage, "");
+  for (int f = 0; f < frequencies; ++f) {
+    const FrequencyMeasurement& measured = frame.frequencies[static_cast<std::size_t>(f)];
+    EXPECT_LT(test::phase_difference(measured.phase(2, 1), scene_.phase(3, f, 2, 1)), 5e-4);
+  }
+  EXPECT_GT(frame.frequencies[0].residual.size(), 0);
+  EXPECT_EQ(frame.frequencies[1].residual.size(), 0);
+  // An image for each step is not enough to tell which frequency it belongs to.
+  write_bytes(path("dark.npy"), npy("<f4", "(4, 3, 5)", std::string(240, '\0')));
+  const std::string dark = "dark: {files: dark.npy, axes: [step, row, column]}\n";
+  const std::filesystem::path with_dark = describe(data, dark, angles);
+  EXPECT_THAT(
+      test::input_error([&] { CorrelationReader(read_correlation_description(with_dark)); }),
+      HasSubstr("its axes must have 'frequency' or 'image'"));
+  EXPECT_THAT(test::input_error([&] {
+                read_correlation_description(describe("files: a.npy, " + all_axes, "", angles));
+              }),
+              HasSubstr("use the axis 'image'"));
+}
+
 TEST_F(CorrelationReading, SubtractsPhaseOffsets) {
   write_bytes(path("a.npy"), npy("<u2", "(4, 2, 4, 3, 5)", bytes_of(values())));
   std::vector<double> radians;

@@ -5,6 +5,7 @@
 
 #include "npy_header.hpp"
 #include "plain_file.hpp"
+#include "sizes.hpp"
 #include "tiff_pages.hpp"
 #include "zip_member.hpp"
 
@@ -57,12 +58,6 @@ class PagedBytes {
   std::int64_t page_bytes_ = 0;
   std::int64_t index_ = -1;  ///< of the page in page_, −1: none
 };
-
-std::int64_t product(const std::vector<std::int64_t>& sizes) {
-  std::int64_t result = 1;
-  for (const std::int64_t size : sizes) result *= size;
-  return result;
-}
 
 }  // namespace
 

@@ -3,6 +3,8 @@
 
 #include "tofmap/acquisition/correlation/array_layout.hpp"
 
+#include "sizes.hpp"
+
 #include <algorithm>
 #include <string>
 
@@ -46,12 +48,6 @@ std::string expectation(const std::vector<ArrayAxis>& axes, const ArraySizes& ex
     text += size == 0 ? " (any)" : " (" + std::to_string(size) + ")";
   }
   return text;
-}
-
-std::int64_t product(const std::vector<std::int64_t>& sizes, std::size_t first = 0) {
-  std::int64_t result = 1;
-  for (std::size_t i = first; i < sizes.size(); ++i) result *= sizes[i];
-  return result;
 }
 
 /// True if rows of images of this width consist of whole runs of the array's fastest axes, and

@@ -14,7 +14,7 @@ namespace {
 constexpr const char* description_format = "tofmap-correlation";
 constexpr int description_version = 1;
 constexpr std::size_t most_frequencies = 8;
-constexpr std::size_t most_steps = 64;
+constexpr std::size_t most_step_angles = 64;
 
 /// As a sequence of tofmap allows them (docs/sequence-format.md).
 constexpr double lowest_hz = 1e4;
@@ -55,8 +55,8 @@ std::vector<std::vector<double>> read_angles(const YamlSection& root, std::size_
     angles.assign(frequencies, root.value<std::vector<double>>(name, expected));
   }
   for (std::vector<double>& of_frequency : angles) {
-    if (of_frequency.size() > most_steps) {
-      root.fail(name, "has more than " + std::to_string(most_steps) + " steps");
+    if (of_frequency.size() > most_step_angles) {
+      root.fail(name, "has more than " + std::to_string(most_step_angles) + " steps");
     }
     for (double& angle : of_frequency) angle *= in_degrees ? std::numbers::pi / 180 : 1;
   }

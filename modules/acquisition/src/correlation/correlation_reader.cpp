@@ -20,12 +20,6 @@ namespace {
 /// The variance of rounding to whole numbers.
 constexpr double rounding_variance = 1.0 / 12;
 
-std::vector<int> steps_of(const CorrelationDescription& description) {
-  std::vector<int> steps;
-  for (const StepDesign& design : description.designs) steps.push_back(design.steps());
-  return steps;
-}
-
 /// Subtracts the offsets from phases, which stay in [0, 1). `image` may be empty.
 void subtract_offsets(ImageF& phase, double offset_cycles, const ImageF& image) {
   for (Eigen::Index i = 0; i < phase.size(); ++i) {
@@ -102,9 +96,9 @@ CorrelationReader::CorrelationReader(CorrelationDescription description)
     : description_(std::move(description)) {
   timestamps_s_ = listed_times_s(description_.times, description_.file);
   const auto listed = static_cast<std::int64_t>(timestamps_s_.size());
-  files_ = std::make_unique<Files>(
-      Files{ImageFiles(description_.data, description_.file.parent_path(), steps_of(description_),
-                       description_.camera, description_.values, listed)});
+  files_ = std::make_unique<Files>(Files{
+      ImageFiles(description_.data, description_.file.parent_path(), description_.step_counts(),
+                 description_.camera, description_.values, listed)});
   const ImageFiles& images = files_->images;
   const int frames = images.frame_count();
   if (listed > 0 && listed != frames) {

@@ -12,7 +12,7 @@
 namespace tofmap {
 namespace {
 
-constexpr std::string_view magic = "\x93NUMPY";
+constexpr std::string_view npy_magic = "\x93NUMPY";
 
 /// Longest header that is read. Numpy writes 128 bytes for the types that are allowed here.
 constexpr std::size_t longest_header = 1 << 20;
@@ -100,12 +100,12 @@ std::size_t length_of(const std::string& bytes) {
 }  // namespace
 
 NpyHeader read_npy_header(const std::function<std::string(std::size_t bytes)>& read) {
-  const std::string start = read(magic.size() + 2);
-  if (!start.starts_with(magic)) {
+  const std::string start = read(npy_magic.size() + 2);
+  if (!start.starts_with(npy_magic)) {
     throw InputError("is not a .npy file: it does not begin with \\x93NUMPY");
   }
-  if (start.size() < magic.size() + 2) refuse("the file ends in it");
-  const int version = static_cast<unsigned char>(start[magic.size()]);
+  if (start.size() < npy_magic.size() + 2) refuse("the file ends in it");
+  const int version = static_cast<unsigned char>(start[npy_magic.size()]);
   if (version < 1 || version > 3) {
     throw InputError("has version " + std::to_string(version) +
                      " of the .npy format; versions 1 to 3 can be read");

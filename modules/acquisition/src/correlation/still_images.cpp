@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <string>
 
+#include <tofmap/core/error.hpp>
 #include <tofmap/core/modulation.hpp>
 
 namespace tofmap {
@@ -22,10 +23,17 @@ bool has_axis(const ArrayFiles& files, const std::string& name) {
 /// Images that are given once for all frames, by frequency and step. An image that is not given for
 /// each frequency or step is repeated.
 std::vector<std::vector<ImageF>> still_images(const CorrelationDescription& description,
-                                              const ArrayFiles& files, std::vector<int> steps) {
+                                              const ArrayFiles& files,
+                                              const std::vector<int>& steps) {
   const bool has_images = has_axis(files, "image");
   const bool of_each_step = has_images || has_axis(files, "step");
   const bool of_each_frequency = has_images || has_axis(files, "frequency");
+  if (of_each_step && !of_each_frequency &&
+      std::ranges::any_of(steps, [&](int count) { return count != steps.front(); })) {
+    throw InputError(description.file.string() + ": " + files.pattern +
+                     " has an image for each step, but frequencies differ in their number of "
+                     "steps; its axes must have 'frequency' or 'image' as well");
+  }
   std::vector<int> given = of_each_step ? steps : std::vector<int>(steps.size(), 1);
   if (!of_each_frequency) given.resize(1);
   ImageFiles reader(files, description.file.parent_path(), given, description.camera, {}, 1);
@@ -40,17 +48,11 @@ std::vector<std::vector<ImageF>> still_images(const CorrelationDescription& desc
   return images;
 }
 
-std::vector<int> steps_of(const CorrelationDescription& description) {
-  std::vector<int> steps;
-  for (const StepDesign& design : description.designs) steps.push_back(design.steps());
-  return steps;
-}
-
 }  // namespace
 
 std::vector<std::vector<ImageF>> dark_images(const CorrelationDescription& description) {
   if (!description.dark.files) return {};
-  return still_images(description, *description.dark.files, steps_of(description));
+  return still_images(description, *description.dark.files, description.step_counts());
 }
 
 std::vector<ImageF> phase_offset_images(const CorrelationDescription& description) {

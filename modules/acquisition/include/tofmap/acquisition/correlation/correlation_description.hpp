@@ -81,9 +81,11 @@ struct CorrelationDescription {
   double min_amplitude = 0;  ///< a pixel with less has no signal
   double max_amplitude = 0;  ///< a pixel with more is saturated; 0: no limit
 
-  /// The path of a file that the description names.
-  std::filesystem::path path_of(const std::filesystem::path& name) const {
-    return file.parent_path() / name;
+  /// The number of steps of each frequency.
+  std::vector<int> step_counts() const {
+    std::vector<int> counts;
+    for (const StepDesign& design : designs) counts.push_back(design.steps());
+    return counts;
   }
 };
 
