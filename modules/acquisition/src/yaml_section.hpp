@@ -29,6 +29,9 @@ class YamlSection {
     if (!node_.IsMap()) fail(name_.empty() ? "the file" : name_, "must be a map of keys");
     std::set<std::string> keys;
     for (const auto& entry : node_) {
+      if (!entry.first.IsScalar()) {
+        fail(name_.empty() ? "the file" : name_, "must have words as keys, not lists or maps");
+      }
       if (!keys.insert(entry.first.as<std::string>()).second) {
         fail(key(entry.first.as<std::string>()), "is given twice");
       }
@@ -46,6 +49,14 @@ class YamlSection {
   }
 
   bool has(const std::string& name) const { return static_cast<bool>(node_[name]); }
+
+  /// True if the value of a key is a list.
+  bool has_list(const std::string& name) const { return has(name) && node_[name].IsSequence(); }
+
+  /// True if the value of a key is a list of lists.
+  bool has_nested_list(const std::string& name) const {
+    return has_list(name) && node_[name].size() > 0 && node_[name][0].IsSequence();
+  }
 
   YamlSection section(const std::string& name) const {
     if (!has(name)) fail(key(name), "is missing");
@@ -115,6 +126,9 @@ class YamlSection {
   }
   static bool is_finite(const std::vector<double>& values) {
     return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+  }
+  static bool is_finite(const std::vector<std::vector<double>>& lists) {
+    return std::ranges::all_of(lists, [](const auto& values) { return is_finite(values); });
   }
 
   std::filesystem::path file_;
