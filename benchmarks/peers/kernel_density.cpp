@@ -30,6 +30,13 @@ struct Row {
   std::array<float*, most_hypotheses> density{};
 };
 
+/// The kernel. It is never so small that products with weights are denormal, which are slow.
+[[gnu::always_inline]] inline float kernel(float range, float other) {
+  const float difference = range - other;
+  const float exponent = -difference * difference;
+  return exp_of_negative(exponent > -40 ? exponent : -40.0F);
+}
+
 template <std::size_t count>
 [[gnu::always_inline]] inline void add_own_row(Eigen::Index cols, const Row& row) {
   const auto [r0, r1, r2] = row.range;
@@ -37,15 +44,12 @@ template <std::size_t count>
   const auto [d0, d1, d2] = row.density;
 #pragma GCC ivdep
   for (Eigen::Index u = 0; u < cols; ++u) {
-    const float difference_01 = r0[u] - r1[u];
-    const float kernel_01 = exp_of_negative(-difference_01 * difference_01);
+    const float kernel_01 = kernel(r0[u], r1[u]);
     float sum_0 = w0[u] + w1[u] * kernel_01;
     float sum_1 = w1[u] + w0[u] * kernel_01;
     if constexpr (count == 3) {
-      const float difference_02 = r0[u] - r2[u];
-      const float difference_12 = r1[u] - r2[u];
-      const float kernel_02 = exp_of_negative(-difference_02 * difference_02);
-      const float kernel_12 = exp_of_negative(-difference_12 * difference_12);
+      const float kernel_02 = kernel(r0[u], r2[u]);
+      const float kernel_12 = kernel(r1[u], r2[u]);
       sum_0 += w2[u] * kernel_02;
       sum_1 += w2[u] * kernel_12;
       d2[u] += w2[u] + w0[u] * kernel_02 + w1[u] * kernel_12;
@@ -66,10 +70,6 @@ template <std::size_t count>
   const auto [s0, s1, s2] = there.range;
   const auto [x0, x1, x2] = there.weight;
   const auto [e0, e1, e2] = there.density;
-  const auto kernel = [](float a, float b) {
-    const float difference = a - b;
-    return exp_of_negative(-difference * difference);
-  };
 #pragma GCC ivdep
   for (Eigen::Index u = 0; u < cols; ++u) {
     const float k00 = kernel(r0[u], s0[u]);

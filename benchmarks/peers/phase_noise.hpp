@@ -12,10 +12,11 @@ namespace tofmap::peers {
 /// Standard deviation of a phase, predicted from its amplitude a (Järemo Lawin et al. 2016,
 /// section 3.3):
 ///
-///   q(a) = γ₀ a + γ₁ a² + γ₂,   σ = atan √(1 / (q² − 1)) = asin(1 / |q|)   for |q| > 1
+///   q(a) = γ₀ a + γ₁ a² + γ₂,   σ = atan √(1 / (q² − 1)) = asin(1 / |q|)   for a > a₁, |q| > 1
 ///
-/// Where |q| ≤ 1, σ is π/2 up to the amplitude a₁ of q(a₁) = 1, and π/2 · a₁ / a beyond. With
-/// γ₁ = γ₂ = 0, σ is 1 / (γ₀ a) for small noise.
+/// a₁ is the amplitude of q(a₁) = 1. Up to it, σ is π/2; beyond, it is at most π/2 · a₁ / a, which
+/// matters where γ₁ < 0 makes |q| small at large amplitudes. With γ₁ = γ₂ = 0, σ is 1 / (γ₀ a) for
+/// small noise.
 struct PhaseNoise {
   double gamma_0;
   double gamma_1;
@@ -42,9 +43,8 @@ double amplitude_of_unit_q(const PhaseNoise& noise);
   const float q = std::fabs(gamma_2 + amplitude * (gamma_0 + amplitude * gamma_1));
   const float beyond = quarter_turn * unit / (amplitude > unit ? amplitude : unit);
   const float sine = 1 / (q > 1 ? q : 1.0F);
-  const float model = arc_sine(sine);  // π/2 for |q| ≤ 1
-  const float least = model < beyond ? model : beyond;
-  const float sigma = sine < 1 ? model : least;
+  const float model = arc_sine(amplitude > unit ? sine : 1.0F);
+  const float sigma = model < beyond ? model : beyond;
   return sigma < smallest_sigma_rad ? smallest_sigma_rad : sigma;
 }
 

@@ -132,7 +132,7 @@ TOFMAP_VECTOR_CLONES void smooth_row(Eigen::Index cols, const Kernel& kernel,
     const float without_return = here.amplitude[u] > 0 ? 0.0F : nan;
     phase[u] = angle_in_cycles(sums.real, sums.imaginary) + without_return;
     amplitude[u] = length + without_return;
-    differences[u] = sums.difference;
+    differences[u] = sums.difference + without_return;
   }
 }
 

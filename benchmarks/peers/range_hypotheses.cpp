@@ -196,7 +196,10 @@ struct Destination {
     const float range = evidence.range_per_cycle[0][l] * (pixels.phase[0][l] + count_0[t]) +
                         evidence.range_per_cycle[1][l] * (pixels.phase[1][l] + count_1[t]) +
                         evidence.range_per_cycle[2][l] * (pixels.phase[2][l] + count_2[t]);
-    const float weight = evidence.likelihood[l] * exp_of_negative(-cost[l] * cost_scale);
+    // Never so small that products with kernels are denormal, which are slow.
+    const float exponent = -cost[l] * cost_scale;
+    const float weight =
+        evidence.likelihood[l] * exp_of_negative(exponent > -30 ? exponent : -30.0F);
     out.range[l] = range == range ? range : 0.0F;
     const float within = range <= max_range ? 1.0F : 0.0F;  // not if NaN
     out.weight[l] = within * weight;
