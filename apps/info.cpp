@@ -29,10 +29,10 @@ void print_sensor(const SensorModel& sensor) {
   std::printf("camera: %d x %d px, f %.1f x %.1f px, centre %.1f, %.1f px\n", camera.width_px,
               camera.height_px, camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px);
   const Modulation& modulation = sensor.modulation;
-  std::printf("A: %.3f MHz, non-ambiguity range %.3f m\n", modulation.frequencies_hz[0] / 1e6,
-              modulation.wavelength_m(0));
-  std::printf("B: %.3f MHz, non-ambiguity range %.3f m\n", modulation.frequencies_hz[1] / 1e6,
-              modulation.wavelength_m(1));
+  for (std::size_t f = 0; f < modulation.count(); ++f) {
+    std::printf("%s: %.3f MHz, non-ambiguity range %.3f m\n", frequency_name(f).c_str(),
+                modulation.frequencies_hz[f] / 1e6, modulation.wavelength_m(f));
+  }
   std::printf("combined unambiguous range: %.2f m\n", combined_range_m(modulation));
   if (sensor.max_range_m > 0)
     std::printf("largest range of the scene: %.2f m\n", sensor.max_range_m);

@@ -33,7 +33,7 @@ void flush_output() {
 
 int run(int argc, char** argv) {
   using namespace tofmap::app;
-  CLI::App program("Maps of large rooms from dual-frequency time-of-flight cameras", "tofmap");
+  CLI::App program("Maps of large rooms from multi-frequency time-of-flight cameras", "tofmap");
   program.set_version_flag("--version", TOFMAP_VERSION);
   program.require_subcommand(1);
   Outcome outcome;

@@ -25,11 +25,12 @@
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/side_by_side.hpp>
 #include <tofmap/core/text.hpp>
+#include <tofmap/diagnostics/residual_survey.hpp>
 #include <tofmap/evaluation/recorded_truth.hpp>
 #include <tofmap/filters/sliding_fusion.hpp>
 #include <tofmap/pipeline/frame_sample.hpp>
 #include <tofmap/pipeline/measured_recording.hpp>
-#include <tofmap/unwrap/common/residual_cost.hpp>
+#include <tofmap/unwrap/common/unwrap_limits.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -241,6 +242,8 @@ int run_unwrap(const UnwrapArguments& arguments) {
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit(interrupted ? Completeness::interrupted : Completeness::whole);
   say_what_is_missing(result);
+  if (const auto warning = frequency_warning(source.sensor().modulation))
+    print_warnings({*warning});
   if (!arguments.common.quiet) {
     std::printf("%d of %d frames unwrapped, %d damaged: %s\n", done - result.damaged, total,
                 result.damaged, out.final_path().c_str());

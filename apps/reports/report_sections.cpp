@@ -71,7 +71,7 @@ void add_consistency(ReportPage& page, const std::vector<std::string>& names,
     table.rows.push_back(std::move(row));
   };
   add_row("free-space violations, %", 2, &Consistency::contradicted_percent);
-  add_row("pixels that fit both frequencies better with another wrap count, %", 2,
+  add_row("pixels that fit all frequencies better with another wrap count, %", 2,
           &Consistency::residual_misfit_percent);
   add_row("phase B minus its prediction from A's range, cycles (RMS)", 4,
           &Consistency::residual_rms_cycles);

@@ -109,8 +109,8 @@ TEST_F(BadSequence, FormatIsAnothersOrLaterOne) {
   replace("sequence.yaml", "tofmap-sequence", "other-sequence");
   expect_refusal({"sequence.yaml", "format", "other-sequence"});
   replace("sequence.yaml", "other-sequence", "tofmap-sequence");
-  replace("sequence.yaml", "version: 1", "version: 2");
-  expect_refusal({"sequence.yaml", "version", "2"});
+  replace("sequence.yaml", "version: 1", "version: 3");
+  expect_refusal({"sequence.yaml", "version", "3"});
 }
 
 TEST_F(BadSequence, KeyIsMissing) {

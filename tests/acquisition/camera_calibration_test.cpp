@@ -35,6 +35,7 @@ TEST(PhaseError, IsOffsetHarmonicsAndTable) {
 TEST(Calibration, TakesTheErrorOutOfBothPhases) {
   const Modulation modulation{29e6, 31e6};
   CameraCalibration calibration;
+  calibration.errors.resize(2);
   calibration.errors[0] = wiggle();
   calibration.errors[1] = {.offset_m = -0.3};
   Frame frame = blank_frame(2);
@@ -138,6 +139,7 @@ TEST(Calibration, ThatNoCameraCouldHaveIsRefused) {
   CameraCalibration calibration;
   // Of order 4, this much rises as fast as the range where it is steepest.
   const double steepest_m = sensor.modulation.wavelength_m(1) / (8 * pi);
+  calibration.errors.resize(2);
   calibration.errors[1].harmonics = {{4, 0, 0.98 * steepest_m}};
   EXPECT_NO_THROW(calibrated(sensor, calibration));
   calibration.errors[1].harmonics = {{4, 0, 1.02 * steepest_m}};

@@ -161,5 +161,35 @@ TEST(FrameTag, IsNotReadWhereItIsDamagedOrMissing) {
   EXPECT_FALSE(read_tag(ImageU16::Zero(1, 3)));
 }
 
+TEST(DeviceImage, HoldsAnyNumberOfFrequencies) {
+  for (const std::size_t count : {std::size_t{1}, std::size_t{3}, std::size_t{8}}) {
+    SensorModel model = sensor(60, 40);
+    model.modulation = {};
+    Frame frame;
+    frame.timestamp_s = 3.5;
+    for (std::size_t f = 0; f < count; ++f) {
+      model.modulation.frequencies_hz.push_back(80e6 - 7e6 * static_cast<double>(f));
+      frame.phases.push_back(random_phase(model.camera, static_cast<unsigned>(f)));
+    }
+    const DeviceImageCodec codec(model, {});
+    const StackedImages images = codec.stack(frame, 9);
+    const std::optional<FrameTag> tag = read_tag(images.range);
+    ASSERT_TRUE(tag) << count;
+    EXPECT_EQ(tag->number, 9U);
+    EXPECT_EQ(tag->sensor.modulation, model.modulation);
+    const Frame read = codec.unstack(images.range, {});
+    ASSERT_EQ(read.frequencies(), count);
+    for (std::size_t f = 0; f < count; ++f) {
+      const double wavelength_m = model.modulation.wavelength_m(f);
+      for (Eigen::Index i = 0; i < read.phases[f].size(); ++i) {
+        const float expected = frame.phases[f].data()[i];
+        ASSERT_EQ(std::isnan(read.phases[f].data()[i]), std::isnan(expected));
+        if (std::isnan(expected)) continue;
+        ASSERT_LT(difference_m(read.phases[f].data()[i], expected, wavelength_m), 1e-4F);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tofmap

@@ -248,5 +248,75 @@ TEST(SequenceWriter, NamesTheFileThatCannotBeWritten) {
   EXPECT_THROW(SequenceReader(folder.path() / "seq"), InputError) << "lists the unfinished frame";
 }
 
+/// A sensor and a frame with this number of frequencies.
+SensorModel sensor_of(std::size_t frequencies) {
+  SensorModel sensor = test::sample_sensor();
+  sensor.modulation = {};
+  for (std::size_t f = 0; f < frequencies; ++f) {
+    sensor.modulation.frequencies_hz.push_back(80e6 - 8.5e6 * static_cast<double>(f));
+    sensor.modulation.exposure_offsets_s.push_back(0.004 * static_cast<double>(f));
+  }
+  return sensor;
+}
+
+Frame frame_of(std::size_t frequencies) {
+  const Frame pair = test::sample_frame(0);
+  Frame frame = pair;
+  frame.phases.clear();
+  frame.amplitudes.clear();
+  for (std::size_t f = 0; f < frequencies; ++f) {
+    frame.phases.push_back(pair.phases[f % 2]);
+    frame.amplitudes.push_back(pair.amplitudes[f % 2] / (1 + static_cast<float>(f)));
+    frame.amplitudes.back() = frame.amplitudes.back().round();
+  }
+  return frame;
+}
+
+class AnyNumber : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(AnyNumber, OfFrequenciesReadsBackToTheBit) {
+  const std::size_t count = GetParam();
+  const test::TemporaryFolder folder;
+  SequenceWriter(folder.path() / "seq", sensor_of(count)).add(frame_of(count));
+  const SequenceReader reader(folder.path() / "seq");
+  EXPECT_EQ(reader.sensor().modulation.frequencies_hz, sensor_of(count).modulation.frequencies_hz);
+  if (count != 2) {  // version 1 has no times of exposure
+    EXPECT_EQ(reader.sensor().modulation, sensor_of(count).modulation);
+  }
+  const SourcedFrame read = reader.read(0);
+  ASSERT_TRUE(read.frame) << read.damage;
+  const Frame expected = frame_of(count);
+  ASSERT_EQ(read.frame->frequencies(), count);
+  ASSERT_EQ(read.frame->amplitudes.size(), count);
+  for (std::size_t f = 0; f < count; ++f) {
+    const ImageF lit = (expected.amplitudes[f] == 0).select(NAN, expected.phases[f]);
+    EXPECT_TRUE(same_values(read.frame->phases[f], lit)) << f;
+    EXPECT_TRUE(same_values(read.frame->amplitudes[f], expected.amplitudes[f])) << f;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Frequencies, AnyNumber, testing::Values(1, 2, 3, 8));
+
+TEST(Sequence, OfThreeFrequenciesHasADamagedFrameWhereOneImageIsMissing) {
+  const test::TemporaryFolder folder;
+  SequenceWriter writer(folder.path() / "seq", sensor_of(3));
+  for (int i = 0; i < 3; ++i) {
+    Frame frame = frame_of(3);
+    frame.timestamp_s += i;
+    writer.add(frame);
+  }
+  std::filesystem::remove(folder.path() / "seq" / "phase_c" / "000001.png");
+  const SequenceReader reader(folder.path() / "seq");
+  EXPECT_TRUE(reader.read(0).frame);
+  EXPECT_FALSE(reader.read(1).frame);
+  EXPECT_NE(reader.read(1).damage.find("phase_c/000001.png"), std::string::npos);
+}
+
+TEST(SequenceWriter, RefusesAFrameOfAnotherNumberOfFrequencies) {
+  const test::TemporaryFolder folder;
+  SequenceWriter writer(folder.path() / "seq", sensor_of(3));
+  EXPECT_THROW(writer.add(frame_of(2)), UsageError);
+}
+
 }  // namespace
 }  // namespace tofmap

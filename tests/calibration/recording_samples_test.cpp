@@ -55,7 +55,7 @@ class RecordingSamplesTest : public testing::Test {
 TEST_F(RecordingSamplesTest, AreTakenFromAllFrames) {
   const RecordingSamples found = collect_samples(record({0, 1, 2, 3}), reference(), 1);
   EXPECT_THAT(asked_, ElementsAre(0, 1, 2, 3));
-  EXPECT_EQ(found.samples.size(), 4 * usable_pixels);
+  EXPECT_EQ(found.samples.front().size(), 4 * usable_pixels);
   EXPECT_EQ(found.frames, 4U);
   EXPECT_EQ(found.read, 4);
   EXPECT_EQ(found.first_frames.size(), 4U);
@@ -72,7 +72,7 @@ TEST_F(RecordingSamplesTest, LeaveOutFramesThatRepeatTheOneBefore) {
   EXPECT_THAT(asked_, ElementsAre(0, 2, 3));
   EXPECT_EQ(found.repeated, 3U);
   EXPECT_EQ(found.frames, 3U);
-  EXPECT_EQ(found.samples.size(), 3 * usable_pixels);
+  EXPECT_EQ(found.samples.front().size(), 3 * usable_pixels);
 }
 
 TEST_F(RecordingSamplesTest, CountDamagedFramesAndKeepTheFirstReason) {
@@ -138,7 +138,7 @@ TEST_F(RecordingSamplesTest, AreSpreadOverThePixelsOfLongRecordings) {
                                                  [](int frame) { return frame < 3; });
   ASSERT_EQ(found.frames, 3U);
   // Three frames with three first pixels use each pixel once.
-  EXPECT_EQ(found.samples.size(), usable_pixels);
+  EXPECT_EQ(found.samples.front().size(), usable_pixels);
 }
 
 TEST_F(RecordingSamplesTest, AreSpreadOverThePixelsIfFramesAreLeftOutAsWell) {
@@ -149,7 +149,7 @@ TEST_F(RecordingSamplesTest, AreSpreadOverThePixelsIfFramesAreLeftOutAsWell) {
   const RecordingSamples found = collect_samples(SequenceReader(folder_.path()), reference(), 2,
                                                  [](int frame) { return frame < 3; });
   ASSERT_EQ(found.frames, 2U);
-  EXPECT_EQ(found.samples.size(), usable_pixels);
+  EXPECT_EQ(found.samples.front().size(), usable_pixels);
 }
 
 }  // namespace

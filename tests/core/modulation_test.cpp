@@ -70,7 +70,7 @@ TEST(ModulationValidation, RefusesEqualFrequenciesAndTellsWhy) {
     validate(Modulation{30e6, 30e6});
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("two different frequencies"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("different frequencies"), std::string::npos);
   }
 }
 
@@ -114,6 +114,38 @@ TEST(ModulationValidation, NeedsFrequenciesToDifferByAMillionth) {
 TEST(ModulationValidation, TakesEitherOrder) {
   EXPECT_NO_THROW(validate(paper));
   EXPECT_NO_THROW(validate(Modulation{31e6, 29e6}));
+}
+
+TEST(CombinedRange, OfThreeFrequenciesIsThatOfAllOfThem) {
+  const Modulation three{80e6, 16e6, 120e6};
+  EXPECT_NEAR(combined_range_m(three), speed_of_light_m_per_s / 2 / 8e6, 1e-6);
+  EXPECT_NEAR(combined_range_m(three, 0.05), speed_of_light_m_per_s / 2 / 8e6, 1e-6);
+  EXPECT_NEAR(combined_range_m({120e6, 16e6, 80e6}), combined_range_m(three), 1e-9);
+}
+
+TEST(CombinedRange, OfOneFrequencyIsItsWavelength) {
+  EXPECT_DOUBLE_EQ(combined_range_m({30e6}), speed_of_light_m_per_s / 60e6);
+}
+
+TEST(ModulationValidation, TakesOneToEightFrequencies) {
+  Modulation modulation{30e6};
+  EXPECT_NO_THROW(validate(modulation));
+  for (int i = 1; i < 8; ++i) modulation.frequencies_hz.push_back(30e6 + i * 1e6);
+  EXPECT_NO_THROW(validate(modulation));
+  modulation.frequencies_hz.push_back(60e6);
+  EXPECT_THROW(validate(modulation), InputError);
+  EXPECT_THROW(validate(Modulation()), InputError);
+  EXPECT_THROW(validate(Modulation{80e6, 16e6, 80e6}), InputError) << "the first and the third";
+}
+
+TEST(ModulationValidation, NeedsAnExposureTimeOfEachFrequencyOrOfNone) {
+  Modulation modulation{80e6, 16e6, 120e6};
+  modulation.exposure_offsets_s = {0, 0.004};
+  EXPECT_THROW(validate(modulation), InputError);
+  modulation.exposure_offsets_s = {0, 0.004, 0.008};
+  EXPECT_NO_THROW(validate(modulation));
+  modulation.exposure_offsets_s[1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(validate(modulation), InputError);
 }
 
 }  // namespace

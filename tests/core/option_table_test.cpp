@@ -33,6 +33,7 @@ struct StageOptions {
   std::string note;
   Pace pace = Pace::brisk;
   std::vector<Pace> legs = {Pace::steady};
+  std::vector<double> stops_m = {1, 2.5};
 
   static std::vector<OptionField<StageOptions>> fields() {
     using O = StageOptions;
@@ -42,7 +43,8 @@ struct StageOptions {
             {.name = "anything", .member = &O::anything, .unit = "", .meaning = "a number"},
             {"note", &O::note, 0, 0, "", "free text"},
             {"pace", &O::pace, 0, 0, "", "how fast"},
-            {"legs", &O::legs, 0, 0, "", "how fast, one after the other"}};
+            {"legs", &O::legs, 0, 0, "", "how fast, one after the other"},
+            {"stops_m", &O::stops_m, 0, 10, "m", "where it rests"}};
   }
 };
 
@@ -286,6 +288,43 @@ TEST_F(Options, AreExplainedInComments) {
   const std::string text = table_.to_yaml(true);
   EXPECT_NE(text.find("  # how far [0 … 20, m]\n  reach_m: 0.1\n"), std::string::npos) << text;
   EXPECT_NE(text.find("  # how fast [brisk | steady]\n  pace: brisk\n"), std::string::npos) << text;
+}
+
+class NumberLists : public testing::Test {
+ protected:
+  NumberLists() { table_.bind("stage", stage_); }
+
+  StageOptions stage_;
+  OptionTable table_;
+};
+
+TEST_F(NumberLists, AreReadWithCommasOrBlanksAndWithOrWithoutBrackets) {
+  for (const char* text : {"3, 4e0,5", "[3, 4, 5]", "3 4 5"}) {
+    table_.set("stage.stops_m", text);
+    EXPECT_EQ(stage_.stops_m, (std::vector<double>{3, 4, 5})) << text;
+  }
+  table_.set("stage.stops_m", "[]");
+  EXPECT_TRUE(stage_.stops_m.empty());
+}
+
+TEST_F(NumberLists, RefuseWhatIsNoNumberAndWhatIsOutOfRange) {
+  for (const char* text : {"3, far", "3, 11", "-1", "nan"}) {
+    EXPECT_THROW(table_.set("stage.stops_m", text), UsageError) << text;
+    EXPECT_EQ(stage_.stops_m, (std::vector<double>{1, 2.5})) << text;
+  }
+}
+
+TEST_F(NumberLists, AreWrittenAndReadAsYamlLists) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "options.yaml";
+  std::ofstream(file) << table_.to_yaml(true);
+  stage_.stops_m.clear();
+  table_.load(file);
+  EXPECT_EQ(stage_.stops_m, (std::vector<double>{1, 2.5}));
+  std::ofstream(file) << "stage:\n  count: [1, 2]\n";
+  EXPECT_THROW(table_.load(file), UsageError) << "a single value";
+  std::ofstream(file) << "stage:\n  stops_m: [[1], 2]\n";
+  EXPECT_THROW(table_.load(file), UsageError) << "a list of lists";
 }
 
 }  // namespace

@@ -117,6 +117,7 @@ TEST_F(Survey, EstimatesByHowMuchThePhaseOffsetsDiffer) {
   const double ambiguity_m = modulation.wavelength_m(0) - modulation.wavelength_m(1);
   for (const double offset_m : {0.03, 0.08, 0.15, 0.2, 0.3, -0.1}) {
     CameraCalibration wrong;
+    wrong.errors.resize(2);
     wrong.errors[1].offset_m = offset_m;  // taken out of B, which had none
     const RecordingSurvey found = survey(wrong);
     EXPECT_NEAR(found.residuals.front().offset_m, offset_m, 0.01);
@@ -130,6 +131,7 @@ TEST_F(Survey, EstimatesByHowMuchThePhaseOffsetsDiffer) {
   }
   // One wrap more of both, and A measures more: only known ranges tell that it is less.
   CameraCalibration wrong;
+  wrong.errors.resize(2);
   wrong.errors[1].offset_m = -0.2;
   const RecordingSurvey found = survey(wrong);
   EXPECT_NEAR(found.residuals.front().offset_m, ambiguity_m - 0.2, 0.01);

@@ -55,7 +55,7 @@ Recorded recorded(const ImageF& truth_m, const ImageF& sigma_rad, unsigned seed)
   std::uniform_int_distribution<int> one_of_twenty(0, 19);
   std::uniform_int_distribution<int> any_count(0, 4);
   const auto wavelength_b_m = static_cast<float>(far_apart().wavelength_m(1));
-  Recorded out{{}, RangeImage(truth_m.rows(), truth_m.cols())};
+  Recorded out{blank_frame(2), RangeImage(truth_m.rows(), truth_m.cols())};
   out.frame.phases[0] = out.frame.phases[1] = truth_m;
   out.image.reason.setZero();
   out.image.confidence.setConstant(0.95F);

@@ -33,6 +33,7 @@ class Calibrate : public testing::Test {
                   .status,
               0);
     CameraCalibration opposite;
+    opposite.errors.resize(2);
     opposite.errors[0].harmonics = opposite.errors[1].harmonics = {{4, 0, -swing_m}};
     SequenceReader reader(perfect, opposite);
     SequenceWriter writer(sequence_, reader.sensor());

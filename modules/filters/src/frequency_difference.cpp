@@ -59,7 +59,7 @@ std::size_t most_precise_other(const Modulation& modulation) {
 
 void check_frame(const RangeImage& image, const Frame& frame) {
   const auto fits = [&](const ImageF& one) { return same_size(image.range_m, one); };
-  const bool agree = std::ranges::all_of(frame.phases, fits) &&
+  const bool agree = !frame.phases.empty() && std::ranges::all_of(frame.phases, fits) &&
                      (!frame.has_amplitude() || std::ranges::all_of(frame.amplitudes, fits));
   if (!agree) throw UsageError("filter: image and frame differ in size");
 }

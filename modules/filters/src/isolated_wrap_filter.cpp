@@ -205,7 +205,7 @@ bool has_wraps(const RangeImage& image) {
 RangeImage mend_isolated_wraps(const RangeImage& image, const Frame& frame,
                                const Modulation& modulation, const IsolatedWrapLimits& limits) {
   const auto fits = [&](const ImageF& phase) { return same_size(image.range_m, phase); };
-  if (!std::ranges::all_of(frame.phases, fits)) {
+  if (frame.phases.empty() || !std::ranges::all_of(frame.phases, fits)) {
     throw UsageError("isolated-wrap filter: range image and frame differ in size");
   }
   RangeImage out = image;

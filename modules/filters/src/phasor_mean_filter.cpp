@@ -131,8 +131,9 @@ RangeImage average_phasors(const RangeImage& image, const Frame& frame,
   const ImageF noise = noise_cycles(image, modulation);
   const auto noisy = static_cast<double>((noise > least_noise).count());
   if (noisy == 0 || noisy < least_share * image.count_valid()) return image;
-  if (frame.frequencies() < 2) return image;
-  if (!same_size(image.range_m, frame.phases[0]) || !same_size(image.range_m, frame.phases[1])) {
+  if (frame.frequencies() == 1) return image;
+  const auto fits = [&](const ImageF& phase) { return same_size(image.range_m, phase); };
+  if (frame.phases.empty() || !std::ranges::all_of(frame.phases, fits)) {
     throw UsageError("phasor_mean filter: range image and frame differ in size");
   }
   const double radius_px = std::min(limits.max_radius_px, wanted_radius_px(noise, least_noise));

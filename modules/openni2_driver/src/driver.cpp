@@ -29,7 +29,7 @@ OniDeviceInfo info_of(const std::string& uri) {
   };
   copy(info.uri, uri);
   copy(info.vendor, "tofmap");
-  copy(info.name, "dual-frequency time-of-flight camera");
+  copy(info.name, "multi-frequency time-of-flight camera");
   return info;
 }
 

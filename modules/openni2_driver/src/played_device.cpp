@@ -40,6 +40,11 @@ PlayedDevice::PlayedDevice(const DeviceRequest& request, Events events)
   const CameraModel& camera = player_.sensor().camera;
   const std::size_t frequencies = player_.sensor().modulation.count();
   const bool is_stacked = request.player.layout == PlayedLayout::stacked;
+  if (!is_stacked && frequencies != 2) {
+    throw InputError("layout=alternating is for two frequencies, but there " +
+                     std::string(frequencies == 1 ? "is " : "are ") + std::to_string(frequencies) +
+                     "; leave it out");
+  }
   OniVideoMode mode;
   mode.resolutionX = camera.width_px;
   mode.resolutionY = is_stacked ? static_cast<int>(frequencies) * camera.height_px +
@@ -148,6 +153,7 @@ OniStatus PlayedDevice::getProperty(int id, void* data, int* size) {
     case openni2_property::frequency_a_hz:
       return answer(modulation.frequencies_hz[0], data, size);
     case openni2_property::frequency_b_hz:
+      if (modulation.count() < 2) return ONI_STATUS_NOT_SUPPORTED;
       return answer(modulation.frequencies_hz[1], data, size);
     case openni2_property::layout: {
       const std::string layout(name_of(request_.player.layout));

@@ -6,11 +6,14 @@
 #include "tofmap/core/side_by_side.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <optional>
 
+#include <fmt/format.h>
 #include <omp.h>
 
+#include <tofmap/core/error.hpp>
 #include <tofmap/core/timed.hpp>
 
 namespace tofmap {
@@ -108,6 +111,21 @@ FrameRecord repeated(const SourcedFrame& frame, RoomMapper& mapper) {
   return record;
 }
 
+/// Throws UsageError if wrap counts are known only relative to each other: surfaces would be at
+/// wrong ranges.
+const SensorModel& checked(const SensorModel& sensor, const UnwrapOptions& options) {
+  const bool is_relative =
+      options.method == UnwrapMethod::joint || options.method == UnwrapMethod::single;
+  if (sensor.modulation.count() > 1 || !is_relative) return sensor;
+  const UnwrapLimits limits = unwrap_limits(sensor, options.max_range_m);
+  if (are_absolute(limits)) return sensor;
+  throw UsageError(fmt::format(
+      "a map needs absolute ranges, but the recording has one modulation frequency, which tells "
+      "wrap counts only relative to each other; record at two or more frequencies, or, if no "
+      "surface is farther than {0:.2f} m, set unwrap.max_range_m={0:.2f}",
+      std::floor(100 * limits.wavelength_m()) / 100));
+}
+
 }  // namespace
 
 void bind_options(OptionTable& table, PipelineOptions& options) {
@@ -157,7 +175,7 @@ PreparedFrame prepare_frame(TimedMeasurement measured, Unwrapper& unwrapper,
 }
 
 MapRun::MapRun(const SensorModel& sensor, const PipelineOptions& options)
-    : sensor_(sensor),
+    : sensor_(checked(sensor, options.unwrap)),
       options_(options),
       rays_(pixel_rays(sensor.camera)),
       mapper_(sensor.camera, odometry_of(options), options.registration, options.loops,

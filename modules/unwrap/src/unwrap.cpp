@@ -133,10 +133,20 @@ UnwrapResult Unwrapper::unwrap_pair(const MeasuredFrame& measured) {
   return result;
 }
 
+/// The wrap counts of a single frequency relative to the nearest pixel of each region. The absolute
+/// wrap counts may be any of those within the limits, so the confidence is divided by their number.
+UnwrapResult Unwrapper::unwrap_relative(const MeasuredFrame& measured) {
+  UnwrapResult result = unwrap_by_jumps(jump_estimator_, measured, limits_.pair(0, 1),
+                                        jump_method(UnwrapMethod::single), options_);
+  result.image.confidence /= static_cast<float>(limits_.count);
+  return result;
+}
+
 UnwrapResult Unwrapper::unwrap(const MeasuredFrame& measured) {
   const auto unwrap_measured = [&] {
     switch (method_) {
       case UnwrapMethod::joint:
+        if (limits_.frequencies() == 1) return unwrap_relative(measured);
         return unwrap_jointly(count_estimator_, measured, limits_, options_);
       case UnwrapMethod::jump:
       case UnwrapMethod::paper:

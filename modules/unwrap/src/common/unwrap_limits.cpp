@@ -30,11 +30,12 @@ UnwrapLimits unwrap_limits(const SensorModel& sensor, double max_range_m) {
   UnwrapLimits limits;
   limits.wavelengths_m = wavelengths_m(sensor.modulation);
   const double most_m = invalid_wrap_count * limits.wavelength_m();  // 255 wrap counts fit 8 bits
-  limits.max_range_m =
-      max_range_m > 0 ? max_range_m
-      : sensor.max_range_m > 0
-          ? sensor.max_range_m
-          : std::min(most_m, combined_range_m(sensor.modulation, noise_tolerance_cycles));
+  const double combined_m = sensor.modulation.count() == 1
+                                ? most_m
+                                : combined_range_m(sensor.modulation, noise_tolerance_cycles);
+  limits.max_range_m = max_range_m > 0          ? max_range_m
+                       : sensor.max_range_m > 0 ? sensor.max_range_m
+                                                : std::min(most_m, combined_m);
   limits.count = wrap_limit(limits.wavelength_m(), limits.max_range_m);
   if (limits.count > invalid_wrap_count) {
     throw UsageError("max_range_m: " + std::to_string(limits.max_range_m) + " m needs " +

@@ -34,7 +34,7 @@ std::span<const NamedValue<ImageLayout>> named_values(ImageLayout);
 std::span<const NamedValue<DepthKind>> named_values(DepthKind);
 std::span<const NamedValue<FirstImage>> named_values(FirstImage);
 
-/// How a device delivers dual-frequency frames (docs/cameras.md). The images of tofmap's own
+/// How a device delivers frames (docs/cameras.md). The images of tofmap's own
 /// devices carry a tag that describes them; except for `timeout_s`, the options are for images
 /// without a tag.
 struct DeviceOptions {

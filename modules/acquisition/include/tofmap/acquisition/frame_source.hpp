@@ -12,12 +12,12 @@ namespace tofmap {
 /// What a source delivers for one instant: a frame, or the reason why the frame is damaged.
 struct SourcedFrame {
   int index = 0;               ///< counts all frames from 0, including damaged ones
-  double timestamp_s = 0;      ///< time of image A
+  double timestamp_s = 0;      ///< time of the first image
   std::optional<Frame> frame;  ///< empty if the frame is damaged
   std::string damage;  ///< names the file and what is wrong; empty if the frame is not damaged
 };
 
-/// The interface of everything that delivers dual-frequency frames in the order of time:
+/// The interface of everything that delivers frames in the order of time:
 /// recordings, devices and the simulator.
 class FrameSource {
  public:

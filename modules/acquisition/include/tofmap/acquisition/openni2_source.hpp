@@ -18,7 +18,7 @@ namespace tofmap {
 /// in ".oni".
 bool is_device_uri(const std::string& text);
 
-/// An OpenNI2 device or an .oni file as a source of dual-frequency frames.
+/// An OpenNI2 device or an .oni file as a source of frames.
 ///
 /// The source joins images of the same instant to frames; it drops and counts images that it cannot
 /// join. An .oni file is read as fast as the caller asks for frames. A device delivers at its own

@@ -21,9 +21,9 @@ struct PhasorMeanLimits {
 /// seen. The windows grow with the noise, along surfaces but not across edges (docs/filters.md,
 /// section phasor_mean).
 ///
-/// A plane is fitted to the phasors of both frequencies in the window of each noisy pixel. The
-/// pixel gets the range of that plane, with the wrap count that is most probable given the phases
-/// of the plane and the pixel's previous wrap count and confidence:
+/// A plane is fitted to the phasors of the first two frequencies in the window of each noisy pixel.
+/// The pixel gets the range of that plane, with the wrap count that is most probable given the
+/// phases of the plane and the pixel's previous wrap count and confidence:
 /// - wrap_count is the number of whole λ_A in the range,
 /// - confidence is the probability of the count,
 /// - sigma_m is the standard deviation of the range if the count is right,
@@ -31,6 +31,7 @@ struct PhasorMeanLimits {
 ///
 /// Pixels with less noise contribute their phasors, but are not changed. The image is returned
 /// unchanged if fewer than half of its valid pixels are noisy. No pixel becomes valid or invalid.
+/// With one frequency, the image is returned unchanged.
 /// Throws UsageError if image, frame and rays differ in size; the frame is checked only if there
 /// are enough noisy pixels.
 RangeImage average_phasors(const RangeImage& image, const Frame& frame,

@@ -82,7 +82,8 @@ struct MapHooks {
 /// A run that maps a room from frames. It can be interrupted, saved, and resumed later.
 class MapRun {
  public:
-  /// Throws UsageError if the options for unwrapping are not allowed.
+  /// Throws UsageError if the options for unwrapping are not allowed, or if the sensor has a single
+  /// frequency, which does not determine absolute wrap counts (are_absolute).
   MapRun(const SensorModel& sensor, const PipelineOptions& options);
 
   /// Processes frames from the source until the source ends or a hook ends the run. Frames that

@@ -27,6 +27,9 @@ namespace tofmap {
 ///               calibrated (docs/unwrapping.md has the measurement); that of other methods only
 ///               ranks the pixels of a frame.
 ///
+/// With a single frequency, `joint` gives wrap counts relative to the nearest pixel of each region,
+/// as `single` does: the absolute ones are not known (are_absolute), and the confidence says so.
+///
 /// Invalid pixels:
 ///   no_return   no return at one of the frequencies. These pixels take no part in any method, so
 ///               that the methods can be compared.
@@ -65,6 +68,7 @@ class Unwrapper {
 
  private:
   UnwrapResult unwrap_pair(const MeasuredFrame& measured);
+  UnwrapResult unwrap_relative(const MeasuredFrame& measured);
 
   UnwrapOptions options_;
   UnwrapMethod method_;

@@ -39,9 +39,15 @@ inline constexpr double noise_tolerance_cycles = 0.05;
 /// The limits for ranges up to `max_range_m`. If it is 0, the sensor's max_range_m is used; if that
 /// is 0 as well, the range up to which the frequencies are unambiguous at a noise of
 /// noise_tolerance_cycles (29 and 31 MHz: 72.4 m), but at most 255 wavelengths of the first
-/// frequency. A single frequency is unambiguous up to its wavelength only.
+/// frequency. A single frequency, which tells wrap counts only relative to each other, has 255.
 /// Throws UsageError if the ranges need more than 255 wrap counts, which 8-bit images cannot hold.
 UnwrapLimits unwrap_limits(const SensorModel& sensor, double max_range_m);
+
+/// Whether the frequencies determine absolute wrap counts. A single frequency does so only if no
+/// range exceeds its wavelength.
+inline bool are_absolute(const UnwrapLimits& limits) {
+  return limits.frequencies() > 1 || limits.count == 1;
+}
 
 /// The frequencies but the first, counted from 0, in descending order of their wavelengths. A long
 /// wavelength tells which wrap of a shorter one is near.
