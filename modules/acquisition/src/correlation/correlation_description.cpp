@@ -22,7 +22,7 @@ constexpr double highest_hz = 1e11;
 
 std::vector<double> read_frequencies(const YamlSection& root) {
   constexpr const char* name = "frequencies_hz";
-  const auto frequencies = root.value<std::vector<double>>(name, "a list of frequencies in hertz");
+  auto frequencies = root.value<std::vector<double>>(name, "a list of frequencies in hertz");
   if (frequencies.empty() || frequencies.size() > most_frequencies) {
     root.fail(name, "has " + std::to_string(frequencies.size()) + " entries; allowed: 1 to " +
                         std::to_string(most_frequencies));
