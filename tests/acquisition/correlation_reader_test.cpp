@@ -472,6 +472,9 @@ TEST_F(CorrelationReading, SubtractsPhaseOffsets) {
       "unit: radians}}\n");
   expect_off(by_pixel, 0, 0.7 / (2 * std::numbers::pi), 1, 2);
   expect_off(by_pixel, 1, 0.2 + 0.7 / (2 * std::numbers::pi), 1, 2);
+  const CorrelationFrame by_pixel_in_metres = phases(
+      "phase_offsets: {per_pixel: {files: offsets.npy, axes: [row, column], unit: metres}}\n");
+  expect_off(by_pixel_in_metres, 1, 0.7 * 2 * 100e6 / 299792458.0, 1, 2);
 }
 
 TEST_F(CorrelationReading, WithoutSignalHasNoPhase) {
