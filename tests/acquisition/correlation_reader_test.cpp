@@ -7,6 +7,7 @@
 #include <fstream>
 #include <functional>
 #include <numbers>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -471,6 +472,9 @@ TEST_F(CorrelationReading, SubtractsPhaseOffsets) {
       "unit: radians}}\n");
   expect_off(by_pixel, 0, 0.7 / (2 * std::numbers::pi), 1, 2);
   expect_off(by_pixel, 1, 0.2 + 0.7 / (2 * std::numbers::pi), 1, 2);
+  const CorrelationFrame by_pixel_in_metres = phases(
+      "phase_offsets: {per_pixel: {files: offsets.npy, axes: [row, column], unit: metres}}\n");
+  expect_off(by_pixel_in_metres, 1, 0.7 * 2 * 100e6 / 299792458.0, 1, 2);
 }
 
 TEST_F(CorrelationReading, WithoutSignalHasNoPhase) {
@@ -571,6 +575,33 @@ TEST_F(CorrelationReading, FlagsWhatMovesBetweenTheSteps) {
     EXPECT_GT(measured.residual(10, 10), 30);
     EXPECT_GT(measured.noise.pixels, 3000);
   }
+}
+
+TEST_F(CorrelationReading, EstimatesTheNoiseOfDifferencesFromTheAmplitude) {
+  // No offset, and noise whose variance is the amplitude, which grows from left to right.
+  std::mt19937 random(3);
+  std::normal_distribution<double> unit_noise;
+  std::vector<float> numbers;
+  for (int k = 0; k < 4; ++k) {
+    for (int n = 0; n < 20 * 200; ++n) {
+      const double amplitude = 20 + 10 * (n % 200);
+      numbers.push_back(
+          static_cast<float>(amplitude * std::cos(0.01 * n - k * std::numbers::pi / 2) +
+                             std::sqrt(amplitude) * unit_noise(random)));
+    }
+  }
+  write_bytes(path("a.npy"), npy("<f4", "(4, 20, 200)", bytes_of(numbers)));
+  std::ofstream(path("wide.yaml"))
+      << "format: tofmap-correlation\nversion: 1\n"
+      << "camera: {width: 200, height: 20, fx: 200, fy: 200, cx: 100, cy: 10}\n"
+      << "frequencies_hz: [20.0e6]\nstep_angles_deg: [0, 90, 180, 270]\nphase_sign: 1\n"
+      << "steps: differential\ndata: {files: a.npy, axes: [step, row, column]}\n";
+  CorrelationReader reader(read_correlation_description(path("wide.yaml")));
+  const FrequencyMeasurement measured = reader.read(0).frequencies.at(0);
+  for (const double amplitude : {100.0, 500.0, 1900.0}) {
+    EXPECT_NEAR(measured.noise.variance_at(amplitude) / amplitude, 1, 0.2) << amplitude;
+  }
+  EXPECT_LT(measured.inconsistent.cast<int>().sum(), 8);
 }
 
 }  // namespace

@@ -17,16 +17,14 @@
 namespace tofmap {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 std::vector<double> radians(std::vector<double> angles_deg) {
-  for (double& angle : angles_deg) angle *= pi / 180;
+  for (double& angle : angles_deg) angle *= std::numbers::pi / 180;
   return angles_deg;
 }
 
 std::vector<double> evenly_spaced(int steps) {
   std::vector<double> angles;
-  for (int k = 0; k < steps; ++k) angles.push_back(2 * pi * k / steps);
+  for (int k = 0; k < steps; ++k) angles.push_back(2 * std::numbers::pi * k / steps);
   return angles;
 }
 
@@ -50,7 +48,8 @@ Row row_of_phases(const std::vector<double>& angles_rad, int sign, double offset
     ImageF step(1, 400);
     for (int i = 0; i < 400; ++i) {
       const double cycles = row.phases[static_cast<std::size_t>(i)];
-      step(0, i) = static_cast<float>(offset + 300 * std::cos(2 * pi * sign * cycles - angle));
+      step(0, i) =
+          static_cast<float>(offset + 300 * std::cos(2 * std::numbers::pi * sign * cycles - angle));
     }
     row.steps.push_back(step);
   }
@@ -83,7 +82,7 @@ TEST(StepFit, OfFourRightAnglesIsTheArctangentOfDifferences) {
   for (const float value : {700.0F, 310.0F, 420.0F, 555.0F})
     steps.push_back(ImageF::Constant(1, 1, value));
   const StepFit fit = fit_steps(steps, design);
-  const double cycles = std::atan2(310.0 - 555, 700.0 - 420) / (2 * pi);
+  const double cycles = std::atan2(310.0 - 555, 700.0 - 420) / (2 * std::numbers::pi);
   EXPECT_NEAR(fit.phase(0, 0), cycles + 1, 1e-6);
   EXPECT_NEAR(fit.amplitude(0, 0), std::hypot(310.0 - 555, 700.0 - 420) / 2, 1e-3);
 }
@@ -93,7 +92,7 @@ double misfit(const std::vector<ImageF>& steps, const std::vector<double>& angle
               double a, double cycles) {
   double sum = 0;
   for (std::size_t k = 0; k < steps.size(); ++k) {
-    const double off = steps[k](0, 0) - b - a * std::cos(2 * pi * cycles - angles[k]);
+    const double off = steps[k](0, 0) - b - a * std::cos(2 * std::numbers::pi * cycles - angles[k]);
     sum += off * off;
   }
   return sum;

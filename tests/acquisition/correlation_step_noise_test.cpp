@@ -15,7 +15,6 @@
 namespace tofmap {
 namespace {
 
-constexpr double pi = std::numbers::pi;
 constexpr int rows = 300;
 constexpr int cols = 400;
 
@@ -29,7 +28,7 @@ struct Measured {
 Measured measured(int steps, const std::function<double(double offset)>& variance,
                   const std::function<double(int step, int row, int col)>& change) {
   std::vector<double> angles;
-  for (int k = 0; k < steps; ++k) angles.push_back(2 * pi * k / steps);
+  for (int k = 0; k < steps; ++k) angles.push_back(2 * std::numbers::pi * k / steps);
   std::mt19937 random(11);
   std::normal_distribution<double> unit_noise;
   std::vector<ImageF> images;
@@ -120,7 +119,7 @@ TEST(StepNoise, IsNotRaisedByABrightObjectThatMoves) {
 TEST(StepNoise, TakesInHarmonicsOfTheCorrelationFunction) {
   // A third harmonic of 5 % of the amplitude, many times the noise of bright pixels.
   const auto change = [](int step, int row, int col) {
-    const double angle = 0.02 * row + 0.05 * col - 2 * pi * step / 8;
+    const double angle = 0.02 * row + 0.05 * col - 2 * std::numbers::pi * step / 8;
     return 0.05 * (50 + 5.0 * col) * std::cos(3 * angle);
   };
   const ImageU8 flags = flags_of(measured(

@@ -22,7 +22,7 @@ constexpr double highest_hz = 1e11;
 
 std::vector<double> read_frequencies(const YamlSection& root) {
   constexpr const char* name = "frequencies_hz";
-  const auto frequencies = root.value<std::vector<double>>(name, "a list of frequencies in hertz");
+  auto frequencies = root.value<std::vector<double>>(name, "a list of frequencies in hertz");
   if (frequencies.empty() || frequencies.size() > most_frequencies) {
     root.fail(name, "has " + std::to_string(frequencies.size()) + " entries; allowed: 1 to " +
                         std::to_string(most_frequencies));
@@ -38,11 +38,11 @@ std::vector<double> read_frequencies(const YamlSection& root) {
   return frequencies;
 }
 
-/// Step angles in radians, a list a frequency.
+/// Step angles in radians, one list per frequency.
 std::vector<std::vector<double>> read_angles(const YamlSection& root, std::size_t frequencies) {
   const bool in_degrees = root.has("step_angles_deg");
   const char* name = in_degrees ? "step_angles_deg" : "step_angles_rad";
-  constexpr const char* expected = "a list of angles, or a list of such lists, one a frequency";
+  constexpr const char* expected = "a list of angles, or a list of such lists, one per frequency";
   if (in_degrees == root.has("step_angles_rad")) {
     root.fail("step_angles_deg",
               std::string("or step_angles_rad must be given, and not both: ") + expected);
@@ -143,7 +143,7 @@ void read_exposure(const YamlSection& root, CorrelationDescription& description)
   description.exposure_offsets_s.assign(frequencies, 0);
   if (root.has("exposure_offsets_s")) {
     description.exposure_offsets_s = root.value<std::vector<double>>(
-        "exposure_offsets_s", "a list of seconds after the timestamp, one a frequency");
+        "exposure_offsets_s", "a list of seconds after the timestamp, one per frequency");
     check_count(root, "exposure_offsets_s", description.exposure_offsets_s.size(), frequencies,
                 "frequencies");
   }

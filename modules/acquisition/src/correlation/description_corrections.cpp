@@ -4,7 +4,6 @@
 #include "description_section.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <string_view>
 
 #include <tofmap/core/modulation.hpp>
@@ -63,7 +62,8 @@ PhaseOffsets read_phase_offsets(const YamlSection& section, ArraySizes sizes,
   offsets.cycles.assign(frequencies_hz.size(), 0);
   if (in_metres || section.has("cycles")) {
     const char* name = in_metres ? "metres" : "cycles";
-    offsets.cycles = section.value<std::vector<double>>(name, "a list of numbers, one a frequency");
+    offsets.cycles =
+        section.value<std::vector<double>>(name, "a list of numbers, one per frequency");
     check_count(section, name, offsets.cycles.size(), frequencies_hz.size(), "frequencies");
   }
   for (std::size_t i = 0; in_metres && i < offsets.cycles.size(); ++i) {
@@ -74,8 +74,10 @@ PhaseOffsets read_phase_offsets(const YamlSection& section, ArraySizes sizes,
   allow_still_keys(images, "unit");
   sizes.steps = 1;
   offsets.files = read_still_files(images, sizes);
-  offsets.file_unit_cycles = word_of<double>(
-      images, "unit", {{"cycles", 1}, {"radians", 0.5 / std::numbers::pi}, {"metres", 0}});
+  offsets.file_unit = word_of<PhaseUnit>(images, "unit",
+                                         {{"cycles", PhaseUnit::cycles},
+                                          {"radians", PhaseUnit::radians},
+                                          {"metres", PhaseUnit::metres}});
   return offsets;
 }
 

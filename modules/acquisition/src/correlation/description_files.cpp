@@ -72,7 +72,7 @@ std::vector<StepPlace> read_images(const YamlSection& section, const ArraySizes&
 std::vector<std::string> read_names(const YamlSection& section, const std::string& name,
                                     std::int64_t count) {
   if (!section.has(name)) return {};
-  const auto names = section.value<std::vector<std::string>>(name, "a list of names");
+  auto names = section.value<std::vector<std::string>>(name, "a list of names");
   check_count(section, name, names.size(), static_cast<std::size_t>(count),
               name == "frequency_names" ? "frequencies" : "steps");
   for (const std::string& one : names) {
@@ -119,8 +119,9 @@ void check_axes(const YamlSection& section, const ArrayFiles& files, const FileP
   const auto is_given = [&](ArrayAxis axis) { return in_axes(axis) || pattern.has(axis); };
   for (const auto& [word, axis] : axis_words) {
     if (in_axes(axis) && pattern.has(axis)) {
-      section.fail(section.key("axes"), "has the axis '" + word + "', and 'files' has {" + word +
-                                            "}; only one of them may have it");
+      std::string problem = "has the axis '";
+      problem.append(word).append("', and 'files' has {").append(word);
+      section.fail(section.key("axes"), problem + "}; only one of them may have it");
     }
   }
   const auto demand = [&](ArrayAxis axis, std::int64_t size, bool has_it) {

@@ -122,7 +122,8 @@ std::vector<std::vector<StepImage>> ImageFiles::read(int frame) {
       if (opened == open_files.end()) {
         opened = open_files.emplace(path, open(path, frequency)).first;
       }
-      auto& [file, layout] = opened->second;
+      ArrayFile& file = opened->second.file;
+      const ArrayLayout& layout = opened->second.layout;
       if (!bytes.contains(path)) {
         bytes[path] = read_frame(file, layout, has_files_a_frame_ ? 0 : number);
       }

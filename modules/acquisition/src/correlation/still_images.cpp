@@ -6,6 +6,7 @@
 #include "image_files.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <string>
 
 #include <tofmap/core/error.hpp>
@@ -48,6 +49,19 @@ std::vector<std::vector<ImageF>> still_images(const CorrelationDescription& desc
   return images;
 }
 
+/// How many cycles of a frequency the unit is.
+double cycles_in(PhaseUnit unit, double frequency_hz) {
+  switch (unit) {
+    case PhaseUnit::cycles:
+      return 1;
+    case PhaseUnit::radians:
+      return 0.5 / std::numbers::pi;
+    case PhaseUnit::metres:
+      return 2 * frequency_hz / speed_of_light_m_per_s;
+  }
+  return 1;
+}
+
 }  // namespace
 
 std::vector<std::vector<ImageF>> dark_images(const CorrelationDescription& description) {
@@ -61,10 +75,8 @@ std::vector<ImageF> phase_offset_images(const CorrelationDescription& descriptio
   const std::vector<int> one_each(description.frequencies_hz.size(), 1);
   std::vector<ImageF> images;
   for (const auto& of_frequency : still_images(description, *offsets.files, one_each)) {
-    const double cycles_a_metre =
-        2 * description.frequencies_hz[images.size()] / speed_of_light_m_per_s;
-    const double unit = offsets.file_unit_cycles > 0 ? offsets.file_unit_cycles : cycles_a_metre;
-    images.push_back(of_frequency.front() * static_cast<float>(unit));
+    const double cycles = cycles_in(offsets.file_unit, description.frequencies_hz[images.size()]);
+    images.push_back(of_frequency.front() * static_cast<float>(cycles));
   }
   return images;
 }

@@ -31,7 +31,7 @@ struct ArrayContent;
 ///   .npy         numpy's format, versions 1 to 3
 ///   .npz         a zip archive of them, stored or deflated
 ///   .png         one gray image of 16 bits
-///   .tif, .tiff  gray images of 8, 16, 32 or 64 bits, one a page, in strips
+///   .tif, .tiff  gray images of 8, 16, 32 or 64 bits, one per page, in strips
 ///   any other    raw binary numbers
 ///
 /// Elements are numbered in the order in which the file stores them. Any of them can be read
@@ -47,7 +47,7 @@ class ArrayFile {
   };
 
   /// Opens the file and reads its header. Throws InputError, which names the file, if it is missing
-  /// or damaged, or holds something else than an array of numbers. A file that is shorter than its
+  /// or damaged, or holds something other than an array of numbers. A file that is shorter than its
   /// header says is opened: see elements_present().
   ArrayFile(const std::filesystem::path& file, const ArrayFileOptions& options);
   ArrayFile(ArrayFile&&) noexcept;

@@ -45,11 +45,14 @@ struct DarkLevel {
   std::optional<ArrayFiles> files = {};  ///< images; empty: `value` everywhere
 };
 
+/// The unit of phase offsets in a file. Metres are metres of range.
+enum class PhaseUnit { cycles, radians, metres };
+
 /// What is subtracted from the phases of each frequency.
 struct PhaseOffsets {
-  std::vector<double> cycles;            ///< a number a frequency
-  std::optional<ArrayFiles> files = {};  ///< a number a pixel, added to `cycles`
-  double file_unit_cycles = 1;           ///< unit of the numbers in `files`; 0: metres
+  std::vector<double> cycles;               ///< one number per frequency
+  std::optional<ArrayFiles> files = {};     ///< one number per pixel, added to `cycles`
+  PhaseUnit file_unit = PhaseUnit::cycles;  ///< of the numbers in `files`
 };
 
 /// When the frames were taken. At most one of `rate_hz`, `times_s` and `file` is given; if none is,
@@ -58,7 +61,7 @@ struct FrameTimes {
   double rate_hz = 0;
   double start_s = 0;                ///< added to all times
   std::vector<double> times_s = {};  ///< of each frame
-  std::filesystem::path file = {};   ///< text with a line a frame; empty: none
+  std::filesystem::path file = {};   ///< text with one line per frame; empty: none
   int column = 0;                    ///< of the file, counted from 0
   double unit_s = 1;                 ///< of the numbers in the file
 };
@@ -70,8 +73,8 @@ struct CorrelationDescription {
   CameraModel camera;
   double max_range_m = 0;                  ///< what the scene can hold; 0: unknown
   std::vector<double> frequencies_hz;      ///< one to eight, in the order of the array
-  std::vector<double> exposure_offsets_s;  ///< after the timestamp; one a frequency
-  std::vector<StepDesign> designs;         ///< step angles; one a frequency
+  std::vector<double> exposure_offsets_s;  ///< after the timestamp; one per frequency
+  std::vector<StepDesign> designs;         ///< step angles; one per frequency
   bool differential = false;               ///< values are differences of two taps (A − B)
   ArrayFiles data;
   StepValues values;
