@@ -134,11 +134,11 @@ void compare(const Place& place, bool has_errors, int frames, int pairs) {
     }
   }
   unwrapper.look_ahead(std::span(measured).first(std::min<std::size_t>(8, measured.size())));
-  Method joint{.name = "joint"};
-  Method kde_2{.name = "KDE, 2 hypotheses"};
-  Method kde_3{.name = "KDE, 3 hypotheses"};
-  Method kde_3_raw{.name = "KDE, 3, unsmoothed"};
-  Method libfreenect2{.name = "libfreenect2"};
+  Method joint{"joint", {}, 0};
+  Method kde_2{"KDE, 2 hypotheses", {}, 0};
+  Method kde_3{"KDE, 3 hypotheses", {}, 0};
+  Method kde_3_raw{"KDE, 3, unsmoothed", {}, 0};
+  Method libfreenect2{"libfreenect2", {}, 0};
   double pair_ms = 0;
   for (std::size_t i = 0; i < measured.size(); ++i) {
     UnwrapResult result;

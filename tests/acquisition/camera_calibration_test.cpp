@@ -83,6 +83,7 @@ TEST_F(CalibrationFile, ReadsBackAsTheSameBits) {
                                    .cx_px = 1.5,
                                    .cy_px = 1,
                                    .distortion = {0.1, 0, 0, 0, 0.01}};
+  calibration.errors.resize(2);
   calibration.errors[0] = wiggle();
   calibration.errors[1] = {.offset_m = 1.0 / 3, .harmonics = {}, .table_m = {0.1, 1e-7, -0.3}};
   calibration.saturation_amplitude = 4000;

@@ -227,7 +227,7 @@ TEST_F(Survey, WarnsOfImagesOfOneFrequencyThatRepeat) {
   const RecordingSurvey found = survey();
   EXPECT_EQ(found.repeated, 0);
   EXPECT_EQ(found.repeated_single, found.frames - 1);
-  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("at one frequency, and new phases at the other")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("at one frequency, and new phases at another")));
 }
 
 TEST_F(Survey, NamesImagesOfOnePhase) {

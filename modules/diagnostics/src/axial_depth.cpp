@@ -49,7 +49,7 @@ bool looks_like_axial_depth(const std::vector<Frame>& frames, const SensorModel&
   for (const Frame& frame : frames) {
     for (std::size_t f = 0; f < frame.frequencies(); ++f) ends[f].add(frame.phases[f], cosine);
   }
-  return std::ranges::all_of(ends, &EndOfCycle::is_there);
+  return !ends.empty() && std::ranges::all_of(ends, &EndOfCycle::is_there);
 }
 
 std::optional<std::string> axial_depth_warning(const std::vector<Frame>& frames,
