@@ -43,9 +43,10 @@ std::vector<std::string> warnings_about(const kinect2::Recording& recording) {
         "the recording has no intrinsics, and those of a typical Kinect v2 are assumed; write "
         "those of this camera into sequence.yaml, as docs/import-kinect2.md says");
   }
-  if (!recording.unfinished_line.empty()) {
-    warnings.push_back("the recording was interrupted while its last line was written, " +
-                       recording.unfinished_line + "; all frames before it are there");
+  if (!recording.is_complete) {
+    const std::string& line = recording.unfinished_line;
+    warnings.push_back("the recording was interrupted, as recording.complete is missing" +
+                       (line.empty() ? "" : "; its last line, " + line + ", is cut off"));
   }
   if (recording.never_recorded > 0) {
     warnings.push_back(
