@@ -10,6 +10,7 @@
 #include <fstream>
 #include <memory>
 #include <numbers>
+#include <random>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -112,7 +113,8 @@ TEST_F(Kinect2Import, OfASimulatedRecordingIsUnwrappedToTheTrueRanges) {
     right += std::abs(range_mm.data()[i] / 1000.0 - truth_m.data()[i]) < 0.1 ? 1 : 0;
   }
   EXPECT_GT(seen, 0.9 * 512 * 424);
-  EXPECT_GT(right, 0.97 * seen);
+  // As many as without packets: noise makes the others.
+  EXPECT_GT(right, 0.95 * seen);
 }
 
 TEST_F(Kinect2Import, OfSaturatedPixelsLeavesThemSaturated) {
@@ -147,7 +149,7 @@ TEST_F(Kinect2Import, OfLoosePacketsAssumesACameraAndSaysSo) {
 
 TEST_F(Kinect2Import, WithoutP0TablesSaysWhereTheyComeFrom) {
   keep_loose_packets();
-  expect_refusal("p0.bin", "libfreenect2");
+  expect_refusal("p0.bin", "the camera's answer to the request for its P0 tables");
 }
 
 TEST_F(Kinect2Import, LeavesOutADamagedPacketAndNamesIt) {
@@ -262,6 +264,8 @@ class CorrelationImport : public testing::Test {
   static double range_m(int row, int col) { return 2 + 0.02 * col + 0.01 * row; }
 
   void SetUp() override {
+    std::mt19937 random(1);
+    std::normal_distribution<double> noise(0, 2);
     std::vector<float> numbers;
     for (int frame = 0; frame < 3; ++frame) {
       for (int k = 0; k < 4; ++k) {
@@ -269,11 +273,10 @@ class CorrelationImport : public testing::Test {
           const double angle =
               2 * std::numbers::pi * (range_m(n / cols, n % cols) + 0.1 * frame) / wavelength_m -
               k * std::numbers::pi / 2;
-          const double noise = 2 * std::sin(12345.678 * (n + 1) * (k + 2));
           const double motion = k == 2 && n < 30 ? 200 : 0;
           const bool is_saturated = n == 100;
           numbers.push_back(static_cast<float>(
-              is_saturated ? 4095 : 1000 + 300 * std::cos(angle) + noise + motion));
+              is_saturated ? 4095 : 1000 + 300 * std::cos(angle) + noise(random) + motion));
         }
       }
     }
@@ -301,10 +304,9 @@ class CorrelationImport : public testing::Test {
 TEST_F(CorrelationImport, WritesPhasesAndSaysWhatIsWrongWithPixels) {
   const Finished finished = import();
   ASSERT_EQ(finished.status, 0) << finished.err;
-  EXPECT_THAT(finished.out,
-              AllOf(HasSubstr("3 of 3 frames"), HasSubstr("saturated: 0.10 %"),
-                    HasSubstr("inconsistent (motion or saturation): 3.12 % of the pixels, without "
-                              "return")));
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("3 of 3 frames"), HasSubstr("saturated: 0.10 %"),
+                                  HasSubstr("inconsistent (motion or saturation): 3.1"),
+                                  HasSubstr(" % of the pixels, without return")));
   const SequenceReader sequence(out_);
   const Frame frame = *sequence.read(1).frame;
   EXPECT_NEAR(frame.phases[0](10, 20), (range_m(10, 20) + 0.1) / wavelength_m, 0.003);
