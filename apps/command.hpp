@@ -55,6 +55,7 @@ struct Outcome {
 void add_calibrate_command(CLI::App& program, Outcome& outcome);
 void add_simulate_command(CLI::App& program, Outcome& outcome);
 void add_record_command(CLI::App& program, Outcome& outcome);
+void add_import_command(CLI::App& program, Outcome& outcome);
 void add_info_command(CLI::App& program, Outcome& outcome);
 void add_unwrap_command(CLI::App& program, Outcome& outcome);
 void add_map_command(CLI::App& program, Outcome& outcome);

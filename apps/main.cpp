@@ -39,6 +39,7 @@ int run(int argc, char** argv) {
   Outcome outcome;
   add_simulate_command(program, outcome);
   add_record_command(program, outcome);
+  add_import_command(program, outcome);
   add_info_command(program, outcome);
   add_calibrate_command(program, outcome);
   add_unwrap_command(program, outcome);

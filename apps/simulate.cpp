@@ -8,24 +8,42 @@
 #include "output/output_folder.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <span>
 
 #include <CLI/CLI.hpp>
 
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/named_value.hpp>
 #include <tofmap/core/text.hpp>
+#include <tofmap/simulation/kinect2_recording.hpp>
 #include <tofmap/simulation/simulator.hpp>
 #include <tofmap/simulation/tum_recording.hpp>
 
 namespace tofmap::app {
 namespace {
 
+/// What a recording is written as.
+enum class RecordingFormat : std::uint8_t {
+  sequence,  ///< the sequence format
+  kinect2,   ///< packets of a Kinect v2
+};
+
+std::span<const NamedValue<RecordingFormat>> named_values(RecordingFormat) {
+  static constexpr std::array<NamedValue<RecordingFormat>, 2> values{
+      {{"sequence", RecordingFormat::sequence}, {"kinect2", RecordingFormat::kinect2}}};
+  return values;
+}
+
 struct SimulateArguments {
   std::string scene;
   std::filesystem::path tum;
+  std::string format = "sequence";
   std::filesystem::path out;
   std::string seed;
   std::string frames;
@@ -60,11 +78,21 @@ void print_missing(const Simulator& simulator, const SimulatorOptions& wanted) {
         "the scene lacks walls that the camera sees, with space for a door");
 }
 
-Recording simulated(const std::string& scene, const ProgramOptions& options) {
+Recording simulated(const std::string& scene, RecordingFormat format,
+                    const ProgramOptions& options) {
   auto simulator =
       std::make_shared<const Simulator>(find_scene(scene, options.simulator.seed),
                                         options.simulator, [] { return !is_interrupted(); });
   print_missing(*simulator, options.simulator);
+  if (format == RecordingFormat::kinect2) {
+    check_fits_packets(simulator->sensor());
+    return {*simulator->frame_count(), scene,
+            [simulator, seed = options.simulator.errors_seed](const std::filesystem::path& folder,
+                                                              const auto& keep_going) {
+              return Written{simulate_kinect2(*simulator, seed, folder,
+                                              [&](int done, int) { return keep_going(done); })};
+            }};
+  }
   return {*simulator->frame_count(), scene,
           [simulator](const std::filesystem::path& folder, const auto& keep_going) {
             return Written{simulate_sequence(*simulator, folder,
@@ -110,14 +138,22 @@ Recording wrapped_again(const std::filesystem::path& folder, const ProgramOption
 }
 
 int run_simulate(const SimulateArguments& arguments) {
+  const RecordingFormat format =
+      find_named<RecordingFormat>(arguments.format).value_or(RecordingFormat::sequence);
   ProgramOptions options;
+  if (format == RecordingFormat::kinect2) options.simulator = kinect2_simulator_options();
   OptionTable table = arguments.common.resolve("simulate", options);
   if (!arguments.seed.empty()) table.set("simulator.seed", arguments.seed);
   if (!arguments.frames.empty()) table.set("simulator.frames", arguments.frames);
   if (arguments.scene.empty() == arguments.tum.empty()) {
     throw UsageError("simulate needs either a SCENE or --from-tum DIR");
   }
-  const Recording recording = arguments.tum.empty() ? simulated(arguments.scene, options)
+  if (format == RecordingFormat::kinect2 && !arguments.tum.empty()) {
+    throw UsageError(
+        "--format kinect2 needs a SCENE: a packet holds 512 x 424 pixels, which images of "
+        "--from-tum do not have");
+  }
+  const Recording recording = arguments.tum.empty() ? simulated(arguments.scene, format, options)
                                                     : wrapped_again(arguments.tum, options);
   OutputFolder out(arguments.out, Replaces::recordings);
   Written written;
@@ -157,6 +193,12 @@ void add_simulate_command(CLI::App& program, Outcome& outcome) {
   app->add_option("--from-tum", arguments->tum,
                   "use the depth images of a TUM RGB-D benchmark recording instead of a scene");
   app->add_option("--out", arguments->out, "folder for the recording")->required();
+  app->add_option(
+         "--format", arguments->format,
+         "sequence: the format that all commands read; kinect2: packets of a Kinect v2 for "
+         "'tofmap import kinect2' and other programs, with the truth beside them")
+      ->check(CLI::IsMember({"sequence", "kinect2"}))
+      ->default_str("sequence");
   app->add_option("--seed", arguments->seed, "seed of the random noise");
   app->add_option("--frames", arguments->frames,
                   "number of frames; 0: the default of the scene, or all of the TUM recording");

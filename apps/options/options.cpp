@@ -18,8 +18,9 @@ std::vector<OptionField<RunOptions>> RunOptions::fields() {
 }
 
 const std::vector<std::string>& commands_with_options() {
-  static const std::vector<std::string> commands = {
-      "simulate", "record", "info", "calibrate", "unwrap", "map", "register", "evaluate", "view"};
+  static const std::vector<std::string> commands = {"simulate",  "record", "import", "info",
+                                                    "calibrate", "unwrap", "map",    "register",
+                                                    "evaluate",  "view"};
   return commands;
 }
 

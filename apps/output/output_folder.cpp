@@ -60,7 +60,8 @@ std::string identity(const fs::path& path) {
 /// Whether the folder or one inside it is a recording.
 bool holds_recording(const fs::path& folder) {
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.path().filename() == "sequence.yaml") return true;
+    const fs::path name = entry.path().filename();
+    if (name == "sequence.yaml" || name == "frames.ndjson") return true;
   }
   return false;
 }

@@ -24,6 +24,18 @@ except ImportError as missing:
 
 SOURCE, TOFMAP = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
 SMALL = ["--set", "simulator.width_px=44", "--set", "simulator.height_px=36"]
+FAST = ["--set", "simulator.subpixels=1"]  # for packets of a Kinect v2, which have one size
+
+# Two frames of correlation images of 4 x 3 pixels.
+DESCRIPTION = """format: tofmap-correlation
+version: 1
+camera: {width: 4, height: 3, fx: 4, fy: 4, cx: 1.5, cy: 1}
+frequencies_hz: [80.0e6]
+step_angles_deg: [0, 90, 180, 270]
+phase_sign: 1
+steps: single_ended
+data: {files: images.bin, type: uint8, axes: [frame, step, row, column]}
+"""
 
 # A room of 4 x 4 x 3 m, looked at from inside.
 MESH = """ply
@@ -91,6 +103,8 @@ class DocumentedCommands(unittest.TestCase):
         cls.common = pathlib.Path(folder.name)
         cls.sequence, cls.map = cls.common / "sequence", cls.common / "map"
         (cls.common / "room.ply").write_text(MESH, encoding="utf-8")
+        (cls.common / "images.yaml").write_text(DESCRIPTION, encoding="utf-8")
+        (cls.common / "images.bin").write_bytes(bytes(range(96)))
         for words in (["simulate", "room", "--frames", "8", "--out", cls.sequence, *SMALL],
                       ["map", cls.sequence, "--out", cls.map, "--pcd", "--set",
                        "map.min_observations=1"]):
@@ -101,6 +115,7 @@ class DocumentedCommands(unittest.TestCase):
         numbers = itertools.count()
         inputs = {"SEQ": self.sequence, "DIR": self.map, "SCENE": "wall", "map.ply": "map.ply",
                   "URI": f"tofmap://{self.sequence}?speed=-1", "shop.ply": self.common / "room.ply",
+                  "FORMAT": "correlation", "PATH": self.common / "images.yaml",
                   "out/demo/map": self.map, "out/demo/recording": self.sequence}
         out = [TOFMAP]
         for before, word in zip(words, words[1:]):
@@ -117,7 +132,10 @@ class DocumentedCommands(unittest.TestCase):
         if words[1] == "simulate":
             if "--frames" in out:
                 del out[out.index("--frames"):out.index("--frames") + 2]
-            out += ["--frames", "8"] if "--from-tum" in out else ["--frames", "8", *SMALL]
+            if "kinect2" in out:
+                out += ["--frames", "2", *FAST]
+            else:
+                out += ["--frames", "8"] if "--from-tum" in out else ["--frames", "8", *SMALL]
         if words[1] == "view":
             if "--screenshot" not in words:
                 out += ["--screenshot", f"view-{len(list(folder.iterdir()))}.png"]

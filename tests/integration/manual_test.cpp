@@ -17,8 +17,9 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr const char* commands[] = {"simulate", "record", "info",     "calibrate", "unwrap",
-                                    "map",      "view",   "evaluate", "register",  "config"};
+constexpr const char* commands[] = {"simulate",  "record",   "import", "info",
+                                    "calibrate", "unwrap",   "map",    "view",
+                                    "evaluate",  "register", "config"};
 
 TEST(Manual, PageHasEveryCommandAndSetting) {
   const Finished page = run_program({"manual"});

@@ -77,13 +77,6 @@ ImageU16 amplitude_pixels(const ImageF& amplitude, double scale) {
   });
 }
 
-ImageU16 range_pixels(const ImageF& range_m) {
-  return encoded(range_m, "the range", [](double range) {
-    const double millimetres = std::round(range * 1000);
-    return millimetres >= 1 && millimetres <= full_scale ? millimetres : 0.0;  // 0: unknown
-  });
-}
-
 std::string image_name(int index) {
   char name[24];
   std::snprintf(name, sizeof name, "%06d.png", index);
@@ -104,6 +97,13 @@ void check_size(const Image<T>& image, const CameraModel& camera, const std::str
 }
 
 }  // namespace
+
+ImageU16 range_truth_pixels(const ImageF& range_m) {
+  return encoded(range_m, "the range", [](double range) {
+    const double millimetres = std::round(range * 1000);
+    return millimetres >= 1 && millimetres <= full_scale ? millimetres : 0.0;  // 0: unknown
+  });
+}
 
 SequenceWriter::SequenceWriter(std::filesystem::path folder, const SensorModel& sensor,
                                double amplitude_scale)
@@ -171,7 +171,7 @@ void SequenceWriter::add(const Frame& frame, const std::optional<Pose>& world_fr
     write(image_kind("amplitude_", f), amplitude, amplitude_pixels(amplitude, amplitude_scale_));
   }
   const std::string listed = line.str();
-  if (range_truth_m) write("range_truth", *range_truth_m, range_pixels(*range_truth_m));
+  if (range_truth_m) write("range_truth", *range_truth_m, range_truth_pixels(*range_truth_m));
   if (label_truth) write("label_truth", *label_truth, *label_truth);
   if (moving_truth) write("moving_truth", *moving_truth, *moving_truth);
 

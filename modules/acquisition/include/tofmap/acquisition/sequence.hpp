@@ -78,6 +78,10 @@ class SequenceReader final : public FrameSource {
   int next_index_ = 0;
 };
 
+/// True radial ranges as the images of range_truth/ have them, in millimetres. 0 where a range is
+/// unknown, below 0.5 mm or beyond 65.535 m.
+ImageU16 range_truth_pixels(const ImageF& range_m);
+
 /// Writes a sequence folder frame by frame. After every frame the folder is a complete, readable
 /// sequence, so a recording can be stopped at any time.
 class SequenceWriter {

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "command.hpp"
+#include "console/interruption.hpp"
+#include "console/progress.hpp"
+#include "input/imported_recording.hpp"
+#include "input/recording.hpp"
+#include "options/options.hpp"
+#include "output/json_text.hpp"
+#include "output/output_folder.hpp"
+
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
+#include <tofmap/pipeline/room_map.hpp>
+
+namespace tofmap::app {
+namespace {
+
+struct ImportArguments {
+  std::string format;
+  std::filesystem::path path;
+  std::filesystem::path out;
+  std::filesystem::path p0;
+  bool keep_inconsistent = false;
+  CommonArguments common;
+};
+
+/// What became of the frames of a recording.
+struct ImportedFrames {
+  int read = 0;
+  int written = 0;
+  std::vector<std::string> left_out = {};  ///< reasons why frames were not written
+  std::int64_t pixels = 0;                 ///< of the frames that were written
+  std::int64_t saturated_pixels = 0;       ///< at one of the frequencies
+};
+
+std::int64_t count_saturated(const Frame& frame, double saturation_amplitude) {
+  const auto limit = static_cast<float>(saturation_amplitude);
+  Image<bool> saturated = Image<bool>::Constant(frame.rows(), frame.cols(), false);
+  for (const ImageF& amplitude : frame.amplitudes) saturated = saturated || amplitude >= limit;
+  return saturated.count();
+}
+
+/// The true ranges of a frame, if they have the camera's size.
+std::optional<ImageF> true_range_m(const ImportedTruth& truth, const Frame& frame) {
+  std::optional<ImageF> range_m = truth.range_m(frame.index);
+  if (range_m && !same_size(*range_m, frame.phases.front())) range_m.reset();
+  return range_m;
+}
+
+/// Writes one frame and counts its pixels. Returns why the frame cannot be written; empty if it
+/// was.
+std::string write_frame(const Frame& frame, const ImportedRecording& recording,
+                        SequenceWriter& writer, ImportedFrames& frames) {
+  try {
+    writer.add(frame, {}, true_range_m(recording.truth, frame));
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  frames.pixels += frame.rows() * frame.cols();
+  frames.saturated_pixels +=
+      count_saturated(frame, recording.source->sensor().saturation_amplitude);
+  return "";
+}
+
+/// Writes frames until the recording ends or the user interrupts.
+ImportedFrames write_frames(const ImportedRecording& recording, SequenceWriter& writer,
+                            bool is_quiet) {
+  FrameSource& source = *recording.source;
+  ImportedFrames frames;
+  Progress progress("importing frame", source.frame_count(), is_quiet);
+  while (!is_interrupted()) {
+    const std::optional<SourcedFrame> sourced = source.next();
+    if (!sourced) break;
+    ++frames.read;
+    const std::string damage =
+        sourced->frame ? write_frame(*sourced->frame, recording, writer, frames) : sourced->damage;
+    if (!damage.empty()) frames.left_out.push_back(damage);
+    progress.show(frames.read);
+  }
+  frames.written = writer.count();
+  return frames;
+}
+
+nlohmann::ordered_json report_of(const ImportedRecording& recording, const ImportedFrames& frames,
+                                 bool is_whole) {
+  nlohmann::ordered_json report = {
+      {"frames", frames.written},    {"interrupted", !is_whole},
+      {"left_out", frames.left_out}, {"warnings", recording.warnings},
+      {"pixels", frames.pixels},     {"saturated_pixels", frames.saturated_pixels}};
+  if (recording.inconsistent_pixels) {
+    report["inconsistent_pixels"] = recording.inconsistent_pixels();
+  }
+  return report;
+}
+
+void print_summary(const ImportArguments& arguments, const ImportedRecording& recording,
+                   const ImportedFrames& frames, const OutputFolder& out) {
+  const auto percent = [&](std::int64_t count) {
+    return 100 * static_cast<double>(count) / static_cast<double>(frames.pixels);
+  };
+  fmt::print("{} of {} of '{}' imported: {}\n", frames.written,
+             counted(static_cast<std::size_t>(*recording.source->frame_count()), "frame"),
+             arguments.path.string(), out.final_path().string());
+  fmt::print("saturated: {:.2f} % of the pixels\n", percent(frames.saturated_pixels));
+  if (recording.inconsistent_pixels) {
+    fmt::print("inconsistent (motion or saturation): {:.2f} % of the pixels, {}\n",
+               percent(recording.inconsistent_pixels()),
+               arguments.keep_inconsistent ? "kept" : "without return");
+  }
+  print_warnings(recording.warnings);
+}
+
+int run_import(const ImportArguments& arguments) {
+  ProgramOptions options;
+  const OptionTable table = arguments.common.resolve("import", options);
+  const ImportedRecording recording =
+      open_import({.format = *find_named<ImportFormat>(arguments.format),
+                   .path = arguments.path,
+                   .p0 = arguments.p0,
+                   .keep_inconsistent = arguments.keep_inconsistent});
+  OutputFolder out(arguments.out);
+  SequenceWriter writer(out.path(), recording.source->sensor());
+  const ImportedFrames frames = write_frames(recording, writer, arguments.common.quiet);
+  if (!frames.left_out.empty()) {
+    refuse_mostly_damaged(static_cast<int>(frames.left_out.size()), frames.read,
+                          frames.left_out.front());
+  }
+  const bool is_whole = frames.read == *recording.source->frame_count();
+  if (frames.written == 0) {
+    std::fputs("tofmap: interrupted before the first frame; nothing was written\n", stderr);
+    return exit_status::interrupted;
+  }
+  recording.truth.copy_to(out.path());
+  out.write_text("report.json", json_text(report_of(recording, frames, is_whole)));
+  out.write_text("options.yaml", table.to_yaml(false));
+  out.commit(is_whole ? Completeness::whole : Completeness::interrupted);
+  if (!frames.left_out.empty()) {
+    std::fprintf(stderr, "tofmap: %s left out; the first: %s\n",
+                 counted(frames.left_out.size(), "frame").c_str(), frames.left_out.front().c_str());
+  }
+  if (!arguments.common.quiet) print_summary(arguments, recording, frames, out);
+  return is_whole ? exit_status::done : exit_status::interrupted;
+}
+
+}  // namespace
+
+void add_import_command(CLI::App& program, Outcome& outcome) {
+  auto arguments = std::make_shared<ImportArguments>();
+  CLI::App* app = program.add_subcommand("import", "make a recording of another program's files");
+  app->add_option("FORMAT", arguments->format,
+                  "kinect2: packets of a Kinect v2; correlation: arrays of correlation images")
+      ->required()
+      ->check(CLI::IsMember({"kinect2", "correlation"}));
+  app->add_option("PATH", arguments->path,
+                  "kinect2: folder of the recording or of its packets; correlation: YAML file that "
+                  "describes the images")
+      ->required();
+  app->add_option("--out", arguments->out, "folder for the recording")->required();
+  app->add_option("--p0", arguments->p0,
+                  "kinect2: file with the camera's P0 tables, if the recording has none or others");
+  app->add_flag("--keep-inconsistent", arguments->keep_inconsistent,
+                "correlation: keep phases of pixels whose steps contradict each other");
+  arguments->common.add_to(*app);
+  app->callback([arguments, &outcome] { outcome.status = run_import(*arguments); });
+}
+
+}  // namespace tofmap::app
