@@ -5,6 +5,7 @@
 
 #include "common/fast_math.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
