@@ -73,7 +73,7 @@ std::vector<ListedPacket> list_loose_packets(const std::filesystem::path& folder
   std::ranges::sort(packets, {}, [](const ListedPacket& packet) {
     return std::tie(packet.ticks, packet.sequence, packet.file);
   });
-  std::ranges::rotate(packets, beginning(packets));
+  std::rotate(packets.begin(), beginning(packets), packets.end());
   std::ranges::sort(unnamed, {}, &ListedPacket::file);
   packets.insert(packets.end(), unnamed.begin(), unnamed.end());
   return packets;
