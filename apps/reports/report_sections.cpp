@@ -24,7 +24,7 @@ StagedFrame staged_frame(const SampledFrame& frame, const Modulation& modulation
   StagedFrame staged;
   staged.title =
       fmt::format("Frame {}, {:.2f} s", frame.recorded.index, frame.recorded.timestamp_s);
-  staged.amplitude = frame.recorded.amplitudes[0];
+  if (frame.recorded.has_amplitude()) staged.amplitude = frame.recorded.amplitudes.front();
   staged.wrapped_m = frame.recorded.phases[0] * static_cast<float>(modulation.wavelength_m(0));
   staged.unwrapped = frame.unwrapped.image;
   staged.filtered = frame.filtered;

@@ -120,7 +120,7 @@ class ViewedRecording final : public Viewed {
     unwrapped_ = unwrapper_.unwrap(*sourced.frame).image;
     filtered_ = apply_filters(unwrapped_, *sourced.frame, modulation, rays_, filters_).image;
     wrapped_m_ = sourced.frame->phases[0] * static_cast<float>(modulation.wavelength_m(0));
-    amplitude_ = sourced.frame->amplitudes[0];
+    amplitude_ = sourced.frame->has_amplitude() ? sourced.frame->amplitudes.front() : ImageF();
   }
 
   const RangeImage& image() const { return is_filtered_ ? filtered_ : unwrapped_; }

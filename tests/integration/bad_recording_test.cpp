@@ -94,7 +94,7 @@ TEST_F(BadRecording, WithoutFramesIsRefused) {
 
 TEST_F(BadRecording, OfEqualFrequenciesIsRefusedWithTheReason) {
   edit("sequence.yaml", "3.1e+07", "2.9e+07");
-  expect_refusal("are equal", "wraps can only be told apart by two different frequencies");
+  expect_refusal("are equal", "wraps can only be told apart by different frequencies");
 }
 
 TEST_F(BadRecording, WithTheLongerWavelengthAtBIsAccepted) {
