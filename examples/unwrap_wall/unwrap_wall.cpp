@@ -16,7 +16,7 @@ tofmap::SensorModel small_camera() {
   tofmap::SensorModel sensor;
   sensor.camera = {
       .width_px = 32, .height_px = 24, .fx_px = 40, .fy_px = 40, .cx_px = 15.5, .cy_px = 11.5};
-  sensor.modulation = {.frequency_a_hz = 29e6, .frequency_b_hz = 31e6};
+  sensor.modulation = {29e6, 31e6};
   sensor.max_range_m = 15;
   return sensor;
 }
@@ -36,9 +36,10 @@ tofmap::ImageF phases(const tofmap::ImageF& range_m, double wavelength_m) {
 int main() {
   const tofmap::SensorModel sensor = small_camera();
   const tofmap::ImageF truth_m = wall_ranges(sensor.camera);
-  tofmap::DualFrequencyFrame frame;
-  frame.phase_a = phases(truth_m, sensor.modulation.wavelength_a_m());
-  frame.phase_b = phases(truth_m, sensor.modulation.wavelength_b_m());
+  tofmap::Frame frame;
+  for (const double wavelength_m : tofmap::wavelengths_m(sensor.modulation)) {
+    frame.phases.push_back(phases(truth_m, wavelength_m));
+  }
 
   const tofmap::UnwrapResult result = tofmap::unwrap(frame, sensor, {});
   const float worst_m = (result.image.range_m - truth_m).abs().maxCoeff();
