@@ -22,8 +22,8 @@ namespace {
 constexpr const char* calibration_format = "tofmap-camera";
 
 /// Version 1 has two frequencies, version 2 any number.
-constexpr int version_of_pairs = 1;
-constexpr int latest_version = 2;
+constexpr int calibration_version_of_pairs = 1;
+constexpr int latest_calibration_version = 2;
 
 /// The key of the error at a frequency: "error_a" for the first one.
 std::string error_key(std::size_t frequency) {
@@ -125,7 +125,7 @@ CalibratedWith read_calibrated_with(const YamlSection& section, int version) {
   CalibratedWith with;
   with.width_px = section.value<int>("width", "a number of pixels");
   with.height_px = section.value<int>("height", "a number of pixels");
-  if (version == version_of_pairs) {
+  if (version == calibration_version_of_pairs) {
     section.allow_only({"width", "height", "frequency_a_hz", "frequency_b_hz"});
     with.modulation = {section.value<double>("frequency_a_hz", "a frequency in Hz"),
                        section.value<double>("frequency_b_hz", "a frequency in Hz")};
@@ -237,7 +237,7 @@ double PhaseError::at_m(double phase_cycles) const {
 
 CameraCalibration read_calibration(const std::filesystem::path& file) {
   const YamlSection root = load_yaml(file, "'tofmap calibrate' writes such a file");
-  const int version = check_format(root, calibration_format, latest_version);
+  const int version = check_format(root, calibration_format, latest_calibration_version);
   root.allow_only({"format", "version", "calibrated_with", "camera", "error_a", "error_b",
                    "error_c", "error_d", "error_e", "error_f", "error_g", "error_h",
                    "saturation_amplitude"});
@@ -270,7 +270,7 @@ CameraCalibration read_calibration(const std::filesystem::path& file) {
 
 bool is_calibration(const std::filesystem::path& file) {
   try {
-    check_format(load_yaml(file, ""), calibration_format, latest_version);
+    check_format(load_yaml(file, ""), calibration_format, latest_calibration_version);
     return true;
   } catch (const InputError&) {
     return false;
@@ -284,7 +284,8 @@ void write_calibration(const std::filesystem::path& file, const CameraCalibratio
   const bool is_pair =
       calibration.with ? calibration.with->modulation.count() == 2 : calibration.errors.size() <= 2;
   out << "format: " << calibration_format
-      << "\nversion: " << (is_pair ? version_of_pairs : latest_version) << '\n';
+      << "\nversion: " << (is_pair ? calibration_version_of_pairs : latest_calibration_version)
+      << '\n';
   if (calibration.with) {
     const CalibratedWith& with = *calibration.with;
     const std::vector<double>& hz = with.modulation.frequencies_hz;

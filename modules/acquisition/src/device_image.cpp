@@ -24,8 +24,8 @@ constexpr double most_steps = 65534;  // an .oni file returns the depth 65535 as
 constexpr std::array<std::uint16_t, 3> magic = {0x6f74, 0x6d66, 0x7061};
 
 /// The version of the tag's layout: 1 for two frequencies, else 2, which has their number.
-constexpr std::uint64_t version_of_pairs = 1;
-constexpr std::uint64_t latest_version = 2;
+constexpr std::uint64_t tag_version_of_pairs = 1;
+constexpr std::uint64_t latest_tag_version = 2;
 
 /// Writes the values of a tag as words of 16 bits, the low word first. Floating-point numbers are
 /// written as their bits.
@@ -78,7 +78,7 @@ std::vector<std::uint16_t> words_of(const FrameTag& tag) {
   TagWriter out;
   const std::vector<double>& hz = tag.sensor.modulation.frequencies_hz;
   const bool is_pair = hz.size() == 2;
-  out.add(is_pair ? version_of_pairs : latest_version, 1);
+  out.add(is_pair ? tag_version_of_pairs : latest_tag_version, 1);
   if (!is_pair) out.add(hz.size(), 1);
   out.add(tag.number, 2);
   out.add(tag.timestamp_s);
@@ -102,7 +102,7 @@ FrameTag tag_of(const std::vector<std::uint16_t>& words) {
   FrameTag tag;
   const std::uint64_t version = in.whole(1);
   std::vector<double>& hz = tag.sensor.modulation.frequencies_hz;
-  hz.resize(version == version_of_pairs ? 2 : in.whole(1));
+  hz.resize(version == tag_version_of_pairs ? 2 : in.whole(1));
   tag.number = static_cast<std::uint32_t>(in.whole(2));
   tag.timestamp_s = in.number();
   CameraModel& camera = tag.sensor.camera;
@@ -160,8 +160,8 @@ std::optional<FrameTag> read_tag(const ImageU16& image, std::size_t frequencies)
   if (sum != checksum(words, checked)) return std::nullopt;
   const std::uint16_t version = words[magic.size()];
   const bool fits = frequencies == 2
-                        ? version == version_of_pairs
-                        : version == latest_version && words[magic.size() + 1] == frequencies;
+                        ? version == tag_version_of_pairs
+                        : version == latest_tag_version && words[magic.size() + 1] == frequencies;
   return fits ? std::optional(tag_of(words)) : std::nullopt;
 }
 

@@ -15,8 +15,8 @@ namespace {
 constexpr const char* sequence_format = "tofmap-sequence";
 
 /// Version 1 has two frequencies, version 2 any number.
-constexpr int version_of_pairs = 1;
-constexpr int latest_version = 2;
+constexpr int sequence_version_of_pairs = 1;
+constexpr int latest_sequence_version = 2;
 
 Modulation read_frequencies(const YamlSection& section) {
   section.allow_only({"frequencies_hz", "exposure_offsets_s"});
@@ -37,13 +37,13 @@ Modulation read_pair(const YamlSection& section) {
 }
 
 SensorModel read_sensor(const YamlSection& root) {
-  const int version = check_format(root, sequence_format, latest_version);
+  const int version = check_format(root, sequence_format, latest_sequence_version);
   root.allow_only({"format", "version", "camera", "modulation", "max_range_m"});
   SensorModel sensor;
   sensor.camera = read_camera(root.section("camera"));
   const YamlSection modulation = root.section("modulation");
   sensor.modulation =
-      version == version_of_pairs ? read_pair(modulation) : read_frequencies(modulation);
+      version == sequence_version_of_pairs ? read_pair(modulation) : read_frequencies(modulation);
   if (root.has("max_range_m")) {
     sensor.max_range_m = root.value<double>("max_range_m", "a number of metres");
     if (!(std::isfinite(sensor.max_range_m) && sensor.max_range_m > 0)) {
@@ -72,8 +72,8 @@ SensorModel read_sequence_header(const std::filesystem::path& file) {
 std::string sequence_header_text(const SensorModel& sensor) {
   const Modulation& modulation = sensor.modulation;
   const bool is_pair = modulation.count() == 2;
-  std::string text = std::string("format: ") + sequence_format +
-                     "\nversion: " + std::to_string(is_pair ? version_of_pairs : latest_version) +
+  std::string text = std::string("format: ") + sequence_format + "\nversion: " +
+                     std::to_string(is_pair ? sequence_version_of_pairs : latest_sequence_version) +
                      "\ncamera:\n" + camera_text(sensor.camera) + "modulation:\n";
   if (is_pair) {
     text += "  frequency_a_hz: " + shortest(modulation.frequencies_hz[0]) +

@@ -23,7 +23,7 @@ constexpr std::size_t answer_bytes = header_bytes + 3 * table_bytes;
 constexpr std::size_t bare_bytes = 3 * value_bytes;
 
 /// The largest answer that libfreenect2 makes room for.
-constexpr std::size_t most_bytes = 0x1C0000;
+constexpr std::size_t most_p0_bytes = 0x1C0000;
 
 constexpr const char* where_from =
     "the phase offsets of a Kinect v2 are the camera's answer to the request for its P0 tables, "
@@ -49,11 +49,12 @@ P0Tables read_p0_tables(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file, unknown) && !unknown) {
     throw InputError(file.string() + ": no such file; " + where_from);
   }
-  const std::vector<std::uint8_t> bytes = read_bytes(file, most_bytes);
+  const std::vector<std::uint8_t> bytes = read_bytes(file, most_p0_bytes);
   const bool is_bare = bytes.size() == bare_bytes;
-  if (!is_bare && (bytes.size() < answer_bytes || bytes.size() > most_bytes)) {
-    const std::string size = bytes.size() > most_bytes ? "more than " + std::to_string(most_bytes)
-                                                       : std::to_string(bytes.size());
+  if (!is_bare && (bytes.size() < answer_bytes || bytes.size() > most_p0_bytes)) {
+    const std::string size = bytes.size() > most_p0_bytes
+                                 ? "more than " + std::to_string(most_p0_bytes)
+                                 : std::to_string(bytes.size());
     throw InputError(file.string() + ": has " + size + " bytes; expected " +
                      std::to_string(answer_bytes) + " or a little more, or " +
                      std::to_string(bare_bytes) + " without headers; " + where_from);
