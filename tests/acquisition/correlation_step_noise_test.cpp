@@ -15,8 +15,8 @@
 namespace tofmap {
 namespace {
 
-constexpr int rows = 300;
-constexpr int cols = 400;
+constexpr int noisy_rows = 300;
+constexpr int noisy_cols = 400;
 
 /// What a camera measures of an image whose amplitude grows from left to right.
 struct Measured {
@@ -33,9 +33,9 @@ Measured measured(int steps, const std::function<double(double offset)>& varianc
   std::normal_distribution<double> unit_noise;
   std::vector<ImageF> images;
   for (int k = 0; k < steps; ++k) {
-    ImageF image(rows, cols);
-    for (int row = 0; row < rows; ++row) {
-      for (int col = 0; col < cols; ++col) {
+    ImageF image(noisy_rows, noisy_cols);
+    for (int row = 0; row < noisy_rows; ++row) {
+      for (int col = 0; col < noisy_cols; ++col) {
         const double amplitude = 50 + 5.0 * col;
         const double offset = 2 * amplitude;
         const double angle = 0.02 * row + 0.05 * col - angles[static_cast<std::size_t>(k)];
@@ -55,7 +55,8 @@ double no_change(int, int, int) { return 0; }
 double noise_of_a_camera(double offset) { return 4 + 0.5 * offset; }
 
 StepNoise noise_of(const Measured& made, double least_variance = 0) {
-  return estimate_step_noise(made.fit.offset, made.fit.squared_residual, ImageU8::Zero(rows, cols),
+  return estimate_step_noise(made.fit.offset, made.fit.squared_residual,
+                             ImageU8::Zero(noisy_rows, noisy_cols),
                              made.design.degrees_of_freedom(), least_variance);
 }
 
@@ -97,23 +98,24 @@ TEST(StepNoise, AloneMakesOnePixelIn10000Inconsistent) {
 }
 
 TEST(StepNoise, IsNotRaisedByAThirdOfMovingPixels) {
-  const auto moves = [](int row) { return row < rows / 3; };
+  const auto moves = [](int row) { return row < noisy_rows / 3; };
   // What moves changes one of the steps, by 15 standard deviations.
   const auto change = [&](int step, int row, int col) {
     return step == 2 && moves(row) ? 15 * std::sqrt(noise_of_a_camera(100 + 10.0 * col)) : 0;
   };
   const ImageU8 flags = flags_of(measured(4, noise_of_a_camera, change));
-  EXPECT_GT(count(flags.topRows(rows / 3)), 0.95 * cols * rows / 3);
-  EXPECT_LT(count(flags.bottomRows(rows - rows / 3)), 40);
+  EXPECT_GT(count(flags.topRows(noisy_rows / 3)), 0.95 * noisy_cols * noisy_rows / 3);
+  EXPECT_LT(count(flags.bottomRows(noisy_rows - noisy_rows / 3)), 40);
 }
 
 TEST(StepNoise, IsNotRaisedByABrightObjectThatMoves) {
   const auto change = [](int step, int, int col) {
-    return step == 1 && col >= cols * 9 / 10 ? 15 * std::sqrt(noise_of_a_camera(100 + 10.0 * col))
-                                             : 0;
+    return step == 1 && col >= noisy_cols * 9 / 10
+               ? 15 * std::sqrt(noise_of_a_camera(100 + 10.0 * col))
+               : 0;
   };
   const ImageU8 flags = flags_of(measured(4, noise_of_a_camera, change));
-  EXPECT_GT(count(flags.rightCols(cols / 10)), 0.95 * rows * cols / 10);
+  EXPECT_GT(count(flags.rightCols(noisy_cols / 10)), 0.95 * noisy_rows * noisy_cols / 10);
 }
 
 TEST(StepNoise, TakesInHarmonicsOfTheCorrelationFunction) {
@@ -124,7 +126,7 @@ TEST(StepNoise, TakesInHarmonicsOfTheCorrelationFunction) {
   };
   const ImageU8 flags = flags_of(measured(
       8, [](double) { return 4; }, change));
-  EXPECT_LT(count(flags), 0.001 * rows * cols);
+  EXPECT_LT(count(flags), 0.001 * noisy_rows * noisy_cols);
 }
 
 TEST(StepNoise, IsAtLeastThatOfRounding) {
