@@ -20,6 +20,7 @@
 
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/frame_masks.hpp>
 #include <tofmap/core/text.hpp>
 #include <tofmap/pipeline/room_map.hpp>
 
@@ -44,13 +45,6 @@ struct ImportedFrames {
   std::int64_t saturated_pixels = 0;       ///< at one of the frequencies
 };
 
-std::int64_t count_saturated(const Frame& frame, double saturation_amplitude) {
-  const auto limit = static_cast<float>(saturation_amplitude);
-  Image<bool> saturated = Image<bool>::Constant(frame.rows(), frame.cols(), false);
-  for (const ImageF& amplitude : frame.amplitudes) saturated = saturated || amplitude >= limit;
-  return saturated.count();
-}
-
 /// The true ranges of a frame, if they have the camera's size.
 std::optional<ImageF> true_range_m(const ImportedTruth& truth, const Frame& frame) {
   std::optional<ImageF> range_m = truth.range_m(frame.index);
@@ -69,7 +63,7 @@ std::string write_frame(const Frame& frame, const ImportedRecording& recording,
   }
   frames.pixels += frame.rows() * frame.cols();
   frames.saturated_pixels +=
-      count_saturated(frame, recording.source->sensor().saturation_amplitude);
+      saturated_pixels(frame, recording.source->sensor().saturation_amplitude).count();
   return "";
 }
 

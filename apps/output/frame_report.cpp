@@ -58,6 +58,13 @@ double mean_of(const RoomMap& map, const std::function<double(const FrameRecord&
   return count > 0 ? sum / count : 0;
 }
 
+Json camera_json(const CameraErrors& camera) {
+  return {{"offset_m", camera.offset_m()},
+          {"periodic_rms_m", camera.periodic_rms_m},
+          {"per_decade_m", camera.per_decade_m()},
+          {"systematic_m", camera.systematic_m}};
+}
+
 }  // namespace
 
 Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -111,17 +118,6 @@ StageTimes mean_times(const RoomMap& map) {
   mean.loop_ms = mean_of(map, [](const FrameRecord& r) { return r.times.loop_ms; });
   return mean;
 }
-
-namespace {
-
-Json camera_json(const CameraErrors& camera) {
-  return {{"offset_m", camera.offset_m()},
-          {"periodic_rms_m", camera.periodic_rms_m},
-          {"per_decade_m", camera.per_decade_m()},
-          {"systematic_m", camera.systematic_m}};
-}
-
-}  // namespace
 
 Json errors_json(const ErrorSurvey& survey) {
   // Those of the second frequency; with more of them, a list follows.

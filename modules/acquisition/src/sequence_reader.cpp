@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include "inner_path.hpp"
 #include "sequence_header.hpp"
 
 #include <algorithm>
@@ -21,16 +22,6 @@ namespace tofmap {
 namespace {
 
 constexpr std::uint16_t no_return = 65535;
-
-/// A path of frames.txt. Throws InputError if it leads out of the folder of the sequence.
-std::filesystem::path inner_path(const std::string& text, const std::string& place) {
-  std::filesystem::path path = std::filesystem::path(text).lexically_normal();
-  if (path.is_absolute() || *path.begin() == "..") {
-    throw InputError(place + ": the path '" + text +
-                     "' leads out of the sequence; paths are relative to its folder");
-  }
-  return path;
-}
 
 /// The columns of a line, for messages: "timestamp phase_a phase_b [amplitude_a amplitude_b]".
 std::string columns(std::size_t frequencies) {
@@ -72,7 +63,9 @@ SequenceFrameFiles parse_line(const std::vector<std::string>& words, std::size_t
   }
   for (auto word = phases; word != words.end(); ++word) {
     if (*word == "-") continue;
-    (word < amplitudes ? files.phases : files.amplitudes).push_back(inner_path(*word, place));
+    (word < amplitudes ? files.phases : files.amplitudes).push_back(naming(place, [&] {
+      return inner_path(*word, "sequence");
+    }));
   }
   if (files.amplitudes.size() < frequencies) files.amplitudes.clear();
   return files;

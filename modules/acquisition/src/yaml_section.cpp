@@ -5,7 +5,6 @@
 
 #include "tofmap/acquisition/png_image.hpp"
 
-#include <charconv>
 #include <sstream>
 
 #include <tofmap/core/input_file.hpp>
@@ -68,18 +67,6 @@ std::string camera_text(const CameraModel& camera) {
   }
   out << "]  # k1 k2 p1 p2 k3\n";
   return out.str();
-}
-
-std::string list_text(const std::vector<double>& numbers) {
-  std::string text;
-  for (const double number : numbers) text += (text.empty() ? "" : ", ") + shortest(number);
-  return "[" + text + "]";
-}
-
-std::string shortest(double number) {
-  char buffer[32];
-  const auto end = std::to_chars(buffer, buffer + sizeof buffer, number).ptr;
-  return {buffer, end};
 }
 
 }  // namespace tofmap

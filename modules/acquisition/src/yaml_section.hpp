@@ -17,6 +17,7 @@
 
 #include <tofmap/core/camera.hpp>
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/number_text.hpp>
 
 namespace tofmap {
 
@@ -149,11 +150,5 @@ CameraModel read_camera(const YamlSection& section);
 
 /// The lines of a YAML map with the keys of a camera, indented by two spaces.
 std::string camera_text(const CameraModel& camera);
-
-/// The number with the fewest digits that read back as the same bits.
-std::string shortest(double number);
-
-/// Numbers as a YAML list: "[1.5, 2]".
-std::string list_text(const std::vector<double>& numbers);
 
 }  // namespace tofmap

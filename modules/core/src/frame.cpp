@@ -3,6 +3,8 @@
 
 #include "tofmap/core/frame.hpp"
 
+#include "tofmap/core/frame_masks.hpp"
+
 #include <algorithm>
 
 namespace tofmap {
@@ -33,11 +35,7 @@ SensorModel frequency_pair(const SensorModel& sensor, std::size_t a, std::size_t
   return pair;
 }
 
-bool is_without_return(const Frame& frame) {
-  Image<bool> missing = Image<bool>::Constant(frame.rows(), frame.cols(), false);
-  for (const ImageF& phase : frame.phases) missing = missing || phase.isNaN();
-  return missing.all();
-}
+bool is_without_return(const Frame& frame) { return missing_returns(frame).all(); }
 
 bool repeats(const Frame& frame, const Frame& last) {
   return std::equal(frame.phases.begin(), frame.phases.end(), last.phases.begin(),

@@ -15,6 +15,7 @@
 
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/input_file.hpp>
+#include <tofmap/core/number_text.hpp>
 #include <tofmap/core/text.hpp>
 
 namespace tofmap {
@@ -49,29 +50,15 @@ std::optional<bool> parse_bool(const std::string& text) {
   return std::nullopt;
 }
 
-/// The shortest text that reads back as the same bits.
-std::string number_text(double number) {
-  char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof buffer, number);
-  return {buffer, result.ptr};
-}
-
-/// Numbers as a YAML list: "[80000000, 16000000]".
-std::string numbers_text(const std::vector<double>& numbers) {
-  std::string text;
-  for (const double number : numbers) text += (text.empty() ? "" : ", ") + number_text(number);
-  return "[" + text + "]";
-}
-
 /// Text as a YAML scalar, in quotes where it needs them.
 std::string yaml_text(const std::string& text) { return YAML::Dump(YAML::Node(text)); }
 
 std::string range_text(double min, double max) {
   const bool from = std::isfinite(min);
   const bool to = std::isfinite(max);
-  if (from && to) return number_text(min) + " … " + number_text(max);
-  if (from) return "at least " + number_text(min);
-  if (to) return "at most " + number_text(max);
+  if (from && to) return shortest(min) + " … " + shortest(max);
+  if (from) return "at least " + shortest(min);
+  if (to) return "at most " + shortest(max);
   return "any number";
 }
 
@@ -91,8 +78,8 @@ std::string OptionTable::Entry::allowed() const {
 std::string OptionTable::Entry::text() const {
   if (const auto* flag = std::get_if<bool*>(&value)) return **flag ? "true" : "false";
   if (const auto* whole = std::get_if<int*>(&value)) return std::to_string(**whole);
-  if (const auto* number = std::get_if<double*>(&value)) return number_text(**number);
-  if (const auto* list = std::get_if<std::vector<double>*>(&value)) return numbers_text(**list);
+  if (const auto* number = std::get_if<double*>(&value)) return shortest(**number);
+  if (const auto* list = std::get_if<std::vector<double>*>(&value)) return list_text(**list);
   if (const auto* named = std::get_if<EnumReference>(&value)) return yaml_text(named->text());
   return yaml_text(*std::get<std::string*>(value));
 }

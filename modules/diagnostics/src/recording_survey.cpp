@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <tofmap/core/frame_masks.hpp>
 #include <tofmap/core/median.hpp>
 #include <tofmap/core/text.hpp>
 #include <tofmap/diagnostics/axial_depth.hpp>
@@ -73,16 +74,9 @@ struct PixelTotals {
 
   void add(const Frame& frame, double saturation_amplitude) {
     all += static_cast<double>(frame.rows() * frame.cols());
-    Image<bool> is_missing = Image<bool>::Constant(frame.rows(), frame.cols(), false);
-    for (const ImageF& phase : frame.phases) is_missing = is_missing || phase.isNaN();
-    without_return += static_cast<double>(is_missing.count());
-    if (!frame.has_amplitude() || saturation_amplitude <= 0) return;
-    const auto limit = static_cast<float>(saturation_amplitude);
-    Image<bool> is_saturated = Image<bool>::Constant(frame.rows(), frame.cols(), false);
-    for (const ImageF& amplitude : frame.amplitudes) {
-      is_saturated = is_saturated || amplitude >= limit;
-    }
-    saturated += static_cast<double>(is_saturated.count());
+    without_return += static_cast<double>(missing_returns(frame).count());
+    if (saturation_amplitude <= 0) return;
+    saturated += static_cast<double>(saturated_pixels(frame, saturation_amplitude).count());
   }
 
   double share(double of) const { return all > 0 ? of / all : 0; }

@@ -3,7 +3,7 @@
 
 #include "frame_journal.hpp"
 
-#include "inner_path.hpp"
+#include "recorded_path.hpp"
 #include "shown_json.hpp"
 
 #include <fstream>
@@ -54,7 +54,7 @@ std::optional<ListedPacket> packet_of_line(const std::string& line,
     throw InputError("stream must be color or depth, got " + shown(stream));
   }
   ListedPacket packet;
-  packet.file = folder / inner_path(text(entry, "path"));
+  packet.file = folder / recorded_path(text(entry, "path"));
   packet.ticks = counter(entry, "device_timestamp");
   packet.sequence = counter(entry, "sequence");
   const std::uint32_t byte_count = counter(entry, "byte_count");

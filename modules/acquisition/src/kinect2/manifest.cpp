@@ -4,7 +4,7 @@
 #include "manifest.hpp"
 
 #include "binary_file.hpp"
-#include "inner_path.hpp"
+#include "recorded_path.hpp"
 #include "shown_json.hpp"
 
 #include <algorithm>
@@ -146,7 +146,7 @@ Manifest read_manifest(const std::filesystem::path& file) {
     manifest.camera = read_camera(root);
     if (find(root, {"calibration", "p0"}) != nullptr) {
       manifest.p0 = naming("calibration.p0", [&] {
-        return inner_path(text_at(root, {"calibration", "p0"}));
+        return recorded_path(text_at(root, {"calibration", "p0"}));
       });
     }
     return manifest;

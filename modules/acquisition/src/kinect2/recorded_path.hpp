@@ -9,6 +9,6 @@ namespace tofmap::kinect2 {
 
 /// The path that a recording names, relative to the recording's folder. Throws InputError if it is
 /// empty, not valid or leads out of the folder.
-std::filesystem::path inner_path(const std::string& text);
+std::filesystem::path recorded_path(const std::string& text);
 
 }  // namespace tofmap::kinect2
