@@ -2,12 +2,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "peers/phasor_math.hpp"
-
 #include <array>
+#include <cmath>
 #include <numbers>
 
 namespace tofmap::peers {
+
+/// asin(u) for 0 ≤ u ≤ 1, with an absolute error of at most 3e-7 (Abramowitz and Stegun, equation
+/// 4.4.46).
+[[gnu::always_inline]] inline float arc_sine(float u) {
+  const float series =
+      1.5707963050F +
+      u * (-0.2145988016F +
+           u * (0.0889789874F +
+                u * (-0.0501743046F +
+                     u * (0.0308918810F +
+                          u * (-0.0170881256F + u * (0.0066700901F - u * 0.0012624911F))))));
+  return 1.57079633F - std::sqrt(1 - u) * series;
+}
 
 /// Standard deviation of a phase, predicted from its amplitude a (Järemo Lawin et al. 2016,
 /// section 3.3):

@@ -4,7 +4,7 @@
 #include "peers/phase_smoothing.hpp"
 
 #include "common/fast_math.hpp"
-#include "peers/phasor_math.hpp"
+#include "common/phasor_math.hpp"
 
 #include <array>
 #include <cmath>

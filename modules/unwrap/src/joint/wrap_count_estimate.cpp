@@ -4,10 +4,7 @@
 #include "tofmap/unwrap/joint/wrap_count_estimate.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <complex>
-#include <numbers>
 #include <utility>
 
 #include <tofmap/core/range_image.hpp>
@@ -21,19 +18,19 @@ constexpr float loud_cycles = 0.08F;
 /// A coarser pyramid level is worth its time if more than this share of the pixels is that noisy.
 constexpr float loud_share = 0.02F;
 
-std::complex<float> phasor(float phase, float amplitude) {
-  return std::polar(amplitude, 2 * std::numbers::pi_v<float> * phase);
-}
-
-float phase_of(std::complex<float> sum) {
-  const float cycles = std::arg(sum) / (2 * std::numbers::pi_v<float>);
-  return cycles < 0 ? std::min(cycles + 1, std::nextafter(1.0F, 0.0F)) : cycles;
-}
-
-bool is_loud(const PhaseSigma& sigma) {
-  const auto returns = static_cast<float>((sigma.cycles[0] == sigma.cycles[0]).count());
-  const auto loud = static_cast<float>((sigma.cycles[0] > loud_cycles).count());
-  return loud > loud_share * returns;
+/// Whether a coarser pyramid level is worth its time for a frame: whether a share of its returns
+/// are so noisy and, by `is_open`, still without a certain wrap count.
+template <class IsOpen>
+bool is_loud(const ImageF& sigma_cycles, const IsOpen& is_open) {
+  Eigen::Index returns = 0;
+  Eigen::Index loud = 0;
+  for (Eigen::Index i = 0; i < sigma_cycles.size(); ++i) {
+    const float sigma = sigma_cycles.data()[i];
+    if (std::isnan(sigma)) continue;
+    ++returns;
+    if (sigma > loud_cycles && is_open(i)) ++loud;
+  }
+  return static_cast<float>(loud) > loud_share * static_cast<float>(returns);
 }
 
 /// The wrap count that brings a pixel with this phase nearest to the range `block_cycles` of its
@@ -63,21 +60,6 @@ void set_factors(const WrapCountBeliefs& coarse, Eigen::Index row, Eigen::Index 
   std::fill(factors.begin(), factors.end(), std::pow(least, news));
   set(coarse.runner_up(row, col), std::max(runner_up / best, least));
   set(coarse.count(row, col), 1);
-}
-
-/// Multiplies the unary factors of noisy pixels by the coarse-to-fine prior of their blocks, which
-/// have 2 x 2 pixels.
-void apply_coarse_prior(const Frame& pixels, const PhaseSigma& sigma, const Frame& blocks,
-                        const WrapCountBeliefs& coarse, WrapCountModel& model) {
-  std::vector<float> factors(static_cast<std::size_t>(model.counts()));
-  for (Eigen::Index v = 0; v < pixels.phases[0].rows(); ++v) {
-    for (Eigen::Index u = 0; u < pixels.phases[0].cols(); ++u) {
-      if (std::isnan(pixels.phases[0](v, u)) || sigma.cycles[0](v, u) < loud_cycles) continue;
-      set_factors(coarse, v / 2, u / 2, blocks.phases[0](v / 2, u / 2), pixels.phases[0](v, u),
-                  factors);
-      model.weigh_evidence(static_cast<int>(v), static_cast<int>(u), factors);
-    }
-  }
 }
 
 /// The probability of the coarse level's wrap count, given that the coarse level is surer than the
@@ -117,108 +99,89 @@ void take_coarse_counts(const Frame& pixels, const NoisyFrame& blocks, int block
 
 }  // namespace
 
-namespace {
-
-/// The sum of the phasors of one frequency in a block, and the variance of its noise.
-struct BlockSum {
-  std::complex<float> phasor = 0;
-  float noise_variance = 0;
-
-  void add(float phase, float amplitude, float sigma_cycles) {
-    const float noise = amplitude * sigma_cycles;
-    phasor += tofmap::phasor(phase, amplitude);
-    noise_variance += noise * noise;
+void WrapCountEstimator::Scale::assign(const Frame& frame, const UnwrapLimits& limits,
+                                       const PhaseSigma& sigma,
+                                       const std::vector<double>& residual_sigma_m,
+                                       const WrapCountPrior& prior) {
+  // With two frequencies alone, hardly a pixel is certain by itself.
+  is_sparse = frame.frequencies() > 2;
+  if (!is_sparse) {
+    model.assign(frame, limits, sigma, residual_sigma_m, prior);
+    return;
   }
-
-  float amplitude() const { return std::max(std::abs(phasor), 1e-6F); }
-  /// Phase noise of the sum: its noise relative to its length.
-  float sigma_cycles() const { return std::sqrt(noise_variance) / amplitude(); }
-};
-
-}  // namespace
-
-NoisyFrame halve(const Frame& frame, const PhaseSigma& sigma) {
-  const Eigen::Index rows = (frame.rows() + 1) / 2;
-  const Eigen::Index cols = (frame.cols() + 1) / 2;
-  const std::size_t frequencies = frame.frequencies();
-  NoisyFrame out;
-  out.frame.index = frame.index;
-  out.frame.timestamp_s = frame.timestamp_s;
-  out.frame.phases.assign(frequencies, ImageF::Constant(rows, cols, nan));
-  out.frame.amplitudes.assign(frequencies, ImageF::Zero(rows, cols));
-  out.sigma.cycles.assign(frequencies, ImageF::Constant(rows, cols, nan));
-  const bool weighted = frame.has_amplitude();
-  const auto is_missing = [](const ImageF& phase, Eigen::Index v, Eigen::Index u) {
-    return std::isnan(phase(v, u));
-  };
-  for (Eigen::Index row = 0; row < rows; ++row) {
-    for (Eigen::Index col = 0; col < cols; ++col) {
-      std::array<BlockSum, most_frequencies> sums;
-      int count = 0;
-      for (Eigen::Index v = 2 * row; v < std::min(2 * row + 2, frame.rows()); ++v) {
-        for (Eigen::Index u = 2 * col; u < std::min(2 * col + 2, frame.cols()); ++u) {
-          if (std::ranges::any_of(frame.phases,
-                                  [&](const ImageF& phase) { return is_missing(phase, v, u); })) {
-            continue;
-          }
-          for (std::size_t f = 0; f < frequencies; ++f) {
-            sums[f].add(frame.phases[f](v, u), weighted ? frame.amplitudes[f](v, u) : 1.0F,
-                        sigma.cycles[f](v, u));
-          }
-          ++count;
-        }
-      }
-      if (count == 0) continue;
-      for (std::size_t f = 0; f < frequencies; ++f) {
-        out.frame.phases[f](row, col) = phase_of(sums[f].phasor);
-        out.frame.amplitudes[f](row, col) = sums[f].amplitude() / static_cast<float>(count);
-        out.sigma.cycles[f](row, col) = sums[f].sigma_cycles();
-      }
-    }
-  }
-  return out;
+  const ImageU8 mixed = prior.mixed_pixels && frame.has_amplitude()
+                            ? mixed_pixels(frame.amplitudes[0], sigma.cycles[0])
+                            : ImageU8::Zero(frame.rows(), frame.cols());
+  own = find_own_counts(frame, limits, sigma, residual_sigma_m, prior, mixed);
+  sparse.assign(frame, limits, sigma, residual_sigma_m, prior, own, mixed);
 }
 
-/// Builds the pyramid: blocks and noise of the levels that the noise requires, at most `most`
-/// levels. Returns the number of levels.
-int WrapCountEstimator::divide(const Frame& frame, const PhaseSigma& sigma, int most) {
-  scales_.resize(static_cast<std::size_t>(most));
-  const Frame* finer = &frame;
-  const PhaseSigma* finer_sigma = &sigma;
-  int count = 1;
-  while (count < most && is_loud(*finer_sigma)) {
-    Scale& scale = scales_[static_cast<std::size_t>(count)];
-    scale.blocks = halve(*finer, *finer_sigma);
-    finer = &scale.blocks.frame;
-    finer_sigma = &scale.blocks.sigma;
-    ++count;
+bool WrapCountEstimator::Scale::needs_coarser(const PhaseSigma& sigma) const {
+  return is_loud(sigma.cycles[0],
+                 [&](Eigen::Index i) { return !is_sparse || own.certain.data()[i] == 0; });
+}
+
+/// Multiplies the unary factors of noisy pixels by the coarse-to-fine prior of their blocks, which
+/// have 2 x 2 pixels.
+void WrapCountEstimator::Scale::take_prior(const Frame& frame, const PhaseSigma& sigma, int counts,
+                                           const Scale& coarser) {
+  std::vector<float> factors(static_cast<std::size_t>(counts));
+  const Eigen::Index cols = frame.cols();
+  const auto fill_factors = [&](Eigen::Index at) {
+    if (std::isnan(frame.phases[0].data()[at]) || sigma.cycles[0].data()[at] < loud_cycles) {
+      return false;
+    }
+    const Eigen::Index row = at / cols / 2;
+    const Eigen::Index col = at % cols / 2;
+    set_factors(coarser.beliefs, row, col, coarser.blocks.frame.phases[0](row, col),
+                frame.phases[0].data()[at], factors);
+    return true;
+  };
+  if (is_sparse) {
+    for (std::size_t i = 0; i < sparse.size(); ++i) {
+      if (fill_factors(sparse.raster(i))) sparse.weigh_evidence(i, factors);
+    }
+    return;
   }
-  return count;
+  for (Eigen::Index at = 0; at < frame.phases[0].size(); ++at) {
+    if (!fill_factors(at)) continue;
+    model.weigh_evidence(static_cast<int>(at / cols), static_cast<int>(at % cols), factors);
+  }
+}
+
+void WrapCountEstimator::Scale::run(int iterations) {
+  beliefs = is_sparse ? sparse.run(own, iterations) : propagation.run(model, iterations);
 }
 
 WrapCountBeliefs WrapCountEstimator::estimate(const Frame& frame, const UnwrapLimits& limits,
                                               const PhaseSigma& sigma,
                                               const std::vector<double>& residual_sigma_m,
                                               const WrapCountOptions& options) {
-  const int count = divide(frame, sigma, options.scales);
-  const auto seen_at = [&](std::size_t s) -> const Frame& {
+  scales_.resize(static_cast<std::size_t>(options.scales));
+  const auto frame_at = [&](std::size_t s) -> const Frame& {
     return s == 0 ? frame : scales_[s].blocks.frame;
   };
-  for (auto s = static_cast<std::size_t>(count); s-- > 0;) {
-    Scale& scale = scales_[s];
+  const auto sigma_at = [&](std::size_t s) -> const PhaseSigma& {
+    return s == 0 ? sigma : scales_[s].blocks.sigma;
+  };
+  std::size_t count = 0;
+  while (true) {
     WrapCountPrior prior = options.prior;
-    prior.slope_m *= static_cast<double>(1U << s);
-    const PhaseSigma& its_sigma = s == 0 ? sigma : scale.blocks.sigma;
-    scale.model.assign(seen_at(s), limits, its_sigma, residual_sigma_m, prior);
-    if (static_cast<int>(s) + 1 < count) {
-      const Scale& coarser = scales_[s + 1];
-      apply_coarse_prior(seen_at(s), its_sigma, coarser.blocks.frame, coarser.beliefs, scale.model);
+    prior.slope_m *= static_cast<double>(1U << count);
+    scales_[count].assign(frame_at(count), limits, sigma_at(count), residual_sigma_m, prior);
+    ++count;
+    if (count == scales_.size() || !scales_[count - 1].needs_coarser(sigma_at(count - 1))) break;
+    scales_[count].blocks = halve(frame_at(count - 1), sigma_at(count - 1));
+  }
+  for (std::size_t s = count; s-- > 0;) {
+    if (s + 1 < count) {
+      scales_[s].take_prior(frame_at(s), sigma_at(s), limits.count, scales_[s + 1]);
     }
-    scale.beliefs = scale.propagation.run(scale.model, options.iterations);
+    scales_[s].run(options.iterations);
   }
 
   WrapCountBeliefs beliefs = std::move(scales_[0].beliefs);
-  for (std::size_t s = 1; s < static_cast<std::size_t>(count); ++s) {
+  for (std::size_t s = 1; s < count; ++s) {
     const Scale& coarse = scales_[s];
     take_coarse_counts(frame, coarse.blocks, 1 << s, coarse.beliefs, limits.count, beliefs);
     beliefs.iterations += coarse.beliefs.iterations;

@@ -8,6 +8,9 @@
 #include <tofmap/core/image.hpp>
 #include <tofmap/core/range_error.hpp>
 #include <tofmap/unwrap/common/unwrap_limits.hpp>
+#include <tofmap/unwrap/joint/frame_halving.hpp>
+#include <tofmap/unwrap/joint/own_counts.hpp>
+#include <tofmap/unwrap/joint/sparse_propagation.hpp>
 #include <tofmap/unwrap/joint/wrap_count_model.hpp>
 #include <tofmap/unwrap/joint/wrap_count_propagation.hpp>
 
@@ -23,18 +26,6 @@ struct WrapCountOptions {
   /// pixels. Coarser levels are used only as far as the phase noise of the frame requires.
   int scales = UnwrapOptions{}.scales;
 };
-
-/// A frame and the noise of its phases; both NaN where there is no return.
-struct NoisyFrame {
-  Frame frame;
-  PhaseSigma sigma;
-};
-
-/// Halves a frame in width and height, rounded up: averages the phasors of blocks of 2 x 2 pixels
-/// and propagates their noise. Pixels without a return at either frequency are left out; a block
-/// without any return has NaN phases and amplitude 0. If the frame has no amplitudes, all its
-/// phasors have length 1; the result has amplitudes in any case, the lengths of the mean phasors.
-NoisyFrame halve(const Frame& frame, const PhaseSigma& sigma);
 
 /// Estimates the wrap counts of frames by belief propagation, in noisy frames at several pyramid
 /// levels from coarse to fine (docs/unwrapping.md, 'Joint: beliefs over counts'). The object keeps
@@ -54,12 +45,20 @@ class WrapCountEstimator {
   /// One pyramid level.
   struct Scale {
     NoisyFrame blocks;  ///< empty at the level of pixels
+    /// Whether only uncertain pixels are in the model, as with three or more frequencies.
+    bool is_sparse = false;
+    OwnCounts own;
+    SparsePropagation sparse;
     WrapCountModel model;
     WrapCountPropagation propagation;
     WrapCountBeliefs beliefs;
-  };
 
-  int divide(const Frame& frame, const PhaseSigma& sigma, int most);
+    void assign(const Frame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
+                const std::vector<double>& residual_sigma_m, const WrapCountPrior& prior);
+    bool needs_coarser(const PhaseSigma& sigma) const;
+    void take_prior(const Frame& frame, const PhaseSigma& sigma, int counts, const Scale& coarser);
+    void run(int iterations);
+  };
 
   std::vector<Scale> scales_;
 };

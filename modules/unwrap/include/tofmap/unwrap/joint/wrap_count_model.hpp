@@ -11,31 +11,9 @@
 #include <tofmap/core/range_error.hpp>
 #include <tofmap/unwrap/common/diagonal_layout.hpp>
 #include <tofmap/unwrap/common/unwrap_limits.hpp>
-#include <tofmap/unwrap/common/unwrap_options.hpp>
+#include <tofmap/unwrap/joint/wrap_count_factors.hpp>
 
 namespace tofmap {
-
-/// The assumptions about scenes of the method `joint`. Symbols and equation numbers are those of
-/// docs/unwrapping.md.
-struct WrapCountPrior {
-  /// ε of equation 11: probability that a pixel's residual comes from no surface; above 0 and below
-  /// 1. A larger value gives the residual of a single pixel less weight.
-  double outlier_share = UnwrapOptions{}.outlier_share;
-  /// s of equation 12: typical difference between the true ranges of neighbouring pixels on one
-  /// surface, metres, above 0.
-  double slope_m = UnwrapOptions{}.slope_m;
-  /// e_0 of equation 13: probability that two neighbours of equal amplitude are on different
-  /// surfaces; above 0 and below 1.
-  double edge_share = 0.02;
-  /// R of equation 14, metres, above 0: from one surface to another, the range changes by any
-  /// amount within ± R, all equally probable.
-  double edge_reach_m = 25;
-  /// Whether an edge between surfaces is more probable where the amplitude changes.
-  bool amplitude_edges = UnwrapOptions{}.amplitude_edges;
-  /// Whether the unary factors of mixed pixels are made nearly uniform, so that their neighbours
-  /// decide their wrap counts. Needs amplitudes.
-  bool mixed_pixels = UnwrapOptions{}.mixed_pixels;
-};
 
 /// The probabilities of the wrap counts of all pixels as a factor graph on the pixel grid
 /// (docs/unwrapping.md, equations 11 to 14). All values are stored diagonal by diagonal
@@ -82,23 +60,19 @@ class WrapCountModel {
   const Edges& down() const { return down_; }
 
  private:
-  void resize(int rows, int cols, int counts, std::size_t frequencies);
+  void resize(int rows, int cols, int counts);
   void load(const Frame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
             const std::vector<double>& residual_sigma_m);
   void fill_unary(const UnwrapLimits& limits);
   void fill_pairwise(const UnwrapLimits& limits, const WrapCountPrior& prior);
-  void mark_mixed_pixels(const ImageF& amplitude, const ImageF& sigma_cycles);
+  void mark_mixed_pixels(const ImageU8& mixed);
 
   DiagonalLayout layout_;
   int counts_ = 0;
   std::vector<std::uint16_t> evidence_;  ///< bfloat16
   Edges right_;
   Edges down_;
-  // Measurements of the frame and parameters of its pixels, diagonal by diagonal.
-  std::vector<std::vector<float>> phases_;        ///< of each frequency
-  std::vector<std::vector<float>> variances_m2_;  ///< of each frequency
-  std::vector<float> amplitude_;                  ///< of the first frequency
-  std::vector<float> outlier_share_;
+  PixelArrays measured_;  ///< diagonal by diagonal
 };
 
 }  // namespace tofmap
