@@ -50,7 +50,7 @@ struct Recording {
 /// - a recording directory of version 1 or 2 with manifest.json, frames.ndjson (one line a frame)
 ///   and the files that they name. Color frames are passed over. An interrupted recording may lack
 ///   manifest.json, since programs write it last; then the camera is assumed.
-/// - a directory of loose packets of the dump pipeline, <prefix>_<timestamp>_<sequence>.depth, in
+/// - a directory of loose packets of the dump pipeline, PREFIX_TIMESTAMP_SEQUENCE.depth, in
 ///   the order of their timestamps, with P0 tables beside them in p0.bin, p0tables.dat or
 ///   calibration/p0.bin. They have no intrinsics.
 ///
