@@ -55,12 +55,16 @@ SimulatorOptions kinect_options(const Place& place, bool has_errors) {
   return options;
 }
 
+/// Pixels farther away are not scored.
+constexpr float farthest_m = 18;
+
 /// The pixels of all frames that a method gave a range, with their errors.
 class Tally {
  public:
   void add(const ImageF& range_m, const ImageF& confidence, const ImageF& truth_m) {
     for (Eigen::Index i = 0; i < truth_m.size(); ++i) {
-      if (std::isnan(truth_m.data()[i])) continue;
+      // Beyond the combined range of 18.7 m, no method can be right.
+      if (!(truth_m.data()[i] <= farthest_m)) continue;
       ++expected_;
       if (std::isnan(range_m.data()[i])) continue;
       pixels_.push_back({confidence.data()[i], std::abs(range_m.data()[i] - truth_m.data()[i])});

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include "joint/block_counts.hpp"
+
 #include <cmath>
 #include <random>
 #include <vector>
@@ -82,7 +84,8 @@ struct Walls {
 
 /// No pixel is certain.
 OwnCounts uncertain(Eigen::Index rows, Eigen::Index cols) {
-  return {ImageU8::Zero(rows, cols), ImageU8::Zero(rows, cols), ImageF::Ones(rows, cols)};
+  return {ImageU8::Zero(rows, cols), ImageU8::Zero(rows, cols), ImageF::Ones(rows, cols),
+          ImageF::Ones(rows, cols)};
 }
 
 struct SparseCase {
@@ -168,8 +171,48 @@ TEST(OwnCounts, LeaveAPixelOpenThatContradictsItsNeighbours) {
   EXPECT_EQ(own.count(4, 2), static_cast<int>(12.0 / walls.limits.wavelength_m()));
 }
 
+/// The wrap counts that pixels have by themselves and by their blocks.
+OwnCounts with_block_counts(const Walls& walls, const ImageU8& mixed) {
+  OwnCounts own = walls.own();
+  const NoisyFrame blocks = halve(walls.frame, walls.sigma);
+  const OwnCounts of_blocks =
+      find_own_counts(blocks.frame, walls.limits, blocks.sigma, walls.no_errors_m(), {},
+                      ImageU8::Zero(blocks.frame.rows(), blocks.frame.cols()));
+  take_block_counts(walls.frame, walls.limits, walls.sigma, walls.no_errors_m(), {}, mixed, blocks,
+                    of_blocks, own);
+  return own;
+}
+
+TEST(BlockCounts, MakeNoisyPixelsCertainAndRight) {
+  const Walls walls(kinect_hz, 61, 81, 0.08, 9);
+  const OwnCounts alone = walls.own();
+  const OwnCounts own = with_block_counts(walls, walls.mixed);
+  const Eigen::Index before = (alone.certain != 0).count();
+  const Eigen::Index after = (own.certain != 0).count();
+  EXPECT_GT(before, 400);
+  EXPECT_GT(after, before + 400);
+  int wrong = 0;
+  for (Eigen::Index at = 0; at < own.count.size(); ++at) {
+    if (own.certain.data()[at] == 0) continue;
+    EXPECT_TRUE(walls.has_return(at));
+    EXPECT_LE(own.odds_against.data()[at], 1e-8F);
+    wrong += own.count.data()[at] != walls.true_count.data()[at] ? 1 : 0;
+    if (alone.certain.data()[at] != 0) {
+      EXPECT_EQ(own.odds_against.data()[at], alone.odds_against.data()[at]) << "stays as it is";
+    }
+  }
+  EXPECT_LE(wrong, 3);
+}
+
+TEST(BlockCounts, LeaveMixedPixelsOpen) {
+  const Walls walls(kinect_hz, 40, 40, 0.08, 10);
+  const OwnCounts alone = walls.own();
+  const OwnCounts own = with_block_counts(walls, ImageU8::Ones(40, 40));
+  EXPECT_TRUE((own.certain == alone.certain).all());
+}
+
 TEST(SparsePropagation, FindsTheRightCountsBesideCertainPixels) {
-  const Walls walls(kinect_hz, 60, 80, 0.25, 6);
+  const Walls walls(kinect_hz, 60, 80, 0.08, 6);
   const OwnCounts own = walls.own();
   const WrapCountBeliefs beliefs = walls.sparse_beliefs(own);
   int wrong = 0;

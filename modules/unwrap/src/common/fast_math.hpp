@@ -41,6 +41,14 @@ namespace tofmap {
   return exponent + 0.5F + 2.88539008F * y * (1 + square * (0.333333333F + 0.2F * square));
 }
 
+/// Replaces `number` by `other` on a condition, in loops. GCC would compile a conditional
+/// expression into masked loads and stores, which some processors execute slowly.
+[[gnu::always_inline]] inline void replace_if(bool condition, float other, float& number) {
+  const std::uint32_t mask = condition ? 0xffffffffU : 0U;
+  const auto before = std::bit_cast<std::uint32_t>(number);
+  number = std::bit_cast<float>((std::bit_cast<std::uint32_t>(other) & mask) | (before & ~mask));
+}
+
 /// The smallest of `values`, whose number must be a power of two. Overwrites `values`.
 template <std::size_t lanes>
 [[gnu::always_inline]] inline float least_of(std::array<float, lanes>& values) {

@@ -86,8 +86,8 @@ TOFMAP_VECTOR_CLONES void fuse(int pixels, const Measured& measured_, float firs
     // Noise can make the range of a very near surface negative.
     const float fuses = fused_m > 0 ? agrees_surely : 0.0F;
     const bool is_fused = (is_present ? fuses : 0.0F) > 0;
-    estimate.range_m[i] = is_fused ? fused_m : range_m;
-    estimate.variance_m2[i] = is_fused ? fused_m2 : own_m2;
+    replace_if(is_fused, fused_m, estimate.range_m[i]);
+    replace_if(is_fused, fused_m2, estimate.variance_m2[i]);
   }
 }
 

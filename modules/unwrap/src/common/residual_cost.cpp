@@ -55,8 +55,8 @@ TOFMAP_VECTOR_CLONES void take_nearer(int pixels, const float* phase_a, const fl
     const float residual = to_half_cycle(difference == difference ? difference : 0.0F);
     const float size = residual < 0 ? -residual : residual;
     const bool is_nearer = phase_a[i] <= farthest && size < least[i];
-    least[i] = is_nearer ? size : least[i];
-    best[i] = is_nearer ? count : best[i];
+    replace_if(is_nearer, size, least[i]);
+    replace_if(is_nearer, count, best[i]);
   }
 }
 

@@ -133,8 +133,8 @@ TOFMAP_VECTOR_CLONES void take_nearer(int count, const float* phase_a, const flo
     const float size = shifted < 0 ? -shifted : shifted;
     const float before = least[i] < 0 ? -least[i] : least[i];
     const bool is_nearer = size < before && phase_a[i] <= step.farthest_cycles;
-    least[i] = is_nearer ? shifted : least[i];
-    best[i] = is_nearer ? step.count : best[i];
+    replace_if(is_nearer, shifted, least[i]);
+    replace_if(is_nearer, step.count, best[i]);
   }
 }
 

@@ -183,12 +183,14 @@ TOFMAP_VECTOR_CLONES void take_better(int count, const float* least_cycles, cons
   const MutableBPixels best = best_;
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
-    const float size = same[i] > 0 ? least_cycles[i] : 2.0F;
-    const bool is_better = size < best_cycles[i];
-    best_cycles[i] = is_better ? size : best_cycles[i];
-    best.phase[i] = is_better ? from.phase[i] : best.phase[i];
-    best.amplitude[i] = is_better ? from.amplitude[i] : best.amplitude[i];
-    best.sigma_cycles[i] = is_better ? from.sigma_cycles[i] : best.sigma_cycles[i];
+    const float least = least_cycles[i];
+    const float before = best_cycles[i];
+    const float size = same[i] > 0 ? least : 2.0F;
+    const bool is_better = size < before;
+    best_cycles[i] = is_better ? size : before;
+    replace_if(is_better, from.phase[i], best.phase[i]);
+    replace_if(is_better, from.amplitude[i], best.amplitude[i]);
+    replace_if(is_better, from.sigma_cycles[i], best.sigma_cycles[i]);
   }
 }
 
@@ -239,9 +241,9 @@ TOFMAP_VECTOR_CLONES void store(int count, const float* flags, const BPixels& fr
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
     const bool seen = flags[i] > 0;
-    to.phase[i] = seen ? from.phase[i] : to.phase[i];
-    to.amplitude[i] = seen ? from.amplitude[i] : to.amplitude[i];
-    to.sigma_cycles[i] = seen ? from.sigma_cycles[i] : to.sigma_cycles[i];
+    replace_if(seen, from.phase[i], to.phase[i]);
+    replace_if(seen, from.amplitude[i], to.amplitude[i]);
+    replace_if(seen, from.sigma_cycles[i], to.sigma_cycles[i]);
   }
 }
 

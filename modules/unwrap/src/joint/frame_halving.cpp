@@ -52,8 +52,12 @@ TOFMAP_VECTOR_CLONES void add_row(int pixels, const float* phase, const float* a
   }
 }
 
-/// The mean phasors of blocks, from the sums of pairs of columns. `count` is the number of pixels
-/// of a block.
+/// Adds pairs of columns, in place.
+void add_columns(std::vector<float>& sums) {
+  for (std::size_t i = 0; i < sums.size() / 2; ++i) sums[i] = sums[2 * i] + sums[2 * i + 1];
+}
+
+/// The mean phasors of blocks, from their sums. `count` is the number of pixels of a block.
 TOFMAP_VECTOR_CLONES void write_blocks(int blocks, const ColumnSums& sums_, const float* count,
                                        float* phase, float* amplitude, float* sigma_cycles) {
   const float* real = sums_.real.data();
@@ -62,19 +66,19 @@ TOFMAP_VECTOR_CLONES void write_blocks(int blocks, const ColumnSums& sums_, cons
   constexpr float least_length = 1e-6F;
 #pragma GCC ivdep
   for (int i = 0; i < blocks; ++i) {
-    const float a = real[2 * i] + real[2 * i + 1];
-    const float b = imaginary[2 * i] + imaginary[2 * i + 1];
-    const float variance = noise_variance[2 * i] + noise_variance[2 * i + 1];
+    const float a = real[i];
+    const float b = imaginary[i];
     const float length = std::sqrt(a * a + b * b);
     const float longer = length > least_length ? length : least_length;
     const float angle = angle_in_cycles(a, b);
-    const float pixels = count[i];
-    const bool is_present = pixels > 0;
     const float known = angle == angle ? angle : 0.0F;  // phasors that cancel have no phase
-    phase[i] = is_present ? known : nan;
-    amplitude[i] = is_present ? longer / pixels : 0.0F;
+    const float mean = longer / count[i];
     // Phase noise of the sum: its noise relative to its length.
-    sigma_cycles[i] = is_present ? std::sqrt(variance) / longer : nan;
+    const float noise = std::sqrt(noise_variance[i]) / longer;
+    const bool is_present = count[i] > 0;
+    phase[i] = is_present ? known : nan;
+    amplitude[i] = is_present ? mean : 0.0F;
+    sigma_cycles[i] = is_present ? noise : nan;
   }
 }
 
@@ -124,6 +128,9 @@ NoisyFrame halve(const Frame& frame, const PhaseSigma& sigma) {
         add_row(static_cast<int>(frame.cols()), frame.phases[f].data() + at,
                 frame.has_amplitude() ? frame.amplitudes[f].data() + at : ones.data(),
                 sigma.cycles[f].data() + at, present[k].data(), sums);
+      }
+      for (std::vector<float>* column : {&sums.real, &sums.imaginary, &sums.noise_variance}) {
+        add_columns(*column);
       }
       const Eigen::Index to = row * cols;
       write_blocks(static_cast<int>(cols), sums, count.data(), out.frame.phases[f].data() + to,

@@ -213,19 +213,22 @@ void for_each_watched(std::size_t pixels, std::size_t stride, const Visit& visit
 
 void SparsePropagation::list_pixels(const Frame& frame, const OwnCounts& own) {
   const ImageF& phase = frame.phases[0];
-  const auto size = static_cast<int>(phase.size());
+  const auto cols = static_cast<int>(phase.cols());
   raster_.clear();
-  place_.resize(static_cast<std::size_t>(size));
-  for (int i = 0; i < size; ++i) {
-    int place = is_certain;
-    if (own.certain.data()[i] == 0) {
+  column_.clear();
+  place_.resize(static_cast<std::size_t>(phase.size()));
+  int at = 0;
+  for (Eigen::Index v = 0; v < phase.rows(); ++v) {
+    for (int u = 0; u < cols; ++u, ++at) {
+      int& place = place_[static_cast<std::size_t>(at)];
+      place = is_certain;
+      if (own.certain.data()[at] != 0) continue;
       place = no_return;
-      if (!std::isnan(phase.data()[i])) {
-        place = static_cast<int>(raster_.size());
-        raster_.push_back(i);
-      }
+      if (std::isnan(phase.data()[at])) continue;
+      place = static_cast<int>(raster_.size());
+      raster_.push_back(at);
+      column_.push_back(u);
     }
-    place_[static_cast<std::size_t>(i)] = place;
   }
 }
 
@@ -289,32 +292,22 @@ void SparsePropagation::fill_pairwise(const Frame& frame, const UnwrapLimits& li
   const EdgeScale scale(limits, prior);
   const std::size_t padded = pixels_.amplitude.size();
   const auto cols = static_cast<int>(frame.cols());
-  const auto rows = static_cast<int>(frame.rows());
+  const auto size = static_cast<int>(frame.phases[0].size());
   const auto wavelength_m = static_cast<float>(limits.wavelength_m());
   std::vector<float> same(padded);
   std::vector<float> next(padded);
   for (const Direction direction : {left, above, right, below}) {
-    const auto has_neighbour = [&](int at) {
-      switch (direction) {
-        case left:
-          return at % cols > 0;
-        case above:
-          return at >= cols;
-        case right:
-          return at % cols + 1 < cols;
-        case below:
-          return at / cols + 1 < rows;
-      }
-      return false;
-    };
-    const int step = (direction == left || direction == right ? 1 : cols) *
-                     (direction == left || direction == above ? -1 : 1);
+    const bool leads = direction == right || direction == below;
+    const bool is_across = direction == left || direction == right;
+    const int step = (is_across ? 1 : cols) * (leads ? 1 : -1);
+    // The column that has no neighbour in this direction.
+    const int end_col = leads ? cols - 1 : 0;
     std::vector<int>& neighbour = neighbour_[direction];
     neighbour.assign(raster_.size(), no_return);
     neighbours_.assign(padded, 1, 0);
     for (std::size_t i = 0; i < raster_.size(); ++i) {
-      if (!has_neighbour(raster_[i])) continue;
       const int at = raster_[i] + step;
+      if (at < 0 || at >= size || (is_across && column_[i] == end_col)) continue;
       neighbour[i] = place_[static_cast<std::size_t>(at)];
       if (neighbour[i] == no_return) continue;
       const float sigma_m = sigma.cycles[0].data()[at] * wavelength_m;
@@ -324,7 +317,6 @@ void SparsePropagation::fill_pairwise(const Frame& frame, const UnwrapLimits& li
     }
     const PixelsAt own_pixels{pixels_, 0};
     const PixelsAt other_pixels{neighbours_, 0};
-    const bool leads = direction == right || direction == below;
     if (padded > 0) {
       fill_pairwise_factors(leads ? own_pixels : other_pixels, leads ? other_pixels : own_pixels,
                             static_cast<int>(padded), scale, same.data(), next.data());

@@ -3,6 +3,8 @@
 
 #include "tofmap/unwrap/joint/wrap_count_estimate.hpp"
 
+#include "joint/block_counts.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -18,20 +20,9 @@ constexpr float loud_cycles = 0.08F;
 /// A coarser pyramid level is worth its time if more than this share of the pixels is that noisy.
 constexpr float loud_share = 0.02F;
 
-/// Whether a coarser pyramid level is worth its time for a frame: whether a share of its returns
-/// are so noisy and, by `is_open`, still without a certain wrap count.
-template <class IsOpen>
-bool is_loud(const ImageF& sigma_cycles, const IsOpen& is_open) {
-  Eigen::Index returns = 0;
-  Eigen::Index loud = 0;
-  for (Eigen::Index i = 0; i < sigma_cycles.size(); ++i) {
-    const float sigma = sigma_cycles.data()[i];
-    if (std::isnan(sigma)) continue;
-    ++returns;
-    if (sigma > loud_cycles && is_open(i)) ++loud;
-  }
-  return static_cast<float>(loud) > loud_share * static_cast<float>(returns);
-}
+/// The same if more than this share of the pixels has no certain wrap count: finding them costs as
+/// much as a coarser level.
+constexpr float open_share = 0.1F;
 
 /// The wrap count that brings a pixel with this phase nearest to the range `block_cycles` of its
 /// block.
@@ -99,26 +90,48 @@ void take_coarse_counts(const Frame& pixels, const NoisyFrame& blocks, int block
 
 }  // namespace
 
-void WrapCountEstimator::Scale::assign(const Frame& frame, const UnwrapLimits& limits,
-                                       const PhaseSigma& sigma,
-                                       const std::vector<double>& residual_sigma_m,
-                                       const WrapCountPrior& prior) {
+void WrapCountEstimator::Scale::begin(const Frame& frame, const UnwrapLimits& limits,
+                                      const PhaseSigma& sigma,
+                                      const std::vector<double>& residual_sigma_m,
+                                      const WrapCountPrior& prior) {
   // With two frequencies alone, hardly a pixel is certain by itself.
   is_sparse = frame.frequencies() > 2;
   if (!is_sparse) {
     model.assign(frame, limits, sigma, residual_sigma_m, prior);
     return;
   }
-  const ImageU8 mixed = prior.mixed_pixels && frame.has_amplitude()
-                            ? mixed_pixels(frame.amplitudes[0], sigma.cycles[0])
-                            : ImageU8::Zero(frame.rows(), frame.cols());
+  mixed = prior.mixed_pixels && frame.has_amplitude()
+              ? mixed_pixels(frame.amplitudes[0], sigma.cycles[0])
+              : ImageU8::Zero(frame.rows(), frame.cols());
   own = find_own_counts(frame, limits, sigma, residual_sigma_m, prior, mixed);
-  sparse.assign(frame, limits, sigma, residual_sigma_m, prior, own, mixed);
 }
 
-bool WrapCountEstimator::Scale::needs_coarser(const PhaseSigma& sigma) const {
-  return is_loud(sigma.cycles[0],
-                 [&](Eigen::Index i) { return !is_sparse || own.certain.data()[i] == 0; });
+void WrapCountEstimator::Scale::look_for_noise(const PhaseSigma& sigma) {
+  const ImageF& sigma_cycles = sigma.cycles[0];
+  Eigen::Index returns = 0;
+  Eigen::Index open = 0;
+  Eigen::Index loud = 0;
+  for (Eigen::Index i = 0; i < sigma_cycles.size(); ++i) {
+    const float noise = sigma_cycles.data()[i];
+    if (std::isnan(noise)) continue;
+    ++returns;
+    if (is_sparse && own.certain.data()[i] != 0) continue;
+    ++open;
+    if (noise > loud_cycles) ++loud;
+  }
+  const auto is_more = [&](Eigen::Index pixels, float share) {
+    return static_cast<float>(pixels) > share * static_cast<float>(returns);
+  };
+  is_loud = is_more(loud, loud_share);
+  needs_coarser = is_loud || (is_sparse && is_more(open, open_share));
+}
+
+void WrapCountEstimator::Scale::build(const Frame& frame, const UnwrapLimits& limits,
+                                      const PhaseSigma& sigma,
+                                      const std::vector<double>& residual_sigma_m,
+                                      const WrapCountPrior& prior, const Scale* coarser) {
+  if (is_sparse) sparse.assign(frame, limits, sigma, residual_sigma_m, prior, own, mixed);
+  if (coarser != nullptr && is_loud) take_prior(frame, sigma, limits.count, *coarser);
 }
 
 /// Multiplies the unary factors of noisy pixels by the coarse-to-fine prior of their blocks, which
@@ -164,24 +177,35 @@ WrapCountBeliefs WrapCountEstimator::estimate(const Frame& frame, const UnwrapLi
   const auto sigma_at = [&](std::size_t s) -> const PhaseSigma& {
     return s == 0 ? sigma : scales_[s].blocks.sigma;
   };
+  const auto prior_at = [&](std::size_t s) {
+    WrapCountPrior prior = options.prior;
+    prior.slope_m *= static_cast<double>(1U << s);
+    return prior;
+  };
   std::size_t count = 0;
   while (true) {
-    WrapCountPrior prior = options.prior;
-    prior.slope_m *= static_cast<double>(1U << count);
-    scales_[count].assign(frame_at(count), limits, sigma_at(count), residual_sigma_m, prior);
+    scales_[count].begin(frame_at(count), limits, sigma_at(count), residual_sigma_m,
+                         prior_at(count));
+    scales_[count].look_for_noise(sigma_at(count));
     ++count;
-    if (count == scales_.size() || !scales_[count - 1].needs_coarser(sigma_at(count - 1))) break;
+    if (count == scales_.size() || !scales_[count - 1].needs_coarser) break;
     scales_[count].blocks = halve(frame_at(count - 1), sigma_at(count - 1));
   }
   for (std::size_t s = count; s-- > 0;) {
-    if (s + 1 < count) {
-      scales_[s].take_prior(frame_at(s), sigma_at(s), limits.count, scales_[s + 1]);
+    Scale& scale = scales_[s];
+    const Scale* coarser = s + 1 < count ? &scales_[s + 1] : nullptr;
+    if (coarser != nullptr && scale.is_sparse) {
+      take_block_counts(frame_at(s), limits, sigma_at(s), residual_sigma_m, prior_at(s),
+                        scale.mixed, coarser->blocks, coarser->own, scale.own);
     }
-    scales_[s].run(options.iterations);
+    // Beliefs of blocks serve only the noisy pixels of the level below.
+    if (s > 0 && !scales_[s - 1].is_loud) continue;
+    scale.build(frame_at(s), limits, sigma_at(s), residual_sigma_m, prior_at(s), coarser);
+    scale.run(options.iterations);
   }
 
   WrapCountBeliefs beliefs = std::move(scales_[0].beliefs);
-  for (std::size_t s = 1; s < count; ++s) {
+  for (std::size_t s = 1; s < count && scales_[s - 1].is_loud; ++s) {
     const Scale& coarse = scales_[s];
     take_coarse_counts(frame, coarse.blocks, 1 << s, coarse.beliefs, limits.count, beliefs);
     beliefs.iterations += coarse.beliefs.iterations;

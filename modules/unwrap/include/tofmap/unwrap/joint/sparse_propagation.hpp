@@ -56,6 +56,7 @@ class SparsePropagation {
   int counts_ = 0;
   std::size_t stride_ = 0;            ///< of wrap counts: whole vectors
   std::vector<int> raster_;           ///< of each uncertain pixel
+  std::vector<int> column_;           ///< of each uncertain pixel
   std::vector<int> place_;            ///< of each pixel of the frame in raster_; none, certain
   PixelArrays pixels_;                ///< the uncertain pixels
   PixelArrays neighbours_;            ///< of all of them in one direction

@@ -47,15 +47,24 @@ class WrapCountEstimator {
     NoisyFrame blocks;  ///< empty at the level of pixels
     /// Whether only uncertain pixels are in the model, as with three or more frequencies.
     bool is_sparse = false;
+    bool is_loud = false;        ///< many pixels need the wrap counts of a coarser level
+    bool needs_coarser = false;  ///< is_loud, or a coarser level saves time
     OwnCounts own;
+    ImageU8 mixed;
     SparsePropagation sparse;
     WrapCountModel model;
     WrapCountPropagation propagation;
     WrapCountBeliefs beliefs;
 
-    void assign(const Frame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
-                const std::vector<double>& residual_sigma_m, const WrapCountPrior& prior);
-    bool needs_coarser(const PhaseSigma& sigma) const;
+    /// Finds what the level tells by itself.
+    void begin(const Frame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
+               const std::vector<double>& residual_sigma_m, const WrapCountPrior& prior);
+    /// Decides whether a coarser level is worth its time.
+    void look_for_noise(const PhaseSigma& sigma);
+    /// Completes the model by the beliefs of the next coarser level, if there is one.
+    void build(const Frame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
+               const std::vector<double>& residual_sigma_m, const WrapCountPrior& prior,
+               const Scale* coarser);
     void take_prior(const Frame& frame, const PhaseSigma& sigma, int counts, const Scale& coarser);
     void run(int iterations);
   };
