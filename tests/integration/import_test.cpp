@@ -94,7 +94,7 @@ TEST_F(Kinect2Import, OfASimulatedRecordingIsUnwrappedToTheTrueRanges) {
   ASSERT_EQ(finished.status, 0) << finished.err;
   EXPECT_THAT(finished.out, AllOf(HasSubstr("3 of 3 frames"), HasSubstr("saturated: "),
                                   Not(HasSubstr("warning"))));
-  EXPECT_EQ(finished.err, "");
+  EXPECT_THAT(finished.err, Not(HasSubstr("warning")));
   const SequenceReader sequence(out_);
   EXPECT_EQ(sequence.sensor().modulation.frequencies_hz, (std::vector<double>{80e6, 16e6, 120e6}));
   EXPECT_EQ(sequence.ground_truth().size(), 3U);

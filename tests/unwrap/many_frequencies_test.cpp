@@ -111,6 +111,24 @@ TEST(ManyFrequencies, AreBetterThanTwoOfThem) {
   EXPECT_LT(of_three, of_two);
 }
 
+TEST(ManyFrequencies, ShareTheMotionOfTheirExposures) {
+  // Multipath light bends the residuals of 16 MHz most, which by themselves look like motion.
+  SimulatorOptions options = small_camera({80e6, 16e6, 120e6});
+  options.multipath_rays = 8;
+  options.offsets_m = {0.02, -0.03, 0.01};
+  const Simulator simulator(make_scene("corridor"), options);
+  Unwrapper unwrapper(simulator.sensor(), {});
+  for (int index = 0; index < 3; ++index) {
+    const UnwrapResult result = unwrapper.unwrap(simulator.simulate(index).frame);
+    const ExposureMotion& of_second = result.errors[1].motion;
+    const ExposureMotion& of_third = result.errors[2].motion;
+    ASSERT_GE(result.errors[2].support, 0.8);
+    // Exposures follow each other at equal distances. Three standard deviations of what remains.
+    EXPECT_LT((of_second.translation_m - 0.5 * of_third.translation_m).norm(), 3 * 0.002);
+    EXPECT_LT((of_second.rotation_rad - 0.5 * of_third.rotation_rad).norm(), 3 * 0.001);
+  }
+}
+
 TEST(OneFrequency, GivesCountsRelativeToTheNearestPixelOfEachRegion) {
   // A wall from 6 to 9 m, which the wavelength of 5 m wraps once within the image.
   const SensorModel sensor = sensor_with({30e6});

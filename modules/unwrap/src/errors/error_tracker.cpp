@@ -172,7 +172,7 @@ ErrorTracker::ErrorTracker(const PairLimits& limits, const CameraModel& camera)
 }
 
 ErrorTracker::Tracked ErrorTracker::track(const Frame& frame, const PhaseSigma& sigma,
-                                          std::size_t b) {
+                                          std::size_t b, const std::optional<Expected>& expected) {
   const PixelRays no_rays;
   const ImageF no_amplitude;
   const bool has_amplitude = frame.has_amplitude();
@@ -188,7 +188,7 @@ ErrorTracker::Tracked ErrorTracker::track(const Frame& frame, const PhaseSigma& 
   tracked.errors.camera = camera_errors_;
   const SurfaceSamples samples = gather_samples(pair, geometry, residual_step_m(limits_));
   if (samples.size() >= least_samples) {
-    tracked.errors = explain(samples, pair, geometry);
+    tracked.errors = explain(samples, pair, geometry, expected);
   } else if (camera_errors_.frames == 0) {
     tracked.errors.camera.systematic_m = unknown_systematic_m;
   }
@@ -202,31 +202,45 @@ ErrorTracker::Tracked ErrorTracker::track(const Frame& frame, const PhaseSigma& 
   return tracked;
 }
 
-/// Estimates the motion and the errors of a frame, and updates the camera's errors with them.
-FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposurePair& pair,
-                                  const PairGeometry& geometry) {
+/// Fits the motion of a frame, unless it is expected. `is_late` says whether exposures were late so
+/// far, then whether they are.
+ResidualFit ErrorTracker::fit_motion(const SurfaceSamples& samples, const ExposurePair& pair,
+                                     const PairGeometry& geometry,
+                                     const std::optional<Expected>& expected, bool& is_late) const {
   const bool is_first = camera_errors_.frames == 0;
-  bool is_late = camera_errors_.late_frames > 0;  // cameras tend to stay late
+  if (expected && geometry.knows_camera()) {
+    ResidualFit fit(samples, pair, geometry, camera_errors_, expected_motion(expected->motion));
+    fit.find_motion(expected->motion, is_first);
+    is_late = expected->is_late;
+    return fit;
+  }
   ResidualFit fit(samples, pair, geometry, camera_errors_, prompt_exposures);
   fit.find_motion({}, is_first);
-  if (geometry.knows_camera() && (is_late || may_have_moved(fit))) {
-    ResidualFit moved(samples, pair, geometry, camera_errors_, late_exposures);
-    ResidualFit going_on = moved;
-    const auto apparent = apparent_rotation(pair, camera_);
-    if (apparent) {
-      fit.expect(*apparent);
-      moved.expect(*apparent);
-    }
-    moved.find_motion(turned(apparent), true);
-    if (is_late) {
-      // Cameras tend to continue their motion. If a camera turns towards what it passes, the image
-      // hardly moves and alignment sees no motion; alignment may also confuse similar textures.
-      going_on.find_motion(last_.motion, true);
-      if (explains_better_without_apparent(going_on, moved)) moved = going_on;
-    }
-    is_late = is_late ? !explains_better(fit, moved) : explains_better(moved, fit);
-    if (is_late) fit = moved;
+  if (!geometry.knows_camera() || (!is_late && !may_have_moved(fit))) return fit;
+  ResidualFit moved(samples, pair, geometry, camera_errors_, late_exposures);
+  ResidualFit going_on = moved;
+  const auto apparent = apparent_rotation(pair, camera_);
+  if (apparent) {
+    fit.expect(*apparent);
+    moved.expect(*apparent);
   }
+  moved.find_motion(turned(apparent), true);
+  if (is_late) {
+    // Cameras tend to continue their motion. If a camera turns towards what it passes, the image
+    // hardly moves and alignment sees no motion; alignment may also confuse similar textures.
+    going_on.find_motion(last_.motion, true);
+    if (explains_better_without_apparent(going_on, moved)) moved = going_on;
+  }
+  is_late = is_late ? !explains_better(fit, moved) : explains_better(moved, fit);
+  return is_late ? moved : fit;
+}
+
+/// Estimates the motion and the errors of a frame, and updates the camera's errors with them.
+FrameErrors ErrorTracker::explain(const SurfaceSamples& samples, const ExposurePair& pair,
+                                  const PairGeometry& geometry,
+                                  const std::optional<Expected>& expected) {
+  bool is_late = camera_errors_.late_frames > 0;  // cameras tend to stay late
+  ResidualFit fit = fit_motion(samples, pair, geometry, expected, is_late);
 
   // Errors for this frame: its own samples in addition to the earlier frames. While few frames are
   // known, this is repeated, since better errors let more samples find their right wrap counts.

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -95,6 +96,10 @@ MeasuredFrame measured_alone(const Frame& frame, double saturation_amplitude) {
   return out;
 }
 
+/// Share of samples that are as predicted (FrameErrors::support) from which on the motion that one
+/// frequency tells is that of the others, too.
+constexpr double telling_support = 0.8;
+
 /// Replaces the images of frequency `b` by those matched to the first frequency, and fills in the
 /// estimated errors of camera and frame.
 void take_matched(ErrorTracker::Tracked tracked, const PairLimits& limits, std::size_t b,
@@ -112,6 +117,20 @@ void take_matched(ErrorTracker::Tracked tracked, const PairLimits& limits, std::
   frame.errors[b] = std::move(tracked.errors);
 }
 
+/// Times of exposures relative to that of frequency `leader`, from that of the first one on.
+/// Without known times, the frequencies are taken to be exposed one after another. Empty if the
+/// first one and the leader are exposed at the same time.
+std::vector<double> relative_times(const Modulation& modulation, std::size_t leader) {
+  const std::vector<double>& offsets_s = modulation.exposure_offsets_s;
+  std::vector<double> times;
+  for (std::size_t f = 0; f < modulation.count(); ++f) {
+    times.push_back(offsets_s.empty() ? static_cast<double>(f) : offsets_s[f] - offsets_s[0]);
+  }
+  if (times[leader] == 0) return {};
+  for (const double leader_s = times[leader]; double& time : times) time /= leader_s;
+  return times;
+}
+
 }  // namespace
 
 FrameMeasurer::FrameMeasurer(const SensorModel& sensor, const UnwrapOptions& options)
@@ -124,6 +143,9 @@ FrameMeasurer::FrameMeasurer(const SensorModel& sensor, const UnwrapOptions& opt
     trackers_.emplace_back(limits_.pair(0, f),
                            options.correct_exposure ? sensor.camera : CameraModel());
   }
+  order_ = others_by_wavelength(limits_);
+  std::ranges::reverse(order_);
+  relative_times_ = relative_times(sensor.modulation, order_.empty() ? 0 : order_.front());
 }
 
 void FrameMeasurer::look_ahead(std::span<const Frame> frames) {
@@ -135,9 +157,21 @@ void FrameMeasurer::look_ahead(std::span<const Frame> frames) {
 MeasuredFrame FrameMeasurer::measure(const Frame& frame) {
   check(frame, limits_.frequencies());
   MeasuredFrame measured = measured_alone(frame, saturation_amplitude_);
-  for (std::size_t b = 1; b <= trackers_.size(); ++b) {
-    take_matched(trackers_[b - 1].track(measured.returns, measured.sigma, b), limits_.pair(0, b), b,
-                 measured);
+  std::optional<ErrorTracker::Expected> led;  // the motion of the leader
+  for (const std::size_t b : order_) {
+    ErrorTracker& tracker = trackers_[b - 1];
+    std::optional<ErrorTracker::Expected> expected;
+    if (led) {
+      const double share = relative_times_[b];
+      expected = {{share * led->motion.translation_m, share * led->motion.rotation_rad},
+                  led->is_late};
+    }
+    take_matched(tracker.track(measured.returns, measured.sigma, b, expected), limits_.pair(0, b),
+                 b, measured);
+    const FrameErrors& errors = measured.errors[b];
+    if (b == order_.front() && !relative_times_.empty() && errors.support >= telling_support) {
+      led = {errors.motion, tracker.is_late()};
+    }
   }
   return measured;
 }

@@ -170,9 +170,10 @@ void ResidualFit::add_motion_prior(MotionMatrix& information, MotionVector& grad
   MotionVector precision;
   precision << Eigen::Vector3d::Constant(1 / (prior_.translation_m * prior_.translation_m)),
       Eigen::Vector3d::Constant(1 / (prior_.rotation_rad * prior_.rotation_rad));
-  const MotionVector so_far = motion_so_far();
+  MotionVector mean;
+  mean << prior_.mean.translation_m, prior_.mean.rotation_rad;
   information.diagonal() += precision;
-  gradient -= precision.cwiseProduct(so_far);
+  gradient -= precision.cwiseProduct(motion_so_far() - mean);
   if (!apparent_) return;
   const ApparentEquations apparent = apparent_equations();
   information += apparent.by_motion.transpose() * apparent.information * apparent.by_motion;
@@ -304,8 +305,10 @@ void ResidualFit::add_camera_equations(ErrorTracker::TermsMatrix& information,
 }
 
 double ResidualFit::prior_cost() const {
-  return motion_.translation_m.squaredNorm() / (2 * prior_.translation_m * prior_.translation_m) +
-         motion_.rotation_rad.squaredNorm() / (2 * prior_.rotation_rad * prior_.rotation_rad);
+  const double moved_m2 = (motion_.translation_m - prior_.mean.translation_m).squaredNorm();
+  const double turned_rad2 = (motion_.rotation_rad - prior_.mean.rotation_rad).squaredNorm();
+  return moved_m2 / (2 * prior_.translation_m * prior_.translation_m) +
+         turned_rad2 / (2 * prior_.rotation_rad * prior_.rotation_rad);
 }
 
 double ResidualFit::apparent_cost() const {

@@ -15,17 +15,22 @@
 
 namespace tofmap {
 
-/// Standard deviations of the camera's motion between two exposures.
+/// Mean and standard deviations of the camera's motion between two exposures.
 struct MotionPrior {
   double translation_m;
   double rotation_rad;
+  ExposureMotion mean = {};
 };
 
 /// For a hand-held camera whose exposures follow each other immediately.
-inline constexpr MotionPrior prompt_exposures{0.01, 0.006};
+inline const MotionPrior prompt_exposures{0.01, 0.006};
 
 /// For a hand-held camera whose exposures are up to a frame period apart.
-inline constexpr MotionPrior late_exposures{0.06, 0.06};
+inline const MotionPrior late_exposures{0.06, 0.06};
+
+/// For an exposure between others whose motion is known: cameras move almost uniformly within a
+/// frame.
+inline MotionPrior expected_motion(const ExposureMotion& mean) { return {0.002, 0.001, mean}; }
 
 /// Explains the inter-frequency residuals of samples by the motion between the exposures, by the
 /// known errors of the camera, and by a constant of this frame. The fit is iteratively reweighted

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <iosfwd>
+#include <optional>
 
 #include <Eigen/Core>
 
@@ -57,11 +58,22 @@ class ErrorTracker {
     MatchedExposure b;
   };
 
+  /// The motion between A and B as another frequency tells it.
+  struct Expected {
+    ExposureMotion motion;
+    bool is_late = false;  ///< whether exposures are late, so that the B of the frame before helps
+  };
+
   /// Estimates the errors of the next frame, matches its B to A, and learns from the frame. Phases
   /// must be NaN at both frequencies where either has no return; `sigma` is the noise of the
   /// phases. A is the first frequency of the frame, `b` is that of B. From a frame with fewer than
-  /// 100 samples nothing is estimated or learned: its errors are those known of the camera.
-  Tracked track(const Frame& frame, const PhaseSigma& sigma, std::size_t b = 1);
+  /// 100 samples nothing is estimated or learned: its errors are those known of the camera. If the
+  /// motion is `expected`, it is not searched for.
+  Tracked track(const Frame& frame, const PhaseSigma& sigma, std::size_t b = 1,
+                const std::optional<Expected>& expected = std::nullopt);
+
+  /// Whether the exposures of the last frame that was learned from were late.
+  bool is_late() const { return camera_errors_.late_frames > 0; }
 
   /// The camera's errors, estimated from all frames so far.
   const CameraErrors& camera_errors() const { return camera_errors_; }
@@ -91,8 +103,11 @@ class ErrorTracker {
     ExposureMotion motion;
   };
 
+  ResidualFit fit_motion(const SurfaceSamples& samples, const ExposurePair& pair,
+                         const PairGeometry& geometry, const std::optional<Expected>& expected,
+                         bool& is_late) const;
   FrameErrors explain(const SurfaceSamples& samples, const ExposurePair& pair,
-                      const PairGeometry& geometry);
+                      const PairGeometry& geometry, const std::optional<Expected>& expected);
   void learn(const TermsMatrix& information, const Terms& gradient, const ResidualFit& fit);
   void take_smaller_offset(const ResidualFit& fit);
   void match_moved(const SurfaceSamples& samples, const ExposurePair& pair,

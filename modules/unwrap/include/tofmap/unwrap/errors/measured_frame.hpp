@@ -76,6 +76,12 @@ class FrameMeasurer {
   double saturation_amplitude_;
   /// A tracker for each frequency but the first; none if systematic errors are not estimated.
   std::vector<ErrorTracker> trackers_;
+  /// The frequencies of the trackers by wavelength: the shortest one first, whose residual tells
+  /// the motion most precisely, and which leads the others.
+  std::vector<std::size_t> order_;
+  /// Time from the exposure of the first frequency to that of each, relative to that of the leader;
+  /// empty if the leader is exposed with the first one.
+  std::vector<double> relative_times_;
 };
 
 /// Median of the noise of the first frequency's phase over the pixels with a return, cycles; 0 if
