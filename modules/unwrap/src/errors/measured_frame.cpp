@@ -126,8 +126,9 @@ std::vector<double> relative_times(const Modulation& modulation, std::size_t lea
   for (std::size_t f = 0; f < modulation.count(); ++f) {
     times.push_back(offsets_s.empty() ? static_cast<double>(f) : offsets_s[f] - offsets_s[0]);
   }
-  if (times[leader] == 0) return {};
-  for (const double leader_s = times[leader]; double& time : times) time /= leader_s;
+  const double leader_time = times[leader];
+  if (leader_time == 0) return {};
+  for (double& time : times) time /= leader_time;
   return times;
 }
 

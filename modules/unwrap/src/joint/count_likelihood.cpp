@@ -20,6 +20,9 @@ using count_likelihood::Candidates;
 using count_likelihood::Estimate;
 using count_likelihood::Measured;
 
+/// Added to variances, so that those of phases without any noise divide.
+constexpr float no_noise_m2 = 1e-12F;
+
 TOFMAP_VECTOR_CLONES void load(int pixels, const float* phase, const float* sigma_cycles,
                                float systematic_m, Measured& out_) {
   Measured& out = out_;
@@ -46,7 +49,7 @@ TOFMAP_VECTOR_CLONES void fill_bound(int pixels, const float* first_variance_m2,
   float* bound = other.bound.data();
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
-    const float precision = squared_m2 / (first_variance_m2[i] + variance_m2[i] + 1e-12F);
+    const float precision = squared_m2 / (first_variance_m2[i] + variance_m2[i] + no_noise_m2);
     const float height = std::sqrt(precision * (0.5F / std::numbers::pi_v<float>));
     bound[i] = std::numbers::ln2_v<float> * log2_of(1 + surface_odds * height);
   }
@@ -87,7 +90,7 @@ TOFMAP_VECTOR_CLONES void add(int pixels, const Measured& first_, const Measured
   for (int i = 0; i < pixels; ++i) {
     const float cycles = phase[i] * ratio + shift - other_phase[i] + change_m[i] * per_metre;
     const float residual_m = wavelength_m * to_half_cycle(cycles);
-    const float share = 1 / (variance_m2[i] + other_m2[i] + 1e-12F);
+    const float share = 1 / (variance_m2[i] + other_m2[i] + no_noise_m2);
     const float squares = 0.5F * residual_m * residual_m * share;
     const bool is_near = squares < bound[i];
     const float gain = is_near ? variance_m2[i] * share : 0.0F;
@@ -142,7 +145,7 @@ TOFMAP_VECTOR_CLONES void multiply_likelihood(int pixels, const Measured& first_
         first.phase[at] * ratio + shift - other.phase[at] + estimate.change_m[at] * per_metre;
     const float offset = to_half_cycle(cycles);
     const float own_m2 = estimate.variance_m2[at];
-    const float share = 1 / (own_m2 + other.variance_m2[at] + 1e-12F);
+    const float share = 1 / (own_m2 + other.variance_m2[at] + no_noise_m2);
     const float precision = wavelength_m * wavelength_m * share;
     const float height = std::sqrt(precision * (0.5F / std::numbers::pi_v<float>));
     const float of_surface =
@@ -179,9 +182,7 @@ void CountLikelihood::load_frequency(std::size_t f, Eigen::Index at, Measured& o
 void CountLikelihood::go_to(Eigen::Index at, int pixels) {
   pixels_ = pixels;
   load_frequency(0, at, first_);
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    load_frequency(order_[i], at, others_[i]);
-  }
+  for (std::size_t i = 0; i < order_.size(); ++i) load_frequency(order_[i], at, others_[i]);
 }
 
 const Candidates& CountLikelihood::find_candidates() {
