@@ -3,10 +3,11 @@
 
 #include "joint/block_counts.hpp"
 
-#include "joint/count_likelihood.hpp"
+#include "joint/count_cost.hpp"
 #include "joint/edge_ratio.hpp"
 
-#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 
 #include <tofmap/core/vector_clones.hpp>
@@ -17,73 +18,43 @@ namespace {
 /// The pairwise factor's root between a pixel and its block from which on they are on one surface.
 constexpr float same_surface = 1e4F;
 
-/// A wrap count contradicts a pixel's phases if its unary factor is smaller.
-constexpr float contradicted = 0.03F;
+/// A wrap count contradicts a pixel's phases if it costs this much more than the best one, nats:
+/// its unary factor is 0.03.
+constexpr float contradicting_cost = 3.5F / evidence_exponent;
 
 /// No wrap count.
 constexpr float none = -1;
 
-/// Successive pixels of a row.
-struct Pixels {
-  const float* phase;
-  const float* sigma_cycles;
-  const float* amplitude;
-  const std::uint8_t* certain;
-  const std::uint8_t* mixed;
+/// Pixels that are uncertain, and the blocks that they are in, whose wrap counts are certain.
+struct Pairs {
+  std::size_t size = 0;
+  std::array<int, count_cost::block_pixels> pixel;  ///< places in the image, row by row
+  std::array<int, count_cost::block_pixels> block;
+  CountCost::Block phase;        ///< of the pixels
+  CountCost::Block cycles;       ///< of the blocks, with their wrap counts
+  CountCost::Block variance_m2;  ///< sum of both
+  CountCost::Block amplitude;    ///< of the pixels
+  CountCost::Block block_amplitude;
 };
 
-/// The blocks of successive pixels, once for each pixel.
-struct Blocks {
-  CountLikelihood::Block cycles;  ///< with the wrap count of the block
-  CountLikelihood::Block sigma_cycles;
-  CountLikelihood::Block amplitude;
-  CountLikelihood::Block certain;
-
-  /// Sets the block of the pixels 2 `pair` and 2 `pair` + 1.
-  void set(std::size_t pair, float its_cycles, float its_sigma_cycles, float its_amplitude,
-           bool is_certain) {
-    const auto write = [pair](CountLikelihood::Block& block, float value) {
-      block[2 * pair] = value;
-      block[2 * pair + 1] = value;
-    };
-    write(cycles, is_certain ? its_cycles : 0.0F);
-    write(sigma_cycles, is_certain ? its_sigma_cycles : 1.0F);
-    write(amplitude, is_certain ? its_amplitude : 1.0F);
-    write(certain, is_certain ? 1.0F : 0.0F);
-  }
-};
-
-/// The wrap counts that put pixels beside their blocks; `none` where there are none. The first
-/// pixel is the first one of its block.
-TOFMAP_VECTOR_CLONES void find_counts(int pixels, const Pixels& own_, const Blocks& blocks_,
-                                      const EdgeScale& scale_, float last_count, float* counts) {
-  const Pixels own = own_;
-  const Blocks& blocks = blocks_;
+/// The wrap counts that put pixels beside their blocks; `none` where there are none.
+TOFMAP_VECTOR_CLONES void find_counts(const Pairs& pairs_, const EdgeScale& scale_,
+                                      float last_count, float* counts) {
+  const Pairs& pairs = pairs_;
   const EdgeScale scale = scale_;
-  const float squared_m2 = scale.wavelength_m * scale.wavelength_m;
+  const std::size_t size = pairs.size;
 #pragma GCC ivdep
-  for (int i = 0; i < pixels; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const float phase = own.phase[i];
-    const float sigma = own.sigma_cycles[i];
-    const float amplitude = own.amplitude[i];
-    const float block_cycles = blocks.cycles[at];
-    const float block_sigma = blocks.sigma_cycles[at];
-    const float block_amplitude = blocks.amplitude[at];
-    const float certain = blocks.certain[at];
-    const float own_phase = phase == phase ? phase : 0.0F;
+  for (std::size_t i = 0; i < size; ++i) {
+    const float phase = pairs.phase[i];
+    const float cycles = pairs.cycles[i];
     // Rounded; neither is negative by more than a half.
-    const auto nearest = static_cast<std::int32_t>(block_cycles - own_phase + 0.5F);
+    const auto nearest = static_cast<std::int32_t>(cycles - phase + 0.5F);
     const auto rounded = static_cast<float>(nearest);
     const float count = rounded < last_count ? rounded : last_count;
-    // NaN without a return, which no comparison lets pass.
-    const float variance_m2 = (sigma * sigma + block_sigma * block_sigma) * squared_m2;
-    const EdgeRatio ratio(scale, variance_m2, amplitude, block_amplitude);
-    const float root = ratio(own_phase + count - block_cycles);
-    const float certainly = root * root >= same_surface ? certain : 0.0F;
-    const int settled = own.certain[i] + own.mixed[i];
-    const bool is_found = (settled == 0 ? certainly : 0.0F) > 0;
-    counts[i] = is_found ? count : none;
+    const EdgeRatio ratio(scale, pairs.variance_m2[i], pairs.amplitude[i],
+                          pairs.block_amplitude[i]);
+    const float root = ratio(phase + count - cycles);
+    counts[i] = root * root >= same_surface ? count : none;
   }
 }
 
@@ -95,48 +66,51 @@ void take_block_counts(const Frame& frame, const UnwrapLimits& limits, const Pha
                        OwnCounts& own) {
   const EdgeScale scale(limits, prior);
   const auto last_count = static_cast<float>(limits.count - 1);
-  const ImageF ones = frame.has_amplitude() ? ImageF() : ImageF::Ones(1, frame.cols()).eval();
-  CountLikelihood likelihoods(frame, limits, sigma, residual_sigma_m, prior.outlier_share);
-  CountLikelihood::Block count;
-  CountLikelihood::Block likelihood;
-  Blocks of_their_blocks;
-  constexpr Eigen::Index most_pixels = count_likelihood::block_pixels;
-  static_assert(most_pixels % 2 == 0);
-  const auto match = [&](Eigen::Index row, Eigen::Index col, int pixels) {
-    const Eigen::Index at = row * frame.cols() + col;
-    const Eigen::Index block = row / 2 * blocks.frame.cols() + col / 2;
-    const Pixels of_pixels{frame.phases[0].data() + at, sigma.cycles[0].data() + at,
-                           frame.has_amplitude() ? frame.amplitudes[0].data() + at : ones.data(),
-                           own.certain.data() + at, mixed.data() + at};
-    for (Eigen::Index pair = 0; 2 * pair < pixels; ++pair) {
-      const Eigen::Index its = block + pair;
-      of_their_blocks.set(
-          static_cast<std::size_t>(pair),
-          blocks.frame.phases[0].data()[its] + static_cast<float>(of_blocks.count.data()[its]),
-          blocks.sigma.cycles[0].data()[its],
-          frame.has_amplitude() ? blocks.frame.amplitudes[0].data()[its] : 1.0F,
-          of_blocks.certain.data()[its] != 0);
+  CountCost costs(frame, limits, sigma, residual_sigma_m, prior.outlier_share);
+  CountCost::Block count;
+  Pairs pairs;
+  const auto match = [&] {
+    find_counts(pairs, scale, last_count, count.data());
+    costs.go_to({pairs.pixel.data(), pairs.size});
+    const CountCost::Block& cost = costs.find(count);
+    for (std::size_t i = 0; i < pairs.size; ++i) {
+      if (count[i] == none) continue;
+      const int at = pairs.pixel[i];
+      if (cost[i] > own.cost.data()[at] + contradicting_cost) continue;
+      own.count.data()[at] = static_cast<std::uint8_t>(count[i]);
+      own.certain.data()[at] = 1;
+      own.odds_against.data()[at] = of_blocks.odds_against.data()[pairs.block[i]];
     }
-    count.fill(none);
-    find_counts(pixels, of_pixels, of_their_blocks, scale, last_count, count.data());
-    if (std::ranges::all_of(count, [](float n) { return n == none; })) return;
-    likelihoods.go_to(at, pixels);
-    likelihoods.find(count, likelihood);
-    for (int i = 0; i < pixels; ++i) {
-      const auto here = static_cast<std::size_t>(i);
-      if (count[here] == none) continue;
-      const float share = likelihood[here] / own.likelihood.data()[at + i];
-      if (share * share * (share * share) < contradicted) continue;
-      own.count.data()[at + i] = static_cast<std::uint8_t>(count[here]);
-      own.certain.data()[at + i] = 1;
-      own.odds_against.data()[at + i] = of_blocks.odds_against.data()[block + i / 2];
-    }
+    pairs.size = 0;
   };
-  for (Eigen::Index row = 0; row < frame.rows(); ++row) {
-    for (Eigen::Index col = 0; col < frame.cols(); col += most_pixels) {
-      match(row, col, static_cast<int>(std::min(most_pixels, frame.cols() - col)));
+  const auto squared_m2 = static_cast<float>(limits.wavelength_m() * limits.wavelength_m());
+  const auto amplitude = [](const Frame& image, int at) {
+    return image.has_amplitude() ? image.amplitudes[0].data()[at] : 1.0F;
+  };
+  const auto cols = static_cast<int>(frame.cols());
+  const auto block_cols = static_cast<int>(blocks.frame.cols());
+  for (int row = 0; row < static_cast<int>(frame.rows()); ++row) {
+    for (int col = 0; col < cols; ++col) {
+      const int at = row * cols + col;
+      const int block = row / 2 * block_cols + col / 2;
+      const float phase = frame.phases[0].data()[at];
+      const int settled = own.certain.data()[at] + mixed.data()[at];
+      if (settled != 0 || of_blocks.certain.data()[block] == 0 || std::isnan(phase)) continue;
+      const std::size_t i = pairs.size++;
+      const float own_sigma = sigma.cycles[0].data()[at];
+      const float its_sigma = blocks.sigma.cycles[0].data()[block];
+      pairs.pixel[i] = at;
+      pairs.block[i] = block;
+      pairs.phase[i] = phase;
+      pairs.cycles[i] =
+          blocks.frame.phases[0].data()[block] + static_cast<float>(of_blocks.count.data()[block]);
+      pairs.variance_m2[i] = (own_sigma * own_sigma + its_sigma * its_sigma) * squared_m2;
+      pairs.amplitude[i] = amplitude(frame, at);
+      pairs.block_amplitude[i] = amplitude(blocks.frame, block);
+      if (pairs.size == pairs.pixel.size()) match();
     }
   }
+  match();
 }
 
 }  // namespace tofmap

@@ -4,7 +4,7 @@
 #include "tofmap/unwrap/joint/own_counts.hpp"
 
 #include "common/fast_math.hpp"
-#include "joint/count_likelihood.hpp"
+#include "joint/count_cost.hpp"
 #include "joint/edge_ratio.hpp"
 
 #include <algorithm>
@@ -26,31 +26,31 @@ constexpr float certain_support = 1e15F;
 /// What a block of pixels gets.
 struct Found {
   std::uint8_t* count;
-  float* likelihood;    ///< of `count`, by equation 11
+  float* cost;          ///< of `count`, nats
   float* cycles;        ///< range of the first frequency, in its wavelengths; NaN without a return
   float* odds_against;  ///< by the pixel's own phases; 1 where they are not clear
 };
 
 TOFMAP_VECTOR_CLONES void write(int pixels, const float* phase, const std::uint8_t* mixed,
-                                const count_likelihood::Candidates& candidates_,
-                                const CountLikelihood::Block& likelihood_,
-                                const CountLikelihood::Block& next_likelihood_, float other_counts,
+                                const count_cost::Candidates& candidates_, float other_counts,
                                 const Found& found_) {
   const Found found = found_;
   const float* count = candidates_.count.data();
-  const float* likelihood = likelihood_.data();
-  const float* next_likelihood = next_likelihood_.data();
+  const float* cost = candidates_.cost.data();
+  const float* next_cost = candidates_.next_cost.data();
   const float floor = other_counts * least_unary_factor;
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
-    const float share = next_likelihood[i] / likelihood[i];
-    const float squared = share * share;
-    const float tempered = squared * squared;
-    const bool is_clear = tempered <= clear && phase[i] == phase[i] && mixed[i] == 0;
-    found.likelihood[i] = likelihood[i];
-    found.count[i] = static_cast<std::uint8_t>(static_cast<std::int32_t>(count[i]));
-    found.cycles[i] = phase[i] + count[i];
-    found.odds_against[i] = is_clear ? tempered + floor : 1.0F;
+    const float least = cost[i];
+    const float odds = exp_of_negative(evidence_exponent * (least - next_cost[i]));
+    const float own_count = count[i];
+    const float cycles = phase[i] + own_count;  // NaN without a return
+    const float doubt = mixed[i] == 0 ? odds : 1.0F;
+    const float unclear = cycles == cycles ? doubt : 1.0F;
+    found.cost[i] = least;
+    found.count[i] = static_cast<std::uint8_t>(static_cast<std::int32_t>(own_count));
+    found.cycles[i] = cycles;
+    found.odds_against[i] = unclear <= clear ? odds + floor : 1.0F;
   }
 }
 
@@ -114,20 +114,15 @@ OwnCounts find_own_counts(const Frame& frame, const UnwrapLimits& limits, const 
   OwnCounts out{ImageU8(rows, cols), ImageU8(rows, cols), ImageF(rows, cols), ImageF(rows, cols)};
   ImageF cycles(rows, cols);
   ImageF odds_against(rows, cols);
-  CountLikelihood likelihoods(frame, limits, sigma, residual_sigma_m, prior.outlier_share);
-  CountLikelihood::Block likelihood;
-  CountLikelihood::Block next_likelihood;
+  CountCost costs(frame, limits, sigma, residual_sigma_m, prior.outlier_share);
   const auto other_counts = static_cast<float>(std::max(limits.count - 2, 0));
-  constexpr Eigen::Index block_pixels = count_likelihood::block_pixels;
+  constexpr Eigen::Index block_pixels = count_cost::block_pixels;
   for (Eigen::Index at = 0; at < cycles.size(); at += block_pixels) {
     const auto pixels = static_cast<int>(std::min(block_pixels, cycles.size() - at));
-    likelihoods.go_to(at, pixels);
-    const count_likelihood::Candidates& candidates = likelihoods.find_candidates();
-    likelihoods.find(candidates.count, likelihood);
-    likelihoods.find(candidates.next_count, next_likelihood);
-    write(pixels, frame.phases[0].data() + at, mixed.data() + at, candidates, likelihood,
-          next_likelihood, other_counts,
-          {out.count.data() + at, out.likelihood.data() + at, cycles.data() + at,
+    costs.go_to(at, pixels);
+    write(pixels, frame.phases[0].data() + at, mixed.data() + at, costs.find_candidates(),
+          other_counts,
+          {out.count.data() + at, out.cost.data() + at, cycles.data() + at,
            odds_against.data() + at});
   }
 

@@ -206,6 +206,7 @@ template <bool passes>
       const float share = to_float(at[i]) * best[static_cast<std::size_t>(i)];
       const float squared = share * share;
       const float tempered = squared * squared;
+      static_assert(evidence_exponent == 4);
       at[i] = to_bfloat16(tempered > least_unary_factor ? tempered : least_unary_factor);
     }
   }

@@ -19,7 +19,7 @@ struct OwnCounts {
   /// Belief in all other wrap counts together, relative to that in `count` (equation 15); only
   /// where `certain` is 1.
   ImageF odds_against;
-  ImageF likelihood;  ///< of `count`, by equation 11
+  ImageF cost;  ///< of `count` by the pixel's own phases, nats
 };
 
 /// Finds the pixels of a frame of at least two frequencies whose wrap counts need no belief

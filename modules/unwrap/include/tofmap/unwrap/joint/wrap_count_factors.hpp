@@ -34,6 +34,9 @@ struct WrapCountPrior {
   bool mixed_pixels = UnwrapOptions{}.mixed_pixels;
 };
 
+/// Exponent of the likelihoods in unary factors.
+inline constexpr float evidence_exponent = 4;
+
 /// Smallest unary factor, also that of ranges beyond the limits.
 inline constexpr float least_unary_factor = 1e-8F;
 

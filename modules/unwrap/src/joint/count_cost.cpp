@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "joint/count_likelihood.hpp"
+#include "joint/count_cost.hpp"
 
 #include "common/fast_math.hpp"
 
@@ -15,10 +15,10 @@
 namespace tofmap {
 namespace {
 
-using count_likelihood::Block;
-using count_likelihood::Candidates;
-using count_likelihood::Estimate;
-using count_likelihood::Measured;
+using count_cost::Block;
+using count_cost::Candidates;
+using count_cost::Estimate;
+using count_cost::Measured;
 
 /// Added to variances, so that those of phases without any noise divide.
 constexpr float no_noise_m2 = 1e-12F;
@@ -70,15 +70,16 @@ TOFMAP_VECTOR_CLONES void start(int pixels, const Measured& first_, float farthe
 }
 
 /// Adds the cost of the residual of one more frequency, and fuses the estimate with it unless it is
-/// an outlier. `shift` is the change of the residual by the wrap count, in cycles.
+/// an outlier. `shift_` is the change of the residual by the wrap count, in cycles.
 TOFMAP_VECTOR_CLONES void add(int pixels, const Measured& first_, const Measured& other_,
-                              float shift, Estimate& estimate_) {
+                              const Block& shift_, Estimate& estimate_) {
   const Measured& first = first_;
   const Measured& other = other_;
   Estimate& estimate = estimate_;
   const float ratio = other.ratio;
   const float wavelength_m = other.wavelength_m;
   const float per_metre = 1 / wavelength_m;
+  const float* shift = shift_.data();
   const float* phase = first.phase.data();
   const float* other_phase = other.phase.data();
   const float* other_m2 = other.variance_m2.data();
@@ -88,7 +89,7 @@ TOFMAP_VECTOR_CLONES void add(int pixels, const Measured& first_, const Measured
   float* cost = estimate.cost.data();
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
-    const float cycles = phase[i] * ratio + shift - other_phase[i] + change_m[i] * per_metre;
+    const float cycles = phase[i] * ratio + shift[i] - other_phase[i] + change_m[i] * per_metre;
     const float residual_m = wavelength_m * to_half_cycle(cycles);
     const float share = 1 / (variance_m2[i] + other_m2[i] + no_noise_m2);
     const float squares = 0.5F * residual_m * residual_m * share;
@@ -123,46 +124,16 @@ TOFMAP_VECTOR_CLONES void keep_least(int pixels, float count, const Estimate& es
   }
 }
 
-/// Equation 11 for the given wrap counts, by one more frequency: as in UnaryFactors, without the
-/// nearest other wrap, as clear phases are far from it.
-TOFMAP_VECTOR_CLONES void multiply_likelihood(int pixels, const Measured& first_,
-                                              const Measured& other_, const Block& count_,
-                                              float outlier, Estimate& estimate_,
-                                              Block& likelihood_) {
-  const Measured& first = first_;
-  const Measured& other = other_;
-  Estimate& estimate = estimate_;
-  const float ratio = other.ratio;
-  const float wavelength_m = other.wavelength_m;
-  const float per_metre = 1 / wavelength_m;
-  const float* count = count_.data();
-  float* likelihood = likelihood_.data();
+/// The change of a residual by given wrap counts, in cycles.
+TOFMAP_VECTOR_CLONES void fill_shift(int pixels, const float* count, float ratio, float* shift) {
 #pragma GCC ivdep
-  for (int i = 0; i < pixels; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const float shift = to_half_cycle(ratio * count[i]);
-    const float cycles =
-        first.phase[at] * ratio + shift - other.phase[at] + estimate.change_m[at] * per_metre;
-    const float offset = to_half_cycle(cycles);
-    const float own_m2 = estimate.variance_m2[at];
-    const float share = 1 / (own_m2 + other.variance_m2[at] + no_noise_m2);
-    const float precision = wavelength_m * wavelength_m * share;
-    const float height = std::sqrt(precision * (0.5F / std::numbers::pi_v<float>));
-    const float of_surface =
-        (1 - outlier) * height * exp_of_negative(-0.5F * precision * offset * offset);
-    likelihood[i] *= outlier + of_surface;
-    const float trust = of_surface / (outlier + of_surface);
-    const float gain = trust * own_m2 * share;
-    estimate.change_m[at] -= gain * offset * wavelength_m;
-    estimate.variance_m2[at] = own_m2 * (1 - gain);
-  }
+  for (int i = 0; i < pixels; ++i) shift[i] = to_half_cycle(ratio * count[i]);
 }
 
 }  // namespace
 
-CountLikelihood::CountLikelihood(const Frame& frame, const UnwrapLimits& limits,
-                                 const PhaseSigma& sigma,
-                                 const std::vector<double>& residual_sigma_m, double outlier_share)
+CountCost::CountCost(const Frame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
+                     const std::vector<double>& residual_sigma_m, double outlier_share)
     : frame_(frame),
       limits_(limits),
       sigma_(sigma),
@@ -172,23 +143,43 @@ CountLikelihood::CountLikelihood(const Frame& frame, const UnwrapLimits& limits,
       farthest_cycles_(limits.max_range_m / limits.wavelength_m() + noise_tolerance_cycles),
       others_(order_.size()) {}
 
-void CountLikelihood::load_frequency(std::size_t f, Eigen::Index at, Measured& out) const {
+void CountCost::load_frequency(std::size_t f, const float* phase, const float* sigma_cycles,
+                               Measured& out) const {
   out.wavelength_m = static_cast<float>(limits_.wavelengths_m[f]);
   out.ratio = static_cast<float>(limits_.wavelength_m() / limits_.wavelengths_m[f]);
-  load(pixels_, frame_.phases[f].data() + at, sigma_.cycles[f].data() + at,
-       static_cast<float>(residual_sigma_m_[f]), out);
+  load(pixels_, phase, sigma_cycles, static_cast<float>(residual_sigma_m_[f]), out);
 }
 
-void CountLikelihood::go_to(Eigen::Index at, int pixels) {
+/// `load_measured(f, out)` loads the measurements of one frequency.
+template <class Load>
+void CountCost::go(int pixels, const Load& load_measured) {
   pixels_ = pixels;
-  load_frequency(0, at, first_);
-  for (std::size_t i = 0; i < order_.size(); ++i) load_frequency(order_[i], at, others_[i]);
+  load_measured(0, first_);
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    load_measured(order_[i], others_[i]);
+    fill_bound(pixels_, first_.variance_m2.data(), outlier_share_, others_[i]);
+  }
 }
 
-const Candidates& CountLikelihood::find_candidates() {
-  for (Measured& other : others_) {
-    fill_bound(pixels_, first_.variance_m2.data(), outlier_share_, other);
-  }
+void CountCost::go_to(Eigen::Index at, int pixels) {
+  go(pixels, [&](std::size_t f, Measured& out) {
+    load_frequency(f, frame_.phases[f].data() + at, sigma_.cycles[f].data() + at, out);
+  });
+}
+
+void CountCost::go_to(std::span<const int> places) {
+  go(static_cast<int>(places.size()), [&](std::size_t f, Measured& out) {
+    Block phase;
+    Block sigma_cycles;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      phase[i] = frame_.phases[f].data()[places[i]];
+      sigma_cycles[i] = sigma_.cycles[f].data()[places[i]];
+    }
+    load_frequency(f, phase.data(), sigma_cycles.data(), out);
+  });
+}
+
+const Candidates& CountCost::find_candidates() {
   constexpr float none = 1e30F;
   candidates_.cost.fill(none);
   candidates_.next_cost.fill(none);
@@ -199,20 +190,21 @@ const Candidates& CountLikelihood::find_candidates() {
     start(pixels_, first_, static_cast<float>(farthest), estimate_);
     for (std::size_t i = 0; i < order_.size(); ++i) {
       const double ratio = limits_.wavelength_m() / limits_.wavelengths_m[order_[i]];
-      add(pixels_, first_, others_[i], static_cast<float>(residual_shift_cycles(ratio, count)),
-          estimate_);
+      shift_.fill(static_cast<float>(residual_shift_cycles(ratio, count)));
+      add(pixels_, first_, others_[i], shift_, estimate_);
     }
     keep_least(pixels_, static_cast<float>(count), estimate_, candidates_);
   }
   return candidates_;
 }
 
-void CountLikelihood::find(const Block& count, Block& likelihood) {
+const Block& CountCost::find(const Block& count) {
   start(pixels_, first_, 1, estimate_);
-  likelihood.fill(1);
   for (const Measured& other : others_) {
-    multiply_likelihood(pixels_, first_, other, count, outlier_share_, estimate_, likelihood);
+    fill_shift(pixels_, count.data(), other.ratio, shift_.data());
+    add(pixels_, first_, other, shift_, estimate_);
   }
+  return estimate_.cost;
 }
 
 }  // namespace tofmap

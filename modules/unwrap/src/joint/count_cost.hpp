@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include <tofmap/core/frame.hpp>
@@ -11,8 +12,8 @@
 
 namespace tofmap {
 
-/// The arrays of CountLikelihood, with one number for each pixel of a block.
-namespace count_likelihood {
+/// The arrays of CountCost, with one number for each pixel of a block.
+namespace count_cost {
 
 /// Few enough for the intermediate results of a block to stay in the first-level cache.
 inline constexpr int block_pixels = 256;
@@ -42,31 +43,38 @@ struct Candidates {
   Block next_count;
 };
 
-}  // namespace count_likelihood
+}  // namespace count_cost
 
-/// How likely wrap counts of single pixels are by their own phases at all frequencies, in frames of
-/// at least two. Works on one block of pixels after another.
-class CountLikelihood {
+/// What wrap counts of single pixels cost by their own phases at all frequencies, in frames of at
+/// least two: the sum of the squared residuals of the other frequencies over twice their variances,
+/// each bounded where an outlier is as likely. exp(−cost) approximates equation 11. Works on one
+/// block of pixels after another.
+class CountCost {
  public:
-  using Block = count_likelihood::Block;
+  using Block = count_cost::Block;
 
   /// References must outlive the object. `residual_sigma_m` is as in WrapCountModel::assign.
-  CountLikelihood(const Frame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
-                  const std::vector<double>& residual_sigma_m, double outlier_share);
+  CountCost(const Frame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
+            const std::vector<double>& residual_sigma_m, double outlier_share);
 
   /// Goes to a block of at most block_pixels pixels, which begins at `at`, row by row.
   void go_to(Eigen::Index at, int pixels);
 
-  /// The wrap counts of the block with the smallest costs: the sums of the squared residuals of all
-  /// frequencies over twice their variances, each bounded where an outlier is as likely.
-  const count_likelihood::Candidates& find_candidates();
+  /// Goes to a block of at most block_pixels pixels anywhere in the image, given by their places
+  /// row by row.
+  void go_to(std::span<const int> places);
 
-  /// Equation 11 for one wrap count of each pixel of the block. The nearest other wrap is left out,
-  /// which matters only for residuals with a noise of half a cycle.
-  void find(const Block& count, Block& likelihood);
+  /// The two wrap counts of each pixel of the block with the smallest costs.
+  const count_cost::Candidates& find_candidates();
+
+  /// The cost of one wrap count for each pixel of the block.
+  const Block& find(const Block& count);
 
  private:
-  void load_frequency(std::size_t f, Eigen::Index at, count_likelihood::Measured& out) const;
+  void load_frequency(std::size_t f, const float* phase, const float* sigma_cycles,
+                      count_cost::Measured& out) const;
+  template <class Load>
+  void go(int pixels, const Load& load_measured);
 
   const Frame& frame_;
   const UnwrapLimits& limits_;
@@ -76,10 +84,11 @@ class CountLikelihood {
   std::vector<std::size_t> order_;  ///< all frequencies but the first, by wavelength
   double farthest_cycles_;
   int pixels_ = 0;
-  count_likelihood::Measured first_;
-  std::vector<count_likelihood::Measured> others_;
-  count_likelihood::Candidates candidates_;
-  count_likelihood::Estimate estimate_;
+  count_cost::Measured first_;
+  std::vector<count_cost::Measured> others_;
+  count_cost::Candidates candidates_;
+  count_cost::Estimate estimate_;
+  Block shift_;  ///< change of a residual by the wrap count, cycles
 };
 
 }  // namespace tofmap
