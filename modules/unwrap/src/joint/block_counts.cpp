@@ -66,7 +66,7 @@ void take_block_counts(const Frame& frame, const UnwrapLimits& limits, const Pha
                        OwnCounts& own) {
   const EdgeScale scale(limits, prior);
   const auto last_count = static_cast<float>(limits.count - 1);
-  CountCost costs(frame, limits, sigma, residual_sigma_m, prior.outlier_share);
+  CountCost costs(frame, limits, sigma, residual_sigma_m, prior.outlier_share, mixed);
   CountCost::Block count;
   Pairs pairs;
   const auto match = [&] {

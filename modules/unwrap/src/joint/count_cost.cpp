@@ -11,6 +11,7 @@
 #include <tofmap/core/frequency_residual.hpp>
 #include <tofmap/core/range_image.hpp>
 #include <tofmap/core/vector_clones.hpp>
+#include <tofmap/unwrap/joint/wrap_count_factors.hpp>
 
 namespace tofmap {
 namespace {
@@ -41,14 +42,17 @@ TOFMAP_VECTOR_CLONES void load(int pixels, const float* phase, const float* sigm
 
 /// The cost of an outlier: how much less likely it is than a residual of zero (equation 11).
 TOFMAP_VECTOR_CLONES void fill_bound(int pixels, const float* first_variance_m2,
-                                     float outlier_share, Measured& other_) {
+                                     const std::uint8_t* mixed, float outlier_share,
+                                     Measured& other_) {
   Measured& other = other_;
-  const float surface_odds = (1 - outlier_share) / outlier_share;
+  const float odds_alone = (1 - outlier_share) / outlier_share;
+  constexpr float odds_mixed = (1 - mixed_outlier_share) / mixed_outlier_share;
   const float squared_m2 = other.wavelength_m * other.wavelength_m;
   const float* variance_m2 = other.variance_m2.data();
   float* bound = other.bound.data();
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
+    const float surface_odds = mixed[i] != 0 ? odds_mixed : odds_alone;
     const float precision = squared_m2 / (first_variance_m2[i] + variance_m2[i] + no_noise_m2);
     const float height = std::sqrt(precision * (0.5F / std::numbers::pi_v<float>));
     bound[i] = std::numbers::ln2_v<float> * log2_of(1 + surface_odds * height);
@@ -133,12 +137,14 @@ TOFMAP_VECTOR_CLONES void fill_shift(int pixels, const float* count, float ratio
 }  // namespace
 
 CountCost::CountCost(const Frame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
-                     const std::vector<double>& residual_sigma_m, double outlier_share)
+                     const std::vector<double>& residual_sigma_m, double outlier_share,
+                     const ImageU8& mixed)
     : frame_(frame),
       limits_(limits),
       sigma_(sigma),
       residual_sigma_m_(residual_sigma_m),
       outlier_share_(static_cast<float>(outlier_share)),
+      mixed_(mixed),
       order_(others_by_wavelength(limits)),
       farthest_cycles_(limits.max_range_m / limits.wavelength_m() + noise_tolerance_cycles),
       others_(order_.size()) {}
@@ -152,23 +158,25 @@ void CountCost::load_frequency(std::size_t f, const float* phase, const float* s
 
 /// `load_measured(f, out)` loads the measurements of one frequency.
 template <class Load>
-void CountCost::go(int pixels, const Load& load_measured) {
+void CountCost::go(int pixels, const std::uint8_t* mixed, const Load& load_measured) {
   pixels_ = pixels;
   load_measured(0, first_);
   for (std::size_t i = 0; i < order_.size(); ++i) {
     load_measured(order_[i], others_[i]);
-    fill_bound(pixels_, first_.variance_m2.data(), outlier_share_, others_[i]);
+    fill_bound(pixels_, first_.variance_m2.data(), mixed, outlier_share_, others_[i]);
   }
 }
 
 void CountCost::go_to(Eigen::Index at, int pixels) {
-  go(pixels, [&](std::size_t f, Measured& out) {
+  go(pixels, mixed_.data() + at, [&](std::size_t f, Measured& out) {
     load_frequency(f, frame_.phases[f].data() + at, sigma_.cycles[f].data() + at, out);
   });
 }
 
 void CountCost::go_to(std::span<const int> places) {
-  go(static_cast<int>(places.size()), [&](std::size_t f, Measured& out) {
+  std::array<std::uint8_t, count_cost::block_pixels> mixed;
+  for (std::size_t i = 0; i < places.size(); ++i) mixed[i] = mixed_.data()[places[i]];
+  go(static_cast<int>(places.size()), mixed.data(), [&](std::size_t f, Measured& out) {
     Block phase;
     Block sigma_cycles;
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -186,16 +194,30 @@ const Candidates& CountCost::find_candidates() {
   candidates_.count.fill(0);
   candidates_.next_count.fill(0);
   for (int count = 0; count < limits_.count; ++count) {
-    const double farthest = count == 0 ? 1 : farthest_cycles_ - count;
-    start(pixels_, first_, static_cast<float>(farthest), estimate_);
-    for (std::size_t i = 0; i < order_.size(); ++i) {
-      const double ratio = limits_.wavelength_m() / limits_.wavelengths_m[order_[i]];
-      shift_.fill(static_cast<float>(residual_shift_cycles(ratio, count)));
-      add(pixels_, first_, others_[i], shift_, estimate_);
-    }
+    find_estimate(count);
     keep_least(pixels_, static_cast<float>(count), estimate_, candidates_);
   }
   return candidates_;
+}
+
+/// The ranges and the cost for one wrap count.
+void CountCost::find_estimate(int count) {
+  const double farthest = count == 0 ? 1 : farthest_cycles_ - count;
+  start(pixels_, first_, static_cast<float>(farthest), estimate_);
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const double ratio = limits_.wavelength_m() / limits_.wavelengths_m[order_[i]];
+    shift_.fill(static_cast<float>(residual_shift_cycles(ratio, count)));
+    add(pixels_, first_, others_[i], shift_, estimate_);
+  }
+}
+
+const std::vector<Block>& CountCost::find_all() {
+  costs_.resize(static_cast<std::size_t>(limits_.count));
+  for (int count = 0; count < limits_.count; ++count) {
+    find_estimate(count);
+    costs_[static_cast<std::size_t>(count)] = estimate_.cost;
+  }
+  return costs_;
 }
 
 const Block& CountCost::find(const Block& count) {

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include <tofmap/core/frame.hpp>
+#include <tofmap/core/image.hpp>
 #include <tofmap/core/range_error.hpp>
 #include <tofmap/unwrap/common/unwrap_limits.hpp>
 
@@ -53,9 +55,11 @@ class CountCost {
  public:
   using Block = count_cost::Block;
 
-  /// References must outlive the object. `residual_sigma_m` is as in WrapCountModel::assign.
+  /// References must outlive the object. `residual_sigma_m` is as in WrapCountModel::assign;
+  /// `mixed` is 1 in mixed pixels, whose residuals say next to nothing.
   CountCost(const Frame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
-            const std::vector<double>& residual_sigma_m, double outlier_share);
+            const std::vector<double>& residual_sigma_m, double outlier_share,
+            const ImageU8& mixed);
 
   /// Goes to a block of at most block_pixels pixels, which begins at `at`, row by row.
   void go_to(Eigen::Index at, int pixels);
@@ -67,6 +71,12 @@ class CountCost {
   /// The two wrap counts of each pixel of the block with the smallest costs.
   const count_cost::Candidates& find_candidates();
 
+  /// The costs of all wrap counts.
+  const std::vector<Block>& find_all();
+
+  /// The costs that find_all() has found.
+  const std::vector<Block>& all() const { return costs_; }
+
   /// The cost of one wrap count for each pixel of the block.
   const Block& find(const Block& count);
 
@@ -74,21 +84,24 @@ class CountCost {
   void load_frequency(std::size_t f, const float* phase, const float* sigma_cycles,
                       count_cost::Measured& out) const;
   template <class Load>
-  void go(int pixels, const Load& load_measured);
+  void go(int pixels, const std::uint8_t* mixed, const Load& load_measured);
+  void find_estimate(int count);
 
   const Frame& frame_;
   const UnwrapLimits& limits_;
   const PhaseSigma& sigma_;
   const std::vector<double>& residual_sigma_m_;
   float outlier_share_;
+  const ImageU8& mixed_;
   std::vector<std::size_t> order_;  ///< all frequencies but the first, by wavelength
   double farthest_cycles_;
   int pixels_ = 0;
   count_cost::Measured first_;
   std::vector<count_cost::Measured> others_;
   count_cost::Candidates candidates_;
-  count_cost::Estimate estimate_;
-  Block shift_;  ///< change of a residual by the wrap count, cycles
+  count_cost::Estimate estimate_{};
+  Block shift_;               ///< change of a residual by the wrap count, cycles
+  std::vector<Block> costs_;  ///< of each wrap count
 };
 
 }  // namespace tofmap

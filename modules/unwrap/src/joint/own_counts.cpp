@@ -114,7 +114,7 @@ OwnCounts find_own_counts(const Frame& frame, const UnwrapLimits& limits, const 
   OwnCounts out{ImageU8(rows, cols), ImageU8(rows, cols), ImageF(rows, cols), ImageF(rows, cols)};
   ImageF cycles(rows, cols);
   ImageF odds_against(rows, cols);
-  CountCost costs(frame, limits, sigma, residual_sigma_m, prior.outlier_share);
+  CountCost costs(frame, limits, sigma, residual_sigma_m, prior.outlier_share, mixed);
   const auto other_counts = static_cast<float>(std::max(limits.count - 2, 0));
   constexpr Eigen::Index block_pixels = count_cost::block_pixels;
   for (Eigen::Index at = 0; at < cycles.size(); at += block_pixels) {

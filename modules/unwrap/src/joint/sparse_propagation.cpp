@@ -3,25 +3,17 @@
 
 #include "tofmap/unwrap/joint/sparse_propagation.hpp"
 
-#include "common/fast_math.hpp"
-
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 
-#include <tofmap/core/range_image.hpp>
 #include <tofmap/core/vector_clones.hpp>
-#include <tofmap/unwrap/common/diagonal_layout.hpp>
 
 namespace tofmap {
 namespace {
-
-/// Values of `place_` for pixels that are not uncertain.
-constexpr int no_return = -2;
-constexpr int is_certain = -1;
-
-/// Smallest product of unary factor and messages of certain neighbours.
-constexpr float least_evidence = 1e-24F;
 
 /// Numbers for successive wrap counts.
 constexpr std::size_t lanes = 8;
@@ -47,11 +39,21 @@ using CountLanes [[gnu::vector_size(lanes * sizeof(float))]] = float;
   return ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]));
 }
 
+[[gnu::always_inline]] inline CountLanes keep_where(const CountLanes& one, const CountLanes& other,
+                                                    const CountLanes& values) {
+  using Bits [[gnu::vector_size(lanes * sizeof(float))]] = std::int32_t;
+  const Bits are_equal = one == other;
+  return std::bit_cast<CountLanes>(are_equal & std::bit_cast<Bits>(values));
+}
+
+constexpr std::size_t stride = UncertainPixels::slots;
+static_assert(stride % lanes == 0);
+
 /// The graph of uncertain pixels, as loops need it.
 struct Graph {
   std::size_t pixels;
-  std::size_t stride;
   const float* evidence;
+  const float* counts;  ///< in the slots
   float* messages;
   std::array<const int*, 4> neighbour;  ///< left, above, right, below
   std::array<const float*, 2> same;     ///< right, below
@@ -60,82 +62,121 @@ struct Graph {
 
 /// The messages along the edges of a pixel. Those in both directions have one place, as in
 /// WrapCountPropagation.
-struct Slots {
+struct Messages {
   std::array<float*, 4> at;  ///< left, above, right, below; ones where there is no neighbour
 
-  [[gnu::always_inline]] Slots(const Graph& graph, std::size_t pixel) {
-    float* ones = graph.messages + 2 * graph.pixels * graph.stride;
+  [[gnu::always_inline]] Messages(const Graph& graph, std::size_t pixel) {
+    float* ones = graph.messages + 2 * graph.pixels * stride;
     for (std::size_t d = 0; d < 2; ++d) {
-      float* own = graph.messages + (2 * pixel + d) * graph.stride;
+      float* own = graph.messages + (2 * pixel + d) * stride;
       at[d] = graph.neighbour[d][pixel] < 0 ? ones : own;
       const int other = graph.neighbour[d + 2][pixel];
-      at[d + 2] = other < 0
-                      ? ones
-                      : graph.messages + (2 * static_cast<std::size_t>(other) + d) * graph.stride;
+      at[d + 2] =
+          other < 0 ? ones : graph.messages + (2 * static_cast<std::size_t>(other) + d) * stride;
     }
   }
 };
 
-/// Equation 16 along one edge. `weighted` is padded by a vector of zeros at both ends.
-[[gnu::always_inline]] inline void send_message(const float* weighted, float sum, float same,
-                                                float step, std::size_t stride, float* out) {
-  const float up = step > 0 ? step : 0.0F;
-  const float down = step < 0 ? -step : 0.0F;
-  const float scale = 1 / (sum * (1 + same + up + down));
+/// Numbers of all slots of a pixel, with a vector before and after them.
+using Padded = std::array<float, stride + 2 * lanes>;
+
+/// Fills what stands before and after the slots: zeros, or, if wrap counts share slots, what
+/// belongs to the wrap counts before and after.
+template <bool share_slots>
+[[gnu::always_inline]] inline void pad(Padded& numbers) {
+  numbers[lanes - 1] = share_slots ? numbers[lanes + stride - 1] : 0.0F;
+  numbers[lanes + stride] = share_slots ? numbers[lanes] : 0.0F;
+}
+
+/// The pairwise factors of an edge for a pixel that sends a message along it.
+struct SentAlong {
+  float same;
+  float step;           ///< the factor of the next wrap count; negative for that before
+  const float* counts;  ///< in the receiver's slots
+};
+
+/// Equation 16 along one edge. `counts` are those in the sender's slots.
+template <bool share_slots>
+[[gnu::always_inline]] inline void send_message(const Padded& weighted, const Padded& counts,
+                                                float sum, const SentAlong& edge, float* out) {
+  const float factor = edge.step > 0 ? edge.step : -edge.step;
+  const float up = edge.step > 0 ? 1.0F : -1.0F;
+  const std::size_t own = lanes;
+  const std::size_t other = edge.step > 0 ? lanes - 1 : lanes + 1;
+  const float scale = 1 / (sum * (1 + edge.same + factor));
   for (std::size_t n = 0; n < stride; n += lanes) {
-    const CountLanes total = sum + same * load_lanes(weighted + n) +
-                             up * load_lanes(weighted + n - 1) +
-                             down * load_lanes(weighted + n + 1);
-    store_lanes(total * scale, out + n);
+    CountLanes same = load_lanes(&weighted[own + n]);
+    CountLanes next = load_lanes(&weighted[other + n]);
+    if constexpr (share_slots) {
+      const CountLanes received = load_lanes(edge.counts + n);
+      same = keep_where(load_lanes(&counts[own + n]), received, same);
+      next = keep_where(load_lanes(&counts[other + n]) + up, received, next);
+    }
+    store_lanes((sum + edge.same * same + factor * next) * scale, out + n);
   }
 }
 
-/// Memory for the wrap counts of two edges, with a vector of zeros before and after each.
-constexpr std::size_t scratch_stride = 256 + 2 * lanes;
-using Scratch = std::array<float, 2 * scratch_stride>;
+/// Memory of a sweep.
+struct Scratch {
+  Padded first{};
+  Padded second{};
+  Padded counts{};
+};
 
 /// Sends the messages of a pixel along two edges. `in` and `out` are directions: 0 for left and
 /// above, 2 for right and below.
-template <std::size_t in, std::size_t out>
+template <bool share_slots, std::size_t in, std::size_t out>
 [[gnu::always_inline]] inline void send_messages(const Graph& graph, std::size_t pixel,
                                                  Scratch& scratch) {
   constexpr bool forward = in == 0;
   const bool has_first = graph.neighbour[out][pixel] >= 0;
   const bool has_second = graph.neighbour[out + 1][pixel] >= 0;
   if (!has_first && !has_second) return;
-  const Slots slots(graph, pixel);
-  const float* evidence = graph.evidence + pixel * graph.stride;
-  float* first = scratch.data() + lanes;
-  float* second = first + scratch_stride;
+  const Messages messages(graph, pixel);
+  const float* evidence = graph.evidence + pixel * stride;
   CountLanes sum_first{};
   CountLanes sum_second{};
-  for (std::size_t n = 0; n < graph.stride; n += lanes) {
-    const CountLanes to_first = load_lanes(slots.at[out] + n);
-    const CountLanes to_second = load_lanes(slots.at[out + 1] + n);
-    const CountLanes received = load_lanes(slots.at[in] + n) * load_lanes(slots.at[in + 1] + n);
+  for (std::size_t n = 0; n < stride; n += lanes) {
+    const CountLanes to_first = load_lanes(messages.at[out] + n);
+    const CountLanes to_second = load_lanes(messages.at[out + 1] + n);
+    const CountLanes received =
+        load_lanes(messages.at[in] + n) * load_lanes(messages.at[in + 1] + n);
     const CountLanes shared = load_lanes(evidence + n) * root_of(received / (to_first * to_second));
     const CountLanes without_first = shared * to_second;
     const CountLanes without_second = shared * to_first;
-    store_lanes(without_first, first + n);
-    store_lanes(without_second, second + n);
+    store_lanes(without_first, &scratch.first[lanes + n]);
+    store_lanes(without_second, &scratch.second[lanes + n]);
     sum_first += without_first;
     sum_second += without_second;
   }
-  store_lanes(CountLanes{}, first + graph.stride);
-  store_lanes(CountLanes{}, second + graph.stride);
-  const auto send = [&](std::size_t d, const float* weighted, const CountLanes& sum) {
-    const auto holder = forward ? pixel : static_cast<std::size_t>(graph.neighbour[out + d][pixel]);
+  pad<share_slots>(scratch.first);
+  pad<share_slots>(scratch.second);
+  if constexpr (share_slots) {
+    std::copy_n(graph.counts + pixel * stride, stride, &scratch.counts[lanes]);
+    pad<share_slots>(scratch.counts);
+  }
+  const auto send = [&](std::size_t d, const Padded& weighted, const CountLanes& sum) {
+    const auto receiver = static_cast<std::size_t>(graph.neighbour[out + d][pixel]);
+    const std::size_t holder = forward ? pixel : receiver;
     const float step = graph.next[d][holder];
-    send_message(weighted, sum_of(sum), graph.same[d][holder], forward ? step : -step, graph.stride,
-                 slots.at[out + d]);
+    const float* its_counts = share_slots ? graph.counts + receiver * stride : nullptr;
+    send_message<share_slots>(weighted, scratch.counts, sum_of(sum),
+                              {graph.same[d][holder], forward ? step : -step, its_counts},
+                              messages.at[out + d]);
   };
-  if (has_first) send(0, first, sum_first);
-  if (has_second) send(1, second, sum_second);
+  if (has_first) send(0, scratch.first, sum_first);
+  if (has_second) send(1, scratch.second, sum_second);
 }
 
-TOFMAP_VECTOR_CLONES void sweep_forward(const Graph& graph_, Scratch& scratch) {
-  const Graph graph = graph_;
-  for (std::size_t i = 0; i < graph.pixels; ++i) send_messages<0, 2>(graph, i, scratch);
+template <bool share_slots, bool forward>
+[[gnu::always_inline]] inline void sweep_all(const Graph& graph, Scratch& scratch) {
+  for (std::size_t i = 0; i < graph.pixels; ++i) {
+    if (forward) {
+      send_messages<share_slots, 0, 2>(graph, i, scratch);
+    } else {
+      send_messages<share_slots, 2, 0>(graph, graph.pixels - 1 - i, scratch);
+    }
+  }
 }
 
 /// The two most probable wrap counts of a pixel and their probabilities.
@@ -147,18 +188,18 @@ struct PixelBelief {
   float others = 0;  ///< belief in all wrap counts but the best
 };
 
-/// Equation 15. `belief` is memory for one number for each wrap count.
+/// Equation 15. `belief` is memory for the numbers of all slots.
 [[gnu::always_inline]] inline PixelBelief read_belief(const Graph& graph, std::size_t pixel,
-                                                      int counts, float* belief) {
-  const Slots slots(graph, pixel);
-  const float* evidence = graph.evidence + pixel * graph.stride;
-  for (std::size_t n = 0; n < graph.stride; n += lanes) {
-    const CountLanes one = load_lanes(slots.at[0] + n) * load_lanes(slots.at[1] + n);
-    const CountLanes other = load_lanes(slots.at[2] + n) * load_lanes(slots.at[3] + n);
+                                                      int used_slots, float* belief) {
+  const Messages messages(graph, pixel);
+  const float* evidence = graph.evidence + pixel * stride;
+  for (std::size_t n = 0; n < stride; n += lanes) {
+    const CountLanes one = load_lanes(messages.at[0] + n) * load_lanes(messages.at[1] + n);
+    const CountLanes other = load_lanes(messages.at[2] + n) * load_lanes(messages.at[3] + n);
     store_lanes(load_lanes(evidence + n) * root_of(one) * root_of(other), belief + n);
   }
   PixelBelief out;
-  for (int n = 0; n < counts; ++n) {
+  for (int n = 0; n < used_slots; ++n) {
     const float here = belief[n];
     if (here > out.best_belief) {
       out.others += std::max(out.best_belief, 0.0F);
@@ -177,27 +218,53 @@ struct PixelBelief {
   return out;
 }
 
-TOFMAP_VECTOR_CLONES void sweep_backward(const Graph& graph_, Scratch& scratch) {
-  const Graph graph = graph_;
-  for (std::size_t i = graph.pixels; i-- > 0;) send_messages<2, 0>(graph, i, scratch);
-}
-
 /// The last backward sweep. Before a pixel sends its messages it has received all messages of its
 /// neighbours, so its belief is read then.
-TOFMAP_VECTOR_CLONES void read_backward(const Graph& graph_, int counts, const int* raster,
-                                        Scratch& scratch, WrapCountBeliefs& beliefs) {
-  const Graph graph = graph_;
+template <bool share_slots>
+[[gnu::always_inline]] inline void read_all(const Graph& graph, int used_slots, const int* raster,
+                                            Scratch& scratch, WrapCountBeliefs& beliefs) {
   for (std::size_t i = graph.pixels; i-- > 0;) {
-    const PixelBelief read = read_belief(graph, i, counts, scratch.data() + lanes);
+    const PixelBelief read = read_belief(graph, i, used_slots, &scratch.first[lanes]);
     const int at = raster[i];
     const float sum = read.best_belief + read.others;
-    beliefs.count.data()[at] = static_cast<std::uint8_t>(read.best);
+    const float* counts = share_slots ? graph.counts + i * stride : nullptr;
+    const auto count_in = [&](int slot) {
+      return static_cast<std::uint8_t>(share_slots ? static_cast<int>(counts[slot]) : slot);
+    };
+    beliefs.count.data()[at] = count_in(read.best);
     beliefs.probability.data()[at] = read.best_belief / sum;
     beliefs.other_probability.data()[at] = read.others / sum;
-    beliefs.runner_up.data()[at] = static_cast<std::uint8_t>(read.runner_up);
+    beliefs.runner_up.data()[at] = count_in(read.runner_up);
     beliefs.runner_up_probability.data()[at] = std::max(read.runner_up_belief, 0.0F) / sum;
-    send_messages<2, 0>(graph, i, scratch);
+    send_messages<share_slots, 2, 0>(graph, i, scratch);
   }
+}
+
+TOFMAP_VECTOR_CLONES void sweep_forward(const Graph& graph, Scratch& scratch) {
+  sweep_all<false, true>(Graph(graph), scratch);
+}
+
+TOFMAP_VECTOR_CLONES void sweep_backward(const Graph& graph, Scratch& scratch) {
+  sweep_all<false, false>(Graph(graph), scratch);
+}
+
+TOFMAP_VECTOR_CLONES void read_backward(const Graph& graph, int used_slots, const int* raster,
+                                        Scratch& scratch, WrapCountBeliefs& beliefs) {
+  read_all<false>(Graph(graph), used_slots, raster, scratch, beliefs);
+}
+
+TOFMAP_VECTOR_CLONES void sweep_shared_forward(const Graph& graph, Scratch& scratch) {
+  sweep_all<true, true>(Graph(graph), scratch);
+}
+
+TOFMAP_VECTOR_CLONES void sweep_shared_backward(const Graph& graph, Scratch& scratch) {
+  sweep_all<true, false>(Graph(graph), scratch);
+}
+
+TOFMAP_VECTOR_CLONES void read_shared_backward(const Graph& graph, int used_slots,
+                                               const int* raster, Scratch& scratch,
+                                               WrapCountBeliefs& beliefs) {
+  read_all<true>(Graph(graph), used_slots, raster, scratch, beliefs);
 }
 
 /// The change of messages is measured at every n-th pixel.
@@ -205,153 +272,15 @@ constexpr std::size_t watched_pixels = 16;
 
 /// Calls `visit(first, size)` with the place of the messages of each watched pixel.
 template <class Visit>
-void for_each_watched(std::size_t pixels, std::size_t stride, const Visit& visit) {
+void for_each_watched(std::size_t pixels, const Visit& visit) {
   for (std::size_t i = 0; i < pixels; i += watched_pixels) visit(2 * i * stride, 2 * stride);
 }
 
 }  // namespace
 
-void SparsePropagation::list_pixels(const Frame& frame, const OwnCounts& own) {
-  const ImageF& phase = frame.phases[0];
-  const auto cols = static_cast<int>(phase.cols());
-  raster_.clear();
-  column_.clear();
-  place_.resize(static_cast<std::size_t>(phase.size()));
-  int at = 0;
-  for (Eigen::Index v = 0; v < phase.rows(); ++v) {
-    for (int u = 0; u < cols; ++u, ++at) {
-      int& place = place_[static_cast<std::size_t>(at)];
-      place = is_certain;
-      if (own.certain.data()[at] != 0) continue;
-      place = no_return;
-      if (std::isnan(phase.data()[at])) continue;
-      place = static_cast<int>(raster_.size());
-      raster_.push_back(at);
-      column_.push_back(u);
-    }
-  }
-}
-
-void SparsePropagation::load(const Frame& frame, const UnwrapLimits& limits,
-                             const PhaseSigma& sigma, const std::vector<double>& residual_sigma_m,
-                             const WrapCountPrior& prior, const ImageU8& mixed) {
-  const auto padded =
-      static_cast<std::size_t>(DiagonalLayout::whole_vectors(static_cast<int>(raster_.size())));
-  pixels_.assign(padded, frame.frequencies(), static_cast<float>(prior.outlier_share));
-  for (std::size_t f = 0; f < frame.frequencies(); ++f) {
-    const auto wavelength_m = static_cast<float>(limits.wavelengths_m[f]);
-    const auto systematic_m2 = static_cast<float>(residual_sigma_m[f] * residual_sigma_m[f]);
-    for (std::size_t i = 0; i < raster_.size(); ++i) {
-      const int at = raster_[i];
-      const float sigma_m = sigma.cycles[f].data()[at] * wavelength_m;
-      pixels_.phases[f][i] = frame.phases[f].data()[at];
-      pixels_.variances_m2[f][i] = sigma_m * sigma_m + systematic_m2;
-    }
-  }
-  for (std::size_t i = 0; i < raster_.size(); ++i) {
-    const int at = raster_[i];
-    if (frame.has_amplitude()) pixels_.amplitude[i] = frame.amplitudes[0].data()[at];
-    if (mixed.data()[at] != 0) pixels_.outlier_share[i] = mixed_outlier_share;
-  }
-}
-
-void SparsePropagation::fill_unary(const UnwrapLimits& limits) {
-  const std::size_t step = pixels_.amplitude.size();
-  const auto counts = static_cast<std::size_t>(counts_);
-  unary_.resize(step * counts);
-  if (step > 0) {
-    UnaryFactors(limits).fill(pixels_, 0, static_cast<int>(step), unary_.data(), step);
-  }
-  evidence_.assign(raster_.size() * stride_, 0.0F);
-  for (std::size_t n = 0; n < counts; ++n) {
-    const std::uint16_t* plane = unary_.data() + n * step;
-    for (std::size_t i = 0; i < raster_.size(); ++i) {
-      evidence_[i * stride_ + n] = to_float(plane[i]);
-    }
-  }
-}
-
-/// Multiplies the unary factors of a pixel by the message of a certain neighbour with this wrap
-/// count: √ψ. `next` is negative if the pixel's wrap count may be smaller by one.
-void SparsePropagation::absorb(std::size_t pixel, int count, float same, float next) {
-  float* evidence = &evidence_[pixel * stride_];
-  evidence[count] *= std::sqrt(1 + same);
-  const int other = count + (next > 0 ? 1 : -1);
-  if (other >= 0 && other < counts_) evidence[other] *= std::sqrt(1 + std::abs(next));
-}
-
-void SparsePropagation::scale_evidence(std::size_t pixel) {
-  float* evidence = &evidence_[pixel * stride_];
-  const float best = *std::max_element(evidence, evidence + counts_);
-  for (int n = 0; n < counts_; ++n) evidence[n] = std::max(evidence[n] / best, least_evidence);
-}
-
-void SparsePropagation::fill_pairwise(const Frame& frame, const UnwrapLimits& limits,
-                                      const PhaseSigma& sigma, const WrapCountPrior& prior,
-                                      const OwnCounts& own) {
-  const EdgeScale scale(limits, prior);
-  const std::size_t padded = pixels_.amplitude.size();
-  const auto cols = static_cast<int>(frame.cols());
-  const auto size = static_cast<int>(frame.phases[0].size());
-  const auto wavelength_m = static_cast<float>(limits.wavelength_m());
-  std::vector<float> same(padded);
-  std::vector<float> next(padded);
-  for (const Direction direction : {left, above, right, below}) {
-    const bool leads = direction == right || direction == below;
-    const bool is_across = direction == left || direction == right;
-    const int step = (is_across ? 1 : cols) * (leads ? 1 : -1);
-    // The column that has no neighbour in this direction.
-    const int end_col = leads ? cols - 1 : 0;
-    std::vector<int>& neighbour = neighbour_[direction];
-    neighbour.assign(raster_.size(), no_return);
-    neighbours_.assign(padded, 1, 0);
-    for (std::size_t i = 0; i < raster_.size(); ++i) {
-      const int at = raster_[i] + step;
-      if (at < 0 || at >= size || (is_across && column_[i] == end_col)) continue;
-      neighbour[i] = place_[static_cast<std::size_t>(at)];
-      if (neighbour[i] == no_return) continue;
-      const float sigma_m = sigma.cycles[0].data()[at] * wavelength_m;
-      neighbours_.phases[0][i] = frame.phases[0].data()[at];
-      neighbours_.variances_m2[0][i] = sigma_m * sigma_m;
-      if (frame.has_amplitude()) neighbours_.amplitude[i] = frame.amplitudes[0].data()[at];
-    }
-    const PixelsAt own_pixels{pixels_, 0};
-    const PixelsAt other_pixels{neighbours_, 0};
-    if (padded > 0) {
-      fill_pairwise_factors(leads ? own_pixels : other_pixels, leads ? other_pixels : own_pixels,
-                            static_cast<int>(padded), scale, same.data(), next.data());
-    }
-    for (std::size_t i = 0; i < raster_.size(); ++i) {
-      if (neighbour[i] != is_certain) continue;
-      const int count = own.count.data()[raster_[i] + step];
-      absorb(i, count, same[i], leads ? -next[i] : next[i]);
-    }
-    if (!leads) continue;
-    same_[direction - right] = same;
-    next_[direction - right] = next;
-  }
-}
-
-void SparsePropagation::assign(const Frame& frame, const UnwrapLimits& limits,
-                               const PhaseSigma& sigma, const std::vector<double>& residual_sigma_m,
-                               const WrapCountPrior& prior, const OwnCounts& own,
-                               const ImageU8& mixed) {
-  counts_ = limits.count;
-  stride_ = (static_cast<std::size_t>(counts_) + lanes - 1) / lanes * lanes;
-  list_pixels(frame, own);
-  load(frame, limits, sigma, residual_sigma_m, prior, mixed);
-  fill_unary(limits);
-  fill_pairwise(frame, limits, sigma, prior, own);
-  for (std::size_t i = 0; i < raster_.size(); ++i) scale_evidence(i);
-}
-
-void SparsePropagation::weigh_evidence(std::size_t pixel, std::span<const float> factors) {
-  float* evidence = &evidence_[pixel * stride_];
-  for (std::size_t n = 0; n < factors.size(); ++n) evidence[n] *= factors[n];
-  scale_evidence(pixel);
-}
-
-WrapCountBeliefs SparsePropagation::run(const OwnCounts& own, int iterations) {
+WrapCountBeliefs SparsePropagation::run(const UncertainPixels& pixels, const OwnCounts& own,
+                                        int iterations) {
+  using Direction = UncertainPixels::Direction;
   const Eigen::Index rows = own.count.rows();
   const Eigen::Index cols = own.count.cols();
   WrapCountBeliefs beliefs{.count = own.count,
@@ -360,28 +289,32 @@ WrapCountBeliefs SparsePropagation::run(const OwnCounts& own, int iterations) {
                            .runner_up = own.count,
                            .runner_up_probability = ImageF::Zero(rows, cols),
                            .iterations = iterations};
-  messages_.assign((2 * raster_.size() + 1) * stride_, 1.0F);
-  const Graph graph{raster_.size(),
-                    stride_,
-                    evidence_.data(),
+  messages_.assign((2 * pixels.size() + 1) * stride, 1.0F);
+  const auto neighbour = [&](Direction d) { return pixels.neighbours(d).data(); };
+  const Graph graph{pixels.size(),
+                    pixels.evidence().data(),
+                    pixels.counts().data(),
                     messages_.data(),
-                    {neighbour_[left].data(), neighbour_[above].data(), neighbour_[right].data(),
-                     neighbour_[below].data()},
-                    {same_[0].data(), same_[1].data()},
-                    {next_[0].data(), next_[1].data()}};
-  Scratch scratch{};
+                    {neighbour(Direction::left), neighbour(Direction::above),
+                     neighbour(Direction::right), neighbour(Direction::below)},
+                    {pixels.same(Direction::right).data(), pixels.same(Direction::below).data()},
+                    {pixels.next(Direction::right).data(), pixels.next(Direction::below).data()}};
+  const bool share = pixels.share_slots();
+  Scratch scratch;
+  const auto forward = [&] { (share ? sweep_shared_forward : sweep_forward)(graph, scratch); };
   for (int i = 0; i + 1 < iterations; ++i) {
-    sweep_forward(graph, scratch);
-    sweep_backward(graph, scratch);
+    forward();
+    (share ? sweep_shared_backward : sweep_backward)(graph, scratch);
   }
   before_.clear();
-  for_each_watched(size(), stride_, [&](std::size_t first, std::size_t count) {
+  for_each_watched(pixels.size(), [&](std::size_t first, std::size_t count) {
     before_.insert(before_.end(), &messages_[first], &messages_[first] + count);
   });
-  sweep_forward(graph, scratch);
-  read_backward(graph, counts_, raster_.data(), scratch, beliefs);
+  forward();
+  (share ? read_shared_backward : read_backward)(graph, static_cast<int>(pixels.used_slots()),
+                                                 pixels.raster().data(), scratch, beliefs);
   const float* before = before_.data();
-  for_each_watched(size(), stride_, [&](std::size_t first, std::size_t count) {
+  for_each_watched(pixels.size(), [&](std::size_t first, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       const float change = std::abs(std::sqrt(messages_[first + i]) - std::sqrt(*before++));
       beliefs.largest_message_change = std::max(beliefs.largest_message_change, double{change});

@@ -31,26 +31,31 @@ std::uint8_t nearest_count(float block_cycles, float phase, int counts) {
       std::clamp(static_cast<int>(std::lround(block_cycles - phase)), 0, counts - 1));
 }
 
-/// Converts the beliefs of a block into the coarse-to-fine prior of one of its pixels: a factor for
-/// each wrap count of the pixel.
-void set_factors(const WrapCountBeliefs& coarse, Eigen::Index row, Eigen::Index col,
-                 float block_phase, float phase, std::vector<float>& factors) {
+/// The coarse-to-fine prior of a noisy pixel: what the beliefs of its block say of its wrap counts.
+struct BlockPrior {
+  std::uint8_t best = 0;
+  std::uint8_t runner_up = 0;
+  float best_factor = 1;
+  float runner_up_factor = 1;
+  float others_factor = 1;
+};
+
+/// The prior of a pixel with this phase.
+BlockPrior block_prior(const WrapCountBeliefs& coarse, Eigen::Index row, Eigen::Index col,
+                       float block_phase, float phase, int counts) {
   // Exponent that tempers the factors: blocks and pixels see the same light, so little of the
   // block's information is new.
   constexpr float news = 0.15F;
   constexpr float least_share = 1e-3F;
-  const auto counts = static_cast<int>(factors.size());
   const float best = coarse.probability(row, col);
   const float runner_up = coarse.runner_up_probability(row, col);
   const float others = (1 - best - runner_up) / static_cast<float>(std::max(counts - 2, 1));
   const float least = std::max(others / best, least_share);
-  const auto set = [&](std::uint8_t count, float share) {
-    const int n = nearest_count(block_phase + static_cast<float>(count), phase, counts);
-    factors[static_cast<std::size_t>(n)] = std::pow(share, news);
+  const auto count = [&](std::uint8_t n) {
+    return nearest_count(block_phase + static_cast<float>(n), phase, counts);
   };
-  std::fill(factors.begin(), factors.end(), std::pow(least, news));
-  set(coarse.runner_up(row, col), std::max(runner_up / best, least));
-  set(coarse.count(row, col), 1);
+  return {count(coarse.count(row, col)), count(coarse.runner_up(row, col)), 1,
+          std::pow(std::max(runner_up / best, least), news), std::pow(least, news)};
 }
 
 /// The probability of the coarse level's wrap count, given that the coarse level is surer than the
@@ -130,40 +135,45 @@ void WrapCountEstimator::Scale::build(const Frame& frame, const UnwrapLimits& li
                                       const PhaseSigma& sigma,
                                       const std::vector<double>& residual_sigma_m,
                                       const WrapCountPrior& prior, const Scale* coarser) {
-  if (is_sparse) sparse.assign(frame, limits, sigma, residual_sigma_m, prior, own, mixed);
-  if (coarser != nullptr && is_loud) take_prior(frame, sigma, limits.count, *coarser);
-}
-
-/// Multiplies the unary factors of noisy pixels by the coarse-to-fine prior of their blocks, which
-/// have 2 x 2 pixels.
-void WrapCountEstimator::Scale::take_prior(const Frame& frame, const PhaseSigma& sigma, int counts,
-                                           const Scale& coarser) {
-  std::vector<float> factors(static_cast<std::size_t>(counts));
+  const WrapCountBeliefs* coarse = coarser != nullptr && is_loud ? &coarser->beliefs : nullptr;
   const Eigen::Index cols = frame.cols();
-  const auto fill_factors = [&](Eigen::Index at) {
-    if (std::isnan(frame.phases[0].data()[at]) || sigma.cycles[0].data()[at] < loud_cycles) {
-      return false;
-    }
+  const auto is_noisy = [&](Eigen::Index at) {
+    return !std::isnan(frame.phases[0].data()[at]) && sigma.cycles[0].data()[at] >= loud_cycles;
+  };
+  const auto prior_at = [&](Eigen::Index at) {
     const Eigen::Index row = at / cols / 2;
     const Eigen::Index col = at % cols / 2;
-    set_factors(coarser.beliefs, row, col, coarser.blocks.frame.phases[0](row, col),
-                frame.phases[0].data()[at], factors);
-    return true;
+    return block_prior(*coarse, row, col, coarser->blocks.frame.phases[0](row, col),
+                       frame.phases[0].data()[at], limits.count);
   };
   if (is_sparse) {
-    for (std::size_t i = 0; i < sparse.size(); ++i) {
-      if (fill_factors(sparse.raster(i))) sparse.weigh_evidence(i, factors);
+    AppendWeights append;
+    if (coarse != nullptr) {
+      append = [&](int at, std::vector<CountWeight>& weights) {
+        if (!is_noisy(at)) return;
+        const BlockPrior block = prior_at(at);
+        weights.push_back({block.best, block.best_factor / block.others_factor});
+        if (block.runner_up == block.best) return;
+        weights.push_back({block.runner_up, block.runner_up_factor / block.others_factor});
+      };
     }
+    uncertain.assign(frame, limits, sigma, residual_sigma_m, prior, own, mixed, append);
     return;
   }
+  if (coarse == nullptr) return;
+  std::vector<float> factors(static_cast<std::size_t>(limits.count));
   for (Eigen::Index at = 0; at < frame.phases[0].size(); ++at) {
-    if (!fill_factors(at)) continue;
+    if (!is_noisy(at)) continue;
+    const BlockPrior block = prior_at(at);
+    std::ranges::fill(factors, block.others_factor);
+    factors[block.runner_up] = block.runner_up_factor;
+    factors[block.best] = block.best_factor;
     model.weigh_evidence(static_cast<int>(at / cols), static_cast<int>(at % cols), factors);
   }
 }
 
 void WrapCountEstimator::Scale::run(int iterations) {
-  beliefs = is_sparse ? sparse.run(own, iterations) : propagation.run(model, iterations);
+  beliefs = is_sparse ? sparse.run(uncertain, own, iterations) : propagation.run(model, iterations);
 }
 
 WrapCountBeliefs WrapCountEstimator::estimate(const Frame& frame, const UnwrapLimits& limits,

@@ -11,6 +11,7 @@
 #include <tofmap/unwrap/joint/frame_halving.hpp>
 #include <tofmap/unwrap/joint/own_counts.hpp>
 #include <tofmap/unwrap/joint/sparse_propagation.hpp>
+#include <tofmap/unwrap/joint/uncertain_pixels.hpp>
 #include <tofmap/unwrap/joint/wrap_count_model.hpp>
 #include <tofmap/unwrap/joint/wrap_count_propagation.hpp>
 
@@ -51,6 +52,7 @@ class WrapCountEstimator {
     bool needs_coarser = false;  ///< is_loud, or a coarser level saves time
     OwnCounts own;
     ImageU8 mixed;
+    UncertainPixels uncertain;
     SparsePropagation sparse;
     WrapCountModel model;
     WrapCountPropagation propagation;
@@ -65,7 +67,6 @@ class WrapCountEstimator {
     void build(const Frame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
                const std::vector<double>& residual_sigma_m, const WrapCountPrior& prior,
                const Scale* coarser);
-    void take_prior(const Frame& frame, const PhaseSigma& sigma, int counts, const Scale& coarser);
     void run(int iterations);
   };
 
