@@ -6,7 +6,9 @@
 #include "common/fast_math.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -36,7 +38,7 @@ ImageF confidence_at(const WrapCountBeliefs& beliefs, float noise_share) {
   const UnwrapLimits limits = unwrap_limits(sensor, 0);
   const double cycles = noise_share / residual_noise_steps(limits);
   return wrap_count_confidence(
-      beliefs,
+      beliefs, ImageF(),
       ImageF::Constant(beliefs.count.rows(), beliefs.count.cols(), static_cast<float>(cycles)),
       limits);
 }
@@ -46,6 +48,32 @@ std::vector<float> noises() {
   std::vector<float> shares;
   for (float share = 1e-3F; share < 2000; share *= 1.3F) shares.push_back(share);
   return shares;
+}
+
+TEST(WrapCountConfidence, FallsWithJumpsOfTheRangeIfThereAreThreeFrequencies) {
+  WrapCountBeliefs beliefs;
+  beliefs.count = ImageU8::Ones(5, 7);
+  beliefs.other_probability = ImageF::Constant(5, 7, 1e-12F);
+  beliefs.probability = ImageF::Ones(5, 7);
+  ImageF range_m = ImageF::Constant(5, 7, 4);
+  range_m(2, 3) = 6;                                        // four jumps
+  range_m.col(6).setConstant(5);                            // one jump
+  range_m(0, 0) = std::numeric_limits<float>::quiet_NaN();  // no jump to where there is no range
+  SensorModel sensor;
+  const auto confidence_with = [&](std::vector<double> frequencies_hz) {
+    sensor.modulation.frequencies_hz = std::move(frequencies_hz);
+    return wrap_count_confidence(beliefs, range_m, ImageF::Constant(5, 7, 0.003F),
+                                 unwrap_limits(sensor, 0));
+  };
+  const ImageF three = confidence_with({80e6, 16e6, 120e6});
+  EXPECT_LT(three(2, 3), three(2, 2)) << "four jumps and one";
+  EXPECT_LT(three(2, 2), three(4, 1)) << "one and none";
+  EXPECT_EQ(three(1, 3), three(2, 2));
+  EXPECT_EQ(three(2, 5), three(2, 6)) << "on both sides";
+  EXPECT_EQ(three(0, 1), three(4, 1));
+  EXPECT_EQ(three(4, 0), three(4, 1)) << "at the border";
+  const ImageF two = confidence_with({80e6, 16e6});
+  EXPECT_EQ(two.minCoeff(), two.maxCoeff());
 }
 
 TEST(WrapCountConfidence, RisesWithTheOdds) {

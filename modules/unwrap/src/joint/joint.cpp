@@ -41,16 +41,19 @@ UnwrapResult unwrap_jointly(WrapCountEstimator& estimator, const MeasuredFrame& 
                             const UnwrapLimits& limits, const UnwrapOptions& options) {
   const WrapCountBeliefs beliefs = estimator.estimate(
       frame.returns, limits, frame.sigma, frame.residual_sigma_m, count_estimation(options));
-  const ImageF confidence = wrap_count_confidence(beliefs, frame.sigma.cycles[0], limits);
+  const ImageF& sigma_cycles = frame.sigma.cycles[0];
+  const ImageF unknown = ImageF::Zero(beliefs.count.rows(), beliefs.count.cols());
   UnwrapResult result;
   if (options.fuse_frequencies) {
     const FusedRanges fused =
         fuse_ranges(frame.returns, beliefs.count, limits, frame.sigma, frame.residual_sigma_m);
-    result.image = make_range_image(fused.range_m, fused.sigma_m, beliefs.count, confidence);
+    result.image = make_range_image(fused.range_m, fused.sigma_m, beliefs.count, unknown);
   } else {
-    result.image = make_range_image(frame.returns.phases[0], frame.sigma.cycles[0], beliefs.count,
-                                    confidence, limits.wavelength_m());
+    result.image = make_range_image(frame.returns.phases[0], sigma_cycles, beliefs.count, unknown,
+                                    limits.wavelength_m());
   }
+  result.image.confidence =
+      wrap_count_confidence(beliefs, result.image.range_m, sigma_cycles, limits);
   drop_ambiguous(beliefs, limits, result.image);
   result.iterations = beliefs.iterations;
   return result;

@@ -5,9 +5,11 @@
 
 #include "common/fast_math.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <numbers>
+#include <vector>
 
 #include <tofmap/core/range_image.hpp>
 #include <tofmap/core/vector_clones.hpp>
@@ -59,7 +61,38 @@ struct Pixels {
   const float* others;  ///< probability of all other wrap counts together
   const float* sigma_a_cycles;
   const std::uint8_t* counts;
+  const float* trust;  ///< factor of the log odds, if these are positive
 };
+
+/// Log odds of a pixel with three or more frequencies count this much more than the curves say, and
+/// with each jump to a neighbour this much less. Fitted by maximum likelihood to three `random`
+/// scenes (seeds 11 to 13), with noise of 5 to 30 mm at 1 m, with and without systematic errors.
+constexpr float trust_of_surface = 1.1F;
+constexpr float doubt_of_jump = 0.2F;
+
+/// 1 where the range between two pixels jumps, 0 where it does not or one of them has none.
+TOFMAP_VECTOR_CLONES void find_jumps(int count, const float* range_m, const float* neighbour_m,
+                                     float* jumps) {
+  constexpr float least_m = 0.3F;
+  constexpr float least_share = 0.02F;  // surfaces at a grazing angle
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) {
+    const float difference_m = range_m[i] - neighbour_m[i];
+    const float size_m = difference_m < 0 ? -difference_m : difference_m;
+    const float least = least_m + 0.5F * least_share * (range_m[i] + neighbour_m[i]);
+    jumps[i] = size_m > least ? 1.0F : 0.0F;
+  }
+}
+
+/// The trust in pixels of a row, from the jumps to their four neighbours.
+TOFMAP_VECTOR_CLONES void fill_trust(int count, const float* left, const float* above,
+                                     const float* below, float* trust) {
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) {
+    const float jumps = left[i] + left[i + 1] + above[i] + below[i];
+    trust[i] = trust_of_surface - doubt_of_jump * jumps;
+  }
+}
 
 /// `steps_per_cycle` is the noise of the residual in residual steps if A's phase has a noise of one
 /// cycle.
@@ -91,6 +124,7 @@ TOFMAP_VECTOR_CLONES void fill_confidence(int count, const Pixels& pixels_, floa
       const float weight = 1 - (off > 0 ? off : -off);
       right += (weight > 0 ? weight : 0) * odds;
     }
+    right = right > 0 ? right * pixels.trust[i] : right;
     const float odds_against = exp_of_negative(right > 0 ? -right : right);
     const float probability = (right > 0 ? 1 : odds_against) / (1 + odds_against);
     confidence[i] = pixels.counts[i] == invalid_wrap_count ? 0 : probability;
@@ -99,14 +133,34 @@ TOFMAP_VECTOR_CLONES void fill_confidence(int count, const Pixels& pixels_, floa
 
 }  // namespace
 
-ImageF wrap_count_confidence(const WrapCountBeliefs& beliefs, const ImageF& sigma_a_cycles,
-                             const UnwrapLimits& limits) {
-  const double steps_per_cycle = residual_noise_steps(limits);
-  ImageF confidence(beliefs.count.rows(), beliefs.count.cols());
-  fill_confidence(static_cast<int>(confidence.size()),
-                  {beliefs.probability.data(), beliefs.other_probability.data(),
-                   sigma_a_cycles.data(), beliefs.count.data()},
-                  static_cast<float>(steps_per_cycle), confidence.data());
+ImageF wrap_count_confidence(const WrapCountBeliefs& beliefs, const ImageF& range_m,
+                             const ImageF& sigma_a_cycles, const UnwrapLimits& limits) {
+  const auto steps_per_cycle = static_cast<float>(residual_noise_steps(limits));
+  const Eigen::Index rows = beliefs.count.rows();
+  const Eigen::Index cols = beliefs.count.cols();
+  const auto width = static_cast<int>(cols);
+  const auto size = static_cast<std::size_t>(cols);
+  // Across the border of the image there is no jump.
+  std::vector<float> left(size + 1, 0.0F);
+  std::vector<float> above(size, 0.0F);
+  std::vector<float> below(size, 0.0F);
+  std::vector<float> trust(size, 1.0F);
+  ImageF confidence(rows, cols);
+  for (Eigen::Index v = 0; v < rows; ++v) {
+    const Eigen::Index at = v * cols;
+    if (limits.frequencies() > 2) {
+      const float* row = range_m.data() + at;
+      find_jumps(width - 1, row + 1, row, left.data() + 1);
+      std::ranges::fill(below, 0.0F);
+      if (v + 1 < rows) find_jumps(width, row, row + cols, below.data());
+      fill_trust(width, left.data(), above.data(), below.data(), trust.data());
+      above.swap(below);
+    }
+    fill_confidence(width,
+                    {beliefs.probability.data() + at, beliefs.other_probability.data() + at,
+                     sigma_a_cycles.data() + at, beliefs.count.data() + at, trust.data()},
+                    steps_per_cycle, confidence.data() + at);
+  }
   return confidence;
 }
 

@@ -16,7 +16,11 @@ namespace tofmap {
 /// noise of the residuals relative to their changes by another wrap count (residual_noise_steps).
 /// That noise is computed as if all frequencies had the noise of the first one, since the others
 /// may come from another exposure.
-ImageF wrap_count_confidence(const WrapCountBeliefs& beliefs, const ImageF& sigma_a_cycles,
-                             const UnwrapLimits& limits);
+///
+/// With three or more frequencies, confidence falls with the number of neighbours to which the
+/// range jumps, in `range_m`, which is NaN where there is none: the light of such pixels is often
+/// that of two surfaces. With two, `range_m` is not used.
+ImageF wrap_count_confidence(const WrapCountBeliefs& beliefs, const ImageF& range_m,
+                             const ImageF& sigma_a_cycles, const UnwrapLimits& limits);
 
 }  // namespace tofmap
