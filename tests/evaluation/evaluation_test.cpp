@@ -104,6 +104,25 @@ TEST(TrajectoryScore, MeasuresAPathThatIsTenPercentTooLong) {
   EXPECT_NEAR(score->ate_max_m, 0.25, 1e-9);
 }
 
+TEST(TrajectoryScore, OfAStraightPathFindsTheRotationAboutItByOrientations) {
+  // Positions whose errors of 4 mm would tilt the map by a right angle.
+  Trajectory truth;
+  Trajectory estimate;
+  for (int i = 0; i < 12; ++i) {
+    StampedPose pose;
+    pose.timestamp_s = i;
+    pose.world_from_camera.translation() = Vector3d(0.03 * i, 0.004 * (i % 2), 0);
+    truth.push_back(pose);
+    pose.world_from_camera.translation() = Vector3d(0.03 * i, 0, 0.004 * (i % 2));
+    estimate.push_back(pose);
+  }
+  const auto score = score_trajectory(estimate, truth);
+  ASSERT_TRUE(score);
+  const double angle_rad = Eigen::AngleAxisd(score->truth_from_estimate.rotation()).angle();
+  EXPECT_LT(angle_rad, 0.01);
+  EXPECT_LT(score->ate_rmse_m, 0.004);
+}
+
 TEST(TrajectoryScore, NeedsThreePosesOfTheSameTime) {
   Trajectory late = straight_path();
   for (StampedPose& pose : late) pose.timestamp_s += 0.5;
