@@ -66,7 +66,7 @@ ImportedRecording open_kinect2(const ImportInput& input) {
   refuse_sequence(input.path);
   auto source = std::make_unique<Kinect2Source>(kinect2::open_recording(input.path, input.p0));
   std::vector<std::string> warnings = warnings_about(source->recording());
-  return {std::move(source), {}, std::move(warnings), ImportedTruth(input.path)};
+  return {std::move(source), {}, {}, std::move(warnings), ImportedTruth(input.path)};
 }
 
 ImportedRecording open_correlation(const ImportInput& input) {
@@ -83,8 +83,11 @@ ImportedRecording open_correlation(const ImportInput& input) {
   auto source = std::make_unique<CorrelationSource>(
       CorrelationReader(read_correlation_description(input.path)), input.keep_inconsistent);
   const CorrelationSource* counts = source.get();
-  return {
-      std::move(source), [counts] { return counts->inconsistent_pixels(); }, {}, ImportedTruth()};
+  return {std::move(source),
+          [counts] { return counts->inconsistent_pixels(); },
+          [counts] { return counts->relative_residuals(); },
+          {},
+          ImportedTruth()};
 }
 
 }  // namespace

@@ -55,6 +55,9 @@ struct ImportedRecording {
   std::unique_ptr<FrameSource> source;
   /// Number of inconsistent pixels of all frames so far. Empty if the format cannot tell.
   std::function<std::int64_t()> inconsistent_pixels;
+  /// For each frequency, how large the residuals of the steps are relative to the amplitude
+  /// (CorrelationSource::relative_residuals). Empty if the format has no residuals.
+  std::function<std::vector<double>()> relative_residuals;
   std::vector<std::string> warnings;  ///< what is assumed, and what is missing
   ImportedTruth truth;
 };

@@ -54,6 +54,15 @@ class CorrelationDescriptionFile : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
+TEST_F(CorrelationDescriptionFile, HasMetresNotMillimetresAndRadiansNotDegrees) {
+  EXPECT_THAT(complaint("phase_sign", "max_range_m: 18700\nphase_sign"),
+              HasSubstr("give metres, not millimetres"));
+  EXPECT_EQ(complaint("phase_sign", "max_range_m: 18.7\nphase_sign"), "");
+  EXPECT_THAT(complaint("step_angles_deg", "step_angles_rad"), HasSubstr("step_angles_deg"));
+  EXPECT_EQ(
+      complaint("step_angles_deg: [0, 90, 180, 270]", "step_angles_rad: [0, 1.57, 3.14, 4.7]"), "");
+}
+
 TEST_F(CorrelationDescriptionFile, ThatIsWholeNeedsNoOtherFile) {
   EXPECT_EQ(complaint("version: 1", "version: 1"), "");
 }
@@ -134,7 +143,7 @@ TEST_F(CorrelationDescriptionFile, WithContradictoryAxesIsRefused) {
               HasSubstr("data.images is missing"));
   EXPECT_THAT(
       of_data("{files: a.npy, axes: [frame, image, row, column], images: [[0, 0], [0, 1]]}"),
-      HasSubstr("has 2 entries, but there are 8 step angles"));
+      HasSubstr("names 2 images, but there are 8 step angles"));
   EXPECT_THAT(
       of_data("{files: a.npy, axes: [frame, image, row, column], images: [[0, 0], [0, 0]]}"),
       HasSubstr("[0, 0] twice"));

@@ -261,7 +261,7 @@ TEST_F(BadKinect2Recording, HasAPathOfPhaseOffsetsThatLeadsOut) {
 
 TEST_F(BadKinect2Recording, HasNoManifestAlthoughItIsComplete) {
   std::filesystem::remove(folder_ / "manifest.json");
-  expect_refusal({"manifest.json: cannot be read"});
+  expect_refusal({"manifest.json: no such file", "remove recording.complete"});
 }
 
 TEST_F(BadKinect2Recording, HasNoManifestBecauseItWasInterrupted) {

@@ -47,6 +47,21 @@ TEST_F(Kinect2P0Tables, ReadBackAsWritten) {
   expect_same(read_p0_tables(file()), test::sample_p0_tables());
 }
 
+TEST_F(Kinect2P0Tables, OfOneNumberOrOfUnrelatedOnesAreRefused) {
+  P0Tables p0 = test::sample_p0_tables();
+  p0.tables[1].setZero();
+  write_p0_tables(file(), p0);
+  expect_refusal("table 1 is 0 everywhere");
+  std::uint32_t number = 1;
+  for (std::uint16_t& value : p0.tables[1].reshaped()) {
+    number = number * 1664525U + 1013904223U;  // a linear congruential generator
+    value = static_cast<std::uint16_t>(number >> 16U);
+  }
+  std::filesystem::remove(file());
+  write_p0_tables(file(), p0);
+  expect_refusal("table 1 holds unrelated numbers");
+}
+
 TEST_F(Kinect2P0Tables, HaveTheLayoutOfTheCamerasAnswer) {
   const P0Tables p0 = test::sample_p0_tables();
   write_p0_tables(file(), p0);

@@ -321,6 +321,35 @@ TEST_F(CorrelationImport, KeepsInconsistentPixelsIfAskedTo) {
   EXPECT_FALSE(std::isnan((*SequenceReader(out_).read(1).frame).phases[0](0, 5)));
 }
 
+TEST_F(CorrelationImport, SaysWhenTheDescriptionIsNotThatOfTheData) {
+  const std::string right = read_text(description_);
+  EXPECT_THAT(import().out,
+              AllOf(HasSubstr("residuals of the steps of A: "), Not(HasSubstr("warning"))));
+  struct Wrong {
+    std::string was;
+    std::string is;
+  };
+  for (const auto& [was, is] : {Wrong{"[0, 90, 180, 270]", "[90, 0, 180, 270]"},
+                                Wrong{"[0, 90, 180, 270]", "[0, 180, 90, 270]"}}) {
+    std::string text = right;
+    text.replace(text.find(was), was.size(), is);
+    std::ofstream(description_) << text;
+    fs::remove_all(out_);
+    const Finished finished = import();
+    EXPECT_EQ(finished.status, 0) << finished.err;
+    EXPECT_THAT(finished.out, AllOf(HasSubstr("warning: the steps of A contradict each other by"),
+                                    HasSubstr("step angles and their order")))
+        << is;
+    EXPECT_GT(read_json(out_ / "report.json")["relative_residuals"][0], 0.15);
+  }
+}
+
+TEST_F(CorrelationImport, SaysWhenNoPixelHasAReturn) {
+  std::ofstream(description_, std::ios::app) << "amplitude: {min: 1000}\n";
+  EXPECT_THAT(import().out, HasSubstr("warning: 9"));
+  EXPECT_GT(read_json(out_ / "report.json")["empty_pixels"], 2700);
+}
+
 TEST_F(CorrelationImport, OfASequenceIsRefused) {
   ASSERT_EQ(import().status, 0);
   const fs::path sequence = folder_.path() / "sequence";

@@ -64,7 +64,8 @@ SensorModel read_sequence_header(const std::filesystem::path& file) {
     const double most_m = invalid_wrap_count * sensor.modulation.wavelength_m(0);
     if (sensor.max_range_m <= most_m) return;
     throw InputError("max_range_m must be at most " + std::to_string(invalid_wrap_count) +
-                     " wavelengths of the first frequency, " + shortest(most_m) + " m");
+                     " wavelengths of the first frequency, " + shortest(most_m) +
+                     " m; give metres, not millimetres");
   });
   return sensor;
 }

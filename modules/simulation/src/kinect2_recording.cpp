@@ -171,7 +171,7 @@ int simulate_kinect2(const Simulator& simulator, int errors_seed,
                simulated.frame.timestamp_s);
     truth.add(simulated);
   }
-  writer.finish();
+  if (writer.count() == total) writer.finish();
   return writer.count();
 }
 

@@ -143,7 +143,10 @@ ArrayLayout array_layout(const ArrayFile& file, const std::vector<ArrayAxis>& ax
                    (file.shape() == ArrayFile::Shape::unknown
                         ? std::to_string(held) + " elements"
                         : "the shape " + sizes_text(file.sizes())) +
-                   ", but the description expects " + expectation(axes, expected));
+                   ", but the description expects " + expectation(axes, expected) +
+                   (file.shape() == ArrayFile::Shape::pages
+                        ? "; a truncated file has fewer pages than its frames need"
+                        : ""));
 }
 
 bool holds_frame(const ArrayFile& file, const ArrayLayout& layout, std::int64_t frame) {

@@ -6,7 +6,11 @@
 #include "description_section.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
+
+#include <tofmap/core/modulation.hpp>
+#include <tofmap/core/range_image.hpp>
 
 namespace tofmap {
 namespace {
@@ -58,7 +62,14 @@ std::vector<std::vector<double>> read_angles(const YamlSection& root, std::size_
     if (of_frequency.size() > most_step_angles) {
       root.fail(name, "has more than " + std::to_string(most_step_angles) + " steps");
     }
-    for (double& angle : of_frequency) angle *= in_degrees ? std::numbers::pi / 180 : 1;
+    constexpr double most_rad = 4 * std::numbers::pi;
+    for (double& angle : of_frequency) {
+      if (!in_degrees && std::abs(angle) > most_rad) {
+        root.fail(name, "has " + shortest(angle) +
+                            ", more than two turns; give degrees as step_angles_deg");
+      }
+      angle *= in_degrees ? std::numbers::pi / 180 : 1;
+    }
   }
   return angles;
 }
@@ -95,8 +106,10 @@ ArrayFiles read_data(const YamlSection& section, const CorrelationDescription& d
     steps_differ |= design.steps() != sizes.steps;
   }
   const std::size_t unused = std::ranges::count(files.images, StepPlace{-1, -1});
-  if (!files.images.empty()) {
-    check_count(section, "images", files.images.size() - unused, images, "step angles");
+  if (!files.images.empty() && files.images.size() - unused != images) {
+    section.fail(section.key("images"), "names " + std::to_string(files.images.size() - unused) +
+                                            " images, but there are " + std::to_string(images) +
+                                            " step angles");
   }
   const auto is_axis = [&](ArrayAxis axis) { return std::ranges::count(files.axes, axis) > 0; };
   if (steps_differ && is_axis(ArrayAxis::step) && is_axis(ArrayAxis::frequency)) {
@@ -154,6 +167,13 @@ void read_exposure(const YamlSection& root, CorrelationDescription& description)
   description.max_range_m = root.value<double>("max_range_m", "a number of metres");
   if (!(description.max_range_m > 0)) {
     root.fail("max_range_m", "must be above 0; leave it out if it is not known");
+  }
+  Modulation modulation;
+  modulation.frequencies_hz = description.frequencies_hz;
+  if (description.max_range_m > invalid_wrap_count * modulation.wavelength_m(0)) {
+    root.fail("max_range_m", "is " + shortest(description.max_range_m) +
+                                 " m, more than 255 wavelengths of the first frequency; give "
+                                 "metres, not millimetres");
   }
 }
 

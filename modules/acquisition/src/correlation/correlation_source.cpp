@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+
+#include <tofmap/core/median.hpp>
 
 namespace tofmap {
 namespace {
@@ -95,6 +98,30 @@ ScaledImages scaled(const FrequencyMeasurement& measured, double scale, bool kee
   return images;
 }
 
+/// The residual relative to amplitude and residual together, in the median pixel of the quarter in
+/// which these are largest. Saturated pixels are left out. NaN if residuals are not known, or
+/// without light.
+double relative_residual(const FrequencyMeasurement& measured) {
+  struct Pixel {
+    float signal;
+    float residual;
+  };
+  std::vector<Pixel> pixels;
+  for (Eigen::Index i = 0; i < measured.residual.size(); ++i) {
+    const float residual = measured.residual.data()[i];
+    const float signal = std::hypot(measured.amplitude.data()[i], residual);
+    if (measured.saturated.data()[i] == 0 && signal > 0) pixels.push_back({signal, residual});
+  }
+  if (pixels.empty()) return nan;
+  const auto bright = pixels.begin() + static_cast<std::ptrdiff_t>(3 * pixels.size() / 4);
+  std::ranges::nth_element(pixels, bright, {}, &Pixel::signal);
+  std::vector<double> shares;
+  for (auto pixel = bright; pixel != pixels.end(); ++pixel) {
+    shares.push_back(double{pixel->residual} / double{pixel->signal});
+  }
+  return median(shares);
+}
+
 std::int64_t count_inconsistent(const std::vector<FrequencyMeasurement>& frequencies) {
   ImageU8 inconsistent = frequencies.front().inconsistent;
   ImageU8 saturated = frequencies.front().saturated;
@@ -120,13 +147,25 @@ Frame CorrelationSource::frame_of(const CorrelationFrame& read) {
   Frame frame;
   frame.index = read.index;
   frame.timestamp_s = read.timestamp_s;
-  for (const FrequencyMeasurement& measured : read.frequencies) {
+  relative_residuals_.resize(read.frequencies.size());
+  for (std::size_t f = 0; f < read.frequencies.size(); ++f) {
+    const FrequencyMeasurement& measured = read.frequencies[f];
+    const double residual = relative_residual(measured);
+    if (std::isfinite(residual)) relative_residuals_[f].push_back(residual);
     ScaledImages images = scaled(measured, amplitude_scale_, keep_inconsistent_);
     frame.phases.push_back(std::move(images.phase));
     frame.amplitudes.push_back(std::move(images.amplitude));
   }
   inconsistent_pixels_ += count_inconsistent(read.frequencies);
   return frame;
+}
+
+std::vector<double> CorrelationSource::relative_residuals() const {
+  std::vector<double> medians;
+  for (std::vector<double> of_frames : relative_residuals_) {
+    medians.push_back(of_frames.empty() ? nan : median(of_frames));
+  }
+  return medians;
 }
 
 std::optional<SourcedFrame> CorrelationSource::next() {

@@ -93,7 +93,9 @@ std::string ImageFiles::damage(int frame) const {
   const std::int64_t number = frames_[static_cast<std::size_t>(frame)];
   for (const auto& [path, opened] : open_) {
     if (holds_frame(opened.file, opened.layout, number)) continue;
-    return path.string() + ": is too short for frame " + std::to_string(frame);
+    return path.string() + ": is too short for frame " + std::to_string(frame) +
+           "; is it truncated, or are data.byte_offset, data.type, data.axes and the camera's size "
+           "not those of the file?";
   }
   if (!has_files_a_frame_) return "";
   for (int frequency = 0; frequency < sizes_.frequencies; ++frequency) {

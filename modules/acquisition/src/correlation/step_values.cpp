@@ -4,6 +4,7 @@
 #include "tofmap/acquisition/correlation/step_values.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <type_traits>
 
@@ -90,6 +91,7 @@ StepImage step_image(std::span<const std::byte> frame, const ElementType& type,
         } else {
           value = static_cast<float>(stored);
         }
+        if (!std::isfinite(value)) continue;  // no measurement, saturated or not
         saturated |= value >= values.saturated_from || value <= values.saturated_up_to;
       }
     }

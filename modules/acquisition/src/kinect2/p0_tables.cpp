@@ -5,9 +5,12 @@
 
 #include "binary_file.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include <tofmap/acquisition/kinect2/packet.hpp>
 #include <tofmap/core/error.hpp>
@@ -38,6 +41,28 @@ ImageU16 table_at(const std::vector<std::uint8_t>& bytes, std::size_t offset) {
   return table;
 }
 
+/// Throws InputError unless the values may be phases: offsets of a sensor vary from pixel to pixel,
+/// and less than unrelated numbers, whose median difference is a quarter of the range of 16 bits.
+void check_table(const ImageU16& table, int number, const std::filesystem::path& file) {
+  if (table.minCoeff() == table.maxCoeff()) {
+    throw InputError(file.string() + ": table " + std::to_string(number) + " is " +
+                     std::to_string(table(0, 0)) + " everywhere; " + where_from);
+  }
+  constexpr int most_difference = 8192;
+  std::vector<int> differences;
+  for (Eigen::Index row = 0; row < table.rows(); ++row) {
+    for (Eigen::Index col = 1; col < table.cols(); ++col) {
+      const auto step = static_cast<std::int16_t>(table(row, col) - table(row, col - 1));
+      differences.push_back(std::abs(int{step}));
+    }
+  }
+  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::nth_element(differences.begin(), middle, differences.end());
+  if (*middle <= most_difference) return;
+  throw InputError(file.string() + ": table " + std::to_string(number) +
+                   " holds unrelated numbers, not phase offsets; " + where_from);
+}
+
 void append_little_endian(std::vector<std::uint8_t>& bytes, std::size_t value, int count) {
   for (int i = 0; i < count; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
 }
@@ -61,8 +86,10 @@ P0Tables read_p0_tables(const std::filesystem::path& file) {
   }
   P0Tables tables;
   std::size_t offset = is_bare ? 0 : header_bytes + margin_bytes;
+  int number = 0;
   for (ImageU16& table : tables.tables) {
     table = table_at(bytes, offset);
+    check_table(table, number++, file);
     offset += is_bare ? value_bytes : table_bytes;
   }
   return tables;

@@ -53,7 +53,12 @@ Recording open_directory(const std::filesystem::path& folder) {
   const std::filesystem::path marker = folder / "recording.complete";
   recording.is_complete = is_there(marker) && !std::filesystem::is_empty(marker, unknown);
   Manifest manifest;
-  if (is_there(folder / "manifest.json") || recording.is_complete) {
+  if (!is_there(folder / "manifest.json") && recording.is_complete) {
+    throw InputError((folder / "manifest.json").string() +
+                     ": no such file, though the recording is complete; copy it from the original, "
+                     "or remove recording.complete to import with typical intrinsics");
+  }
+  if (is_there(folder / "manifest.json")) {
     manifest = read_manifest(folder / "manifest.json");
     recording.camera = manifest.camera;
     recording.serial = manifest.serial;

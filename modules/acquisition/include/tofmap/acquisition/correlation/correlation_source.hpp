@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <tofmap/acquisition/correlation/correlation_reader.hpp>
 #include <tofmap/acquisition/frame_source.hpp>
@@ -42,6 +43,12 @@ class CorrelationSource final : public FrameSource {
   /// saturated at none.
   std::int64_t inconsistent_pixels() const { return inconsistent_pixels_; }
 
+  /// For each frequency, the median over the frames so far of how large
+  /// FrequencyMeasurement::residual is relative to amplitude and residual together (√(a² + r²)), in
+  /// the median pixel of the quarter in which these are largest. A description that is not that of
+  /// the data makes it large in all pixels. NaN where it is not known.
+  std::vector<double> relative_residuals() const;
+
  private:
   Frame frame_of(const CorrelationFrame& read);
 
@@ -50,6 +57,7 @@ class CorrelationSource final : public FrameSource {
   double amplitude_scale_ = 1;
   bool keep_inconsistent_ = false;
   std::int64_t inconsistent_pixels_ = 0;
+  std::vector<std::vector<double>> relative_residuals_;  ///< of each frequency, of each frame
   int next_ = 0;
 };
 
