@@ -27,8 +27,10 @@
 #include <nlohmann/json.hpp>
 
 #include <tofmap/acquisition/sequence.hpp>
+#include <tofmap/core/error.hpp>
 #include <tofmap/core/text.hpp>
 #include <tofmap/evaluation/method_run.hpp>
+#include <tofmap/unwrap/unwrap.hpp>
 #include <tofmap/visualization/map_pictures.hpp>
 
 namespace tofmap::app {
@@ -83,6 +85,32 @@ void write_method(const OutputFolder& out, const MethodResult& result) {
   write_trajectory(out.path() / result.name / "trajectory.txt", result.map->trajectory);
 }
 
+/// The methods that are named, and those that a recording with one frequency rules out.
+struct MethodChoice {
+  std::vector<UnwrapMethod> methods;
+  std::vector<std::string> skipped;  ///< a text for each of the others, with the reason
+};
+
+/// Throws UsageError if no method is left.
+MethodChoice choose_methods(const ProgramOptions& options, const SensorModel& sensor) {
+  const std::vector<UnwrapMethod>& named = options.evaluation.methods;
+  if (sensor.modulation.count() > 1) return {named, {}};
+  MethodChoice choice;
+  for (const UnwrapMethod method : named) {
+    UnwrapOptions unwrap = options.pipeline.unwrap;
+    unwrap.method = method;
+    try {
+      const Unwrapper unwrapper(sensor, unwrap);
+      if (options.evaluation.down_to == EvaluatedStage::map) check_mappable(sensor, unwrap);
+      choice.methods.push_back(method);
+    } catch (const UsageError& error) {
+      if (method == named.back() && choice.methods.empty()) throw;
+      choice.skipped.push_back(fmt::format("{} was skipped: {}", name_of(method), error.what()));
+    }
+  }
+  return choice;
+}
+
 /// The results of the methods that were to be compared.
 struct Evaluated {
   Json report;
@@ -114,13 +142,15 @@ Evaluated evaluate_methods(const std::vector<UnwrapMethod>& methods, const Outpu
 }
 
 void write_report(const OutputFolder& out, Evaluated& evaluated, const RecordedTruth& truth,
-                  const PipelineOptions& options, const SourceSurvey& survey) {
+                  const PipelineOptions& options, const SourceSurvey& survey,
+                  const std::vector<std::string>& skipped) {
   Json& report = evaluated.report;
   for (const MethodResult& result : evaluated.results) {
     add_judgement(report, result, options, all_warnings(survey, result));
   }
   report["interrupted"] = evaluated.interrupted;
   if (!evaluated.failures.empty()) report["failed"] = evaluated.failures.texts();
+  if (!skipped.empty()) report["skipped"] = skipped;
   if (!truth.remarks().empty()) report["truth_left_out"] = truth.remarks();
   out.write_text("report.json", json_text(report));
 }
@@ -163,11 +193,11 @@ Truth truth_of(const SequenceReader& source, const RecordedTruth& recorded, bool
 }
 
 /// Warnings about the evaluation itself, for the page.
-std::vector<std::string> page_warnings(const Evaluated& evaluated,
-                                       const std::vector<UnwrapMethod>& methods) {
-  std::vector<std::string> warnings;
+std::vector<std::string> page_warnings(const Evaluated& evaluated, const MethodChoice& choice) {
+  std::vector<std::string> warnings = choice.skipped;
   if (evaluated.interrupted) {
-    warnings.push_back("the run was interrupted; " + what_is_missing(methods, evaluated.done));
+    warnings.push_back("the run was interrupted; " +
+                       what_is_missing(choice.methods, evaluated.done));
   }
   for (const std::string& text : evaluated.failures.texts()) {
     warnings.push_back("failed, and is missing here: " + text);
@@ -180,16 +210,17 @@ int run_evaluate(const EvaluateArguments& arguments) {
   OptionTable table = arguments.common.resolve("evaluate", options);
   arguments.recording.apply(table);
   check_methods(options.evaluation);
-  const std::vector<UnwrapMethod>& methods = options.evaluation.methods;
   const bool down_to_map = options.evaluation.down_to == EvaluatedStage::map;
   const bool quiet = arguments.common.quiet;
 
   const SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
+  const MethodChoice choice = choose_methods(options, source.sensor());
   OutputFolder out(arguments.out);
   const RecordedTruth recorded(source);
   const Truth truth = down_to_map ? truth_of(source, recorded, quiet) : Truth{};
   if (!quiet) say_what_is_missing(source, recorded, down_to_map);
-  Evaluated evaluated = evaluate_methods(methods, out, [&](UnwrapMethod method) {
+  if (!quiet) print_warnings(choice.skipped);
+  Evaluated evaluated = evaluate_methods(choice.methods, out, [&](UnwrapMethod method) {
     Progress progress(fmt::format("method {}, frame", name_of(method)), source.frame_count(),
                       quiet);
     const MethodRun run{.method = method,
@@ -202,8 +233,8 @@ int run_evaluate(const EvaluateArguments& arguments) {
     return down_to_map ? run_down_to_map(run, source, recorded, truth)
                        : run_unwrapping(run, source, recorded);
   });
-  const SourceSurvey survey = survey_source(source);
-  write_report(out, evaluated, recorded, options.pipeline, survey);
+  const SourceSurvey survey = survey_source(source, options.pipeline.unwrap);
+  write_report(out, evaluated, recorded, options.pipeline, survey, choice.skipped);
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit(evaluated.interrupted ? Completeness::interrupted : Completeness::whole);
   for (const std::string& text : evaluated.failures.texts()) {
@@ -212,7 +243,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
   if (!evaluated.results.empty()) print_table(evaluated.report);
   if (evaluated.interrupted && !evaluated.results.empty()) {
     std::fprintf(stderr, "tofmap: interrupted; %s\n",
-                 what_is_missing(methods, evaluated.done).c_str());
+                 what_is_missing(choice.methods, evaluated.done).c_str());
   }
   const int status = evaluated.interrupted ? exit_status::interrupted
                                            : evaluated.failures.status_or(exit_status::done);
@@ -227,7 +258,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
                                       evaluated.results,
                                       evaluated.report,
                                       survey,
-                                      page_warnings(evaluated, methods),
+                                      page_warnings(evaluated, choice),
                                       options,
                                       table.to_yaml(false)};
   const int end =

@@ -242,8 +242,11 @@ int run_unwrap(const UnwrapArguments& arguments) {
   out.write_text("options.yaml", table.to_yaml(false));
   out.commit(interrupted ? Completeness::interrupted : Completeness::whole);
   say_what_is_missing(result);
-  if (const auto warning = frequency_warning(source.sensor().modulation))
-    print_warnings({*warning});
+  const UnwrapOptions& unwrap = options.pipeline.unwrap;
+  for (const auto& warning : {frequency_warning(source.sensor(), unwrap.max_range_m),
+                              pair_warning(unwrap, source.sensor())}) {
+    if (warning) print_warnings({*warning});
+  }
   if (!arguments.common.quiet) {
     std::printf("%d of %d frames unwrapped, %d damaged: %s\n", done - result.damaged, total,
                 result.damaged, out.final_path().c_str());

@@ -74,7 +74,7 @@ LiveInput::LiveInput(const std::string& uri, const ProgramOptions& options, cons
       timeout_s_(options.device.timeout_s),
       source_(uri, camera_settings(options, wanted)),
       queue_(source_, options.live.queue, policy(options.live, source_)),
-      watched_(queue_) {}
+      watched_(queue_, options.pipeline.unwrap) {}
 
 std::string LiveInput::losses() const {
   const PairingCounts counts = source_.counts();

@@ -9,7 +9,7 @@
 namespace tofmap::app {
 
 MapInput::MapInput(const std::filesystem::path& source, const ProgramOptions& options)
-    : name_(source.string()) {
+    : name_(source.string()), unwrap_(options.pipeline.unwrap) {
   if (is_device_uri(name_)) {
     live_.emplace(name_, options, LiveInput::Wanted{});
   } else {
@@ -22,7 +22,7 @@ FrameSource& MapInput::frames() {
 }
 
 SourceSurvey MapInput::survey() {
-  return recording_ ? survey_source(*recording_) : live_->survey();
+  return recording_ ? survey_source(*recording_, unwrap_) : live_->survey();
 }
 
 void MapInput::close() {

@@ -50,6 +50,7 @@ class MapInput {
 
  private:
   std::string name_;
+  UnwrapOptions unwrap_;
   std::optional<SequenceReader> recording_;
   std::optional<LiveInput> live_;
   std::string losses_;

@@ -13,8 +13,10 @@
 #include <tofmap/core/text.hpp>
 #include <tofmap/diagnostics/axial_depth.hpp>
 #include <tofmap/diagnostics/camera_warning.hpp>
+#include <tofmap/diagnostics/copied_images.hpp>
 #include <tofmap/diagnostics/recording_survey.hpp>
 #include <tofmap/diagnostics/swapped_amplitude.hpp>
+#include <tofmap/unwrap/common/compared_pair.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -23,11 +25,13 @@ namespace {
 constexpr std::size_t enough = 12;
 
 /// The survey of the first frames of a source, without times.
-SourceSurvey survey_of(const std::vector<Frame>& first, const SensorModel& sensor) {
+SourceSurvey survey_of(const std::vector<Frame>& first, const SensorModel& sensor,
+                       const UnwrapOptions& unwrap) {
   SourceSurvey survey;
   if (auto warning = camera_warning(sensor.camera)) survey.warnings.push_back(*std::move(warning));
   for (const auto& warning :
-       {frequency_warning(sensor.modulation), swapped_amplitude_warning(first),
+       {frequency_warning(sensor, unwrap.max_range_m), pair_warning(unwrap, sensor),
+        copied_images_warning(first), swapped_amplitude_warning(first),
         axial_depth_warning(first, sensor)}) {
     if (!warning) continue;
     survey.warnings.push_back(*warning);
@@ -95,7 +99,7 @@ std::vector<std::string> warnings_about(const SourceSurvey& survey, const ErrorS
   return warnings;
 }
 
-SourceSurvey survey_source(const SequenceReader& recording) {
+SourceSurvey survey_source(const SequenceReader& recording, const UnwrapOptions& unwrap) {
   std::vector<Frame> first;
   std::vector<double> times_s;
   for (int i = 0; i < *recording.frame_count(); ++i) {
@@ -105,7 +109,7 @@ SourceSurvey survey_source(const SequenceReader& recording) {
     SourcedFrame sourced = recording.read(i);
     if (sourced.frame) first.push_back(*std::move(sourced.frame));
   }
-  SourceSurvey survey = survey_of(first, recording.sensor());
+  SourceSurvey survey = survey_of(first, recording.sensor(), unwrap);
   survey.times_s = std::move(times_s);
   return survey;
 }
@@ -121,7 +125,7 @@ std::optional<SourcedFrame> WatchedSource::next() {
 }
 
 void WatchedSource::survey_first() {
-  survey_ = survey_of(first_, sensor());
+  survey_ = survey_of(first_, sensor(), unwrap_);
   first_.clear();
 }
 

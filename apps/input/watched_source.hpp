@@ -9,6 +9,7 @@
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/diagnostics/error_survey.hpp>
 #include <tofmap/diagnostics/residual_survey.hpp>
+#include <tofmap/unwrap/common/unwrap_options.hpp>
 
 namespace tofmap::app {
 
@@ -27,15 +28,17 @@ std::vector<std::string> warnings_about(const SourceSurvey& survey,
                                         const ErrorSurvey* errors = nullptr,
                                         bool map_agrees = false);
 
-/// Surveys a recording, of which only the first frames are read.
-SourceSurvey survey_source(const SequenceReader& recording);
+/// Surveys a recording that is to be unwrapped with these options. Only its first frames are read.
+SourceSurvey survey_source(const SequenceReader& recording, const UnwrapOptions& unwrap);
 
 /// Passes on the frames of another source and checks them (docs/cameras.md). The first frames are
 /// checked for wrong frequencies, for swapped images and for depths along the optical axis in place
 /// of ranges; all frames are checked for gaps in time.
 class WatchedSource final : public FrameSource {
  public:
-  explicit WatchedSource(FrameSource& source) : source_(source) {}
+  /// The frames are to be unwrapped with these options.
+  WatchedSource(FrameSource& source, const UnwrapOptions& unwrap)
+      : source_(source), unwrap_(unwrap) {}
 
   const SensorModel& sensor() const override { return source_.sensor(); }
   std::optional<SourcedFrame> next() override;
@@ -48,6 +51,7 @@ class WatchedSource final : public FrameSource {
   void survey_first();
 
   FrameSource& source_;
+  UnwrapOptions unwrap_;
   std::vector<Frame> first_;
   std::optional<SourceSurvey> survey_;  ///< without times; empty until enough frames were read
   std::vector<double> times_s_;         ///< SourceSurvey::times_s

@@ -29,14 +29,15 @@ namespace {
 Picture jump_stages_picture(const Frame& recorded, const SensorModel& sensor,
                             const UnwrapOptions& options) {
   const JumpMethod method = jump_method(options.method);
-  const auto a = static_cast<std::size_t>(options.pair_first - 1);
+  const ComparedPair pair = compared_pair(options, sensor.modulation);
   // `single` has no second frequency.
-  const auto b = method.has_frequency_term ? static_cast<std::size_t>(options.pair_second - 1) : a;
-  const Frame frame = frequency_pair(recorded, a, b);
+  const std::size_t b = method.has_frequency_term ? pair.b : pair.a;
+  const Frame frame = frequency_pair(recorded, pair.a, b);
   JumpEstimator estimator;
-  const JumpEstimate& jumps =
-      estimator.estimate(frame, PhaseSigma(frame, estimate_phase_noise(frame)),
-                         unwrap_limits(sensor, options.max_range_m).pair(a, b), method, options);
+  const JumpEstimate& jumps = estimator.estimate(
+      frame, PhaseSigma(frame, estimate_phase_noise(frame)),
+      pair_limits({pair.a, b}, sensor.modulation, unwrap_limits(sensor, options.max_range_m)),
+      method, options);
   const JumpInputs& inputs = jumps.inputs;
   const auto evidence = [&](double trust_discontinuity, double trust_frequency) {
     JumpTerms terms = inputs.terms;

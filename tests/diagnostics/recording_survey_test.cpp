@@ -196,10 +196,13 @@ TEST(OffsetWarning, IsThereWhereUnwrappingDidNotFindTheSameSmallOffset) {
 }
 
 TEST(FrequencyWarning, IsThereWhereOneWavelengthIsAllThatTheFrequenciesTell) {
-  EXPECT_FALSE(frequency_warning({29e6, 31e6}));
-  EXPECT_FALSE(frequency_warning({80e6, 100e6}));
-  EXPECT_THAT(frequency_warning({29e6, 29.001e6}).value_or(""),
+  EXPECT_FALSE(frequency_warning({{}, {29e6, 31e6}}));
+  EXPECT_FALSE(frequency_warning({{}, {80e6, 100e6}}));
+  EXPECT_THAT(frequency_warning({{}, {29e6, 29.001e6}}).value_or(""),
               HasSubstr("cannot tell wrap counts apart"));
+  EXPECT_THAT(frequency_warning({{}, {15e6}}).value_or(""),
+              HasSubstr("cannot tell wrap counts apart"));
+  EXPECT_FALSE(frequency_warning({{}, {15e6}}, 9)) << "within the wavelength of 9.99 m";
 }
 
 TEST(ErrorWarnings, BeginAtACentimetreOfPeriodicError) {

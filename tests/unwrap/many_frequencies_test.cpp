@@ -10,6 +10,7 @@
 #include <random>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tofmap/core/error.hpp>
@@ -159,12 +160,58 @@ TEST(OneFrequency, IsSureWhereNoRangeExceedsItsWavelength) {
   EXPECT_GT(result.image.confidence.minCoeff(), 0.5F);
 }
 
+TEST(OneFrequency, TellsJumpsNoMoreThanJointDoes) {
+  const SensorModel sensor = sensor_with({30e6});
+  Frame frame = blank_frame(1);
+  frame.phases[0] = ImageF::Constant(20, 30, 0.5F);
+  UnwrapOptions single;
+  single.method = UnwrapMethod::single;
+  EXPECT_LE(unwrap(frame, sensor, single).image.confidence.maxCoeff(), 1.0F / 255);
+}
+
 TEST(OneFrequency, IsTooFewForMethodsThatCompareTwo) {
   for (const UnwrapMethod method : {UnwrapMethod::jump, UnwrapMethod::paper}) {
     UnwrapOptions options;
     options.method = method;
     EXPECT_THROW(Unwrapper(sensor_with({30e6}), options), UsageError);
   }
+}
+
+TEST(ComparedPair, IsUnambiguousUpToTheLongestRange) {
+  const auto pair_of = [](const std::vector<double>& frequencies_hz, int first, int second) {
+    UnwrapOptions options;
+    options.method = UnwrapMethod::jump;
+    options.pair_first = first;
+    options.pair_second = second;
+    const ComparedPair pair = compared_pair(options, sensor_with(frequencies_hz).modulation);
+    return std::pair(pair.a, pair.b);
+  };
+  using Pair = std::pair<std::size_t, std::size_t>;
+  const std::vector<double> kinect_hz{80e6, 16e6, 120e6};
+  EXPECT_EQ(pair_of(kinect_hz, 0, 0), Pair(2, 1)) << "18.7 m; 80 and 16 MHz: 9.4 m";
+  EXPECT_EQ(pair_of(kinect_hz, 2, 0), Pair(1, 2));
+  EXPECT_EQ(pair_of(kinect_hz, 0, 1), Pair(1, 0)) << "80 and 120 MHz: 3.7 m";
+  EXPECT_EQ(pair_of(kinect_hz, 1, 3), Pair(0, 2));
+  EXPECT_EQ(pair_of({29e6, 31e6}, 0, 0), Pair(0, 1));
+  EXPECT_EQ(pair_of({31e6, 29e6}, 0, 0), Pair(0, 1));
+}
+
+TEST(ComparedPair, HasNoWrapCountsThatItCannotTellApart) {
+  const SensorModel sensor = sensor_with({80e6, 16e6, 120e6});
+  const UnwrapLimits limits = unwrap_limits(sensor, 0);
+  EXPECT_NEAR(limits.max_range_m, 18.74, 0.01);
+  EXPECT_NEAR(pair_limits({0, 1}, sensor.modulation, limits).max_range_m, 9.37, 0.01);
+  EXPECT_EQ(pair_limits({0, 1}, sensor.modulation, limits).count_a, 5);
+  EXPECT_NEAR(pair_limits({2, 1}, sensor.modulation, limits).max_range_m, 18.74, 0.01);
+  UnwrapOptions options;
+  options.method = UnwrapMethod::jump;
+  EXPECT_FALSE(pair_warning(options, sensor));
+  options.pair_first = 1;
+  options.pair_second = 2;
+  EXPECT_THAT(pair_warning(options, sensor).value_or(""),
+              testing::HasSubstr("jump compares 80 and 16 MHz"));
+  options.method = UnwrapMethod::joint;
+  EXPECT_FALSE(pair_warning(options, sensor));
 }
 
 TEST(ComparedPair, IsTheOneThatTheOptionsName) {

@@ -14,6 +14,7 @@
 #include <tofmap/core/text.hpp>
 #include <tofmap/diagnostics/axial_depth.hpp>
 #include <tofmap/diagnostics/camera_warning.hpp>
+#include <tofmap/diagnostics/copied_images.hpp>
 #include <tofmap/diagnostics/swapped_amplitude.hpp>
 
 namespace tofmap {
@@ -197,6 +198,7 @@ RecordingSurvey survey_recording(const SequenceReader& recording,
   survey.no_return_share = totals.share(totals.without_return);
   survey.saturated_share = totals.share(totals.saturated);
   survey_times(recording.files(), survey);
+  survey.copied_images_warning = copied_images_warning(some);
   survey.swapped_amplitude_warning = swapped_amplitude_warning(some);
   survey.axial_depth_warning = axial_depth_warning(some, sensor);
   survey.residuals = survey_residuals(some, sensor);
@@ -210,7 +212,7 @@ std::vector<std::string> warnings_about(const RecordingSurvey& survey, const Sen
     if (warning) warnings.push_back(*std::move(warning));
   };
   add(camera_warning(sensor.camera));
-  const std::optional<std::string> of_frequencies = frequency_warning(sensor.modulation);
+  const std::optional<std::string> of_frequencies = frequency_warning(sensor);
   add(of_frequencies);
   if (sensor.modulation.count() > 1 && sensor.max_range_m > combined_range_m(sensor.modulation)) {
     warnings.emplace_back(
@@ -221,13 +223,14 @@ std::vector<std::string> warnings_about(const RecordingSurvey& survey, const Sen
   warn_of_returns(survey, warnings);
   warn_of_images(survey, warnings);
   warn_of_times(survey, warnings);
+  add(survey.copied_images_warning);
   add(survey.swapped_amplitude_warning);
   add(survey.axial_depth_warning);
   // If there is a warning about the images themselves, A and B cannot agree, and a comparison of
   // the frequencies tells nothing new.
   const bool is_comparable = !of_frequencies && !survey.axial_depth_warning &&
-                             !survey.swapped_amplitude_warning && survey.constant_images.empty() &&
-                             survey.repeated_single == 0;
+                             !survey.swapped_amplitude_warning && !survey.copied_images_warning &&
+                             survey.constant_images.empty() && survey.repeated_single == 0;
   if (!is_comparable) return warnings;
   bool are_mixed_up = false;
   for (const ResidualSurvey& residual : survey.residuals) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 #include <tofmap/core/median.hpp>
 #include <tofmap/core/modulation.hpp>
 #include <tofmap/core/text.hpp>
+#include <tofmap/unwrap/common/unwrap_limits.hpp>
 
 namespace tofmap {
 namespace {
@@ -216,6 +218,37 @@ std::optional<ResidualSurvey> survey_pair(const std::vector<Frame>& frames,
   return survey;
 }
 
+constexpr double telling_ratio = 0.5;
+
+/// The spread of the differences between A and the images of `b` if these have the wavelength of
+/// `c`, relative to that of unrelated phases (pairing_warning()). Infinite if too few pixels have
+/// returns.
+double relative_spread(const std::vector<Frame>& frames, const SensorModel& sensor, std::size_t b,
+                       std::size_t c) {
+  const std::vector<PhasePair> pairs = phase_pairs(frames, b);
+  if (pairs.size() < least_pixels) return std::numeric_limits<double>::infinity();
+  const SensorModel of_pair = frequency_pair(sensor, 0, c);
+  const Agreement found = agreement(pairs, of_pair);
+  if (found.offsets_m.empty()) return std::numeric_limits<double>::infinity();
+  return found.spread_m / Differences(of_pair).ambiguity_m();
+}
+
+/// Finds frequencies other than A that seem to be exchanged.
+void find_exchanged(const std::vector<Frame>& frames, const SensorModel& sensor,
+                    std::vector<ResidualSurvey>& surveys) {
+  for (ResidualSurvey& one : surveys) {
+    for (ResidualSurvey& other : surveys) {
+      if (one.frequency >= other.frequency) continue;
+      const double as_is = one.spread_m / one.ambiguity_m * other.spread_m / other.ambiguity_m;
+      const double exchanged = relative_spread(frames, sensor, one.frequency, other.frequency) *
+                               relative_spread(frames, sensor, other.frequency, one.frequency);
+      if (!(exchanged < telling_ratio * telling_ratio * as_is)) continue;
+      one.exchanged_with = other.frequency;
+      other.exchanged_with = one.frequency;
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<ResidualSurvey> survey_residuals(const std::vector<Frame>& frames,
@@ -225,11 +258,17 @@ std::vector<ResidualSurvey> survey_residuals(const std::vector<Frame>& frames,
     auto survey = survey_pair(frames, sensor, b);
     if (survey) surveys.push_back(*std::move(survey));
   }
+  find_exchanged(frames, sensor, surveys);
   return surveys;
 }
 
 std::optional<std::string> pairing_warning(const ResidualSurvey& residual, bool map_agrees) {
-  constexpr double telling_ratio = 0.5;
+  if (residual.exchanged_with > 0) {
+    return fmt::format(
+        "{} and {} agree with A only if they are exchanged; are their frequencies mixed up in "
+        "sequence.yaml, or their folders?",
+        frequency_name(residual.frequency), frequency_name(residual.exchanged_with));
+  }
   if (residual.swapped_spread_m < telling_ratio * residual.spread_m) {
     return fmt::format(
         "A and {0} agree within {1:.0f} mm if the frequencies are swapped, but only within {2:.0f} "
@@ -275,8 +314,12 @@ std::optional<std::string> offset_warning(const ResidualSurvey& residual,
   return "A measures " + offset_text(residual) + remedy;
 }
 
-std::optional<std::string> frequency_warning(const Modulation& modulation) {
+std::optional<std::string> frequency_warning(const SensorModel& sensor, double max_range_m) {
   constexpr double least_wavelengths = 1.5;
+  const Modulation& modulation = sensor.modulation;
+  if (modulation.count() == 1 && are_absolute(unwrap_limits(sensor, max_range_m))) {
+    return std::nullopt;
+  }
   const double combined_m = combined_range_m(modulation);
   if (combined_m >= least_wavelengths * modulation.wavelength_m(0)) return std::nullopt;
   if (modulation.count() == 1) {

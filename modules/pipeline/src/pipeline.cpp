@@ -111,22 +111,23 @@ FrameRecord repeated(const SourcedFrame& frame, RoomMapper& mapper) {
   return record;
 }
 
-/// Throws UsageError if wrap counts are known only relative to each other: surfaces would be at
-/// wrong ranges.
 const SensorModel& checked(const SensorModel& sensor, const UnwrapOptions& options) {
-  const bool is_relative =
-      options.method == UnwrapMethod::joint || options.method == UnwrapMethod::single;
-  if (sensor.modulation.count() > 1 || !is_relative) return sensor;
+  check_mappable(sensor, options);
+  return sensor;
+}
+
+}  // namespace
+
+void check_mappable(const SensorModel& sensor, const UnwrapOptions& options) {
+  if (sensor.modulation.count() > 1 || options.method == UnwrapMethod::none) return;
   const UnwrapLimits limits = unwrap_limits(sensor, options.max_range_m);
-  if (are_absolute(limits)) return sensor;
+  if (are_absolute(limits)) return;
   throw UsageError(fmt::format(
       "a map needs absolute ranges, but the recording has one modulation frequency, which tells "
       "wrap counts only relative to each other; record at two or more frequencies, or, if no "
       "surface is farther than {0:.2f} m, set unwrap.max_range_m={0:.2f}",
       std::floor(100 * limits.wavelength_m()) / 100));
 }
-
-}  // namespace
 
 void bind_options(OptionTable& table, PipelineOptions& options) {
   table.bind("unwrap", options.unwrap);

@@ -13,7 +13,6 @@
 #include <string>
 
 #include <tofmap/core/error.hpp>
-#include <tofmap/core/text.hpp>
 
 namespace tofmap {
 namespace {
@@ -31,34 +30,6 @@ UnwrapResult unwrap_by_pixel(const MeasuredFrame& frame, const ImageU8& counts,
 ImageU8 wrapped_counts(const ImageU8& valid) {
   return (valid != 0).select(ImageU8::Zero(valid.rows(), valid.cols()), invalid_wrap_count);
 }
-
-/// The frequencies A and B of a method that compares two, counted from 0. Throws UsageError if the
-/// sensor does not have them. `single` uses A alone.
-struct ComparedPair {
-  std::size_t a = 0;
-  std::size_t b = 1;
-
-  ComparedPair(const UnwrapOptions& options, std::size_t frequencies)
-      : a(static_cast<std::size_t>(options.pair_first) - 1),
-        b(static_cast<std::size_t>(options.pair_second) - 1) {
-    const bool is_alone = options.method == UnwrapMethod::single;
-    const std::string method(name_of(options.method));
-    if (!is_alone && frequencies == 1) {
-      throw UsageError("unwrap.method: " + method +
-                       " compares two frequencies, but the recording has one; use joint or single");
-    }
-    const auto check = [&](std::size_t f, const char* option) {
-      if (f < frequencies) return;
-      throw UsageError(std::string("unwrap.") + option + " is " + std::to_string(f + 1) +
-                       ", but the recording has " +
-                       counted(frequencies, "frequency", "frequencies"));
-    };
-    check(a, "pair_first");
-    if (is_alone) return;
-    check(b, "pair_second");
-    if (a == b) throw UsageError("unwrap.pair_first and unwrap.pair_second must differ");
-  }
-};
 
 /// The measurements of two frequencies alone; of one, if the frame has no second one.
 MeasuredFrame measured_pair(const MeasuredFrame& frame, const ComparedPair& pair) {
@@ -114,20 +85,22 @@ Unwrapper::Unwrapper(const SensorModel& sensor, const UnwrapOptions& options)
       method_(options.method),
       limits_(unwrap_limits(sensor, options.max_range_m)),
       measurer_(sensor, options) {
-  if (finds_jumps(method_)) ComparedPair(options_, limits_.frequencies());
+  if (!finds_jumps(method_)) return;
+  pair_ = compared_pair(options, sensor.modulation);
+  pair_limits_ = pair_limits(pair_, sensor.modulation, limits_);
 }
 
 UnwrapResult Unwrapper::unwrap(const Frame& frame) { return unwrap(measurer_.measure(frame)); }
 
 UnwrapResult Unwrapper::unwrap_pair(const MeasuredFrame& measured) {
-  const ComparedPair pair(options_, limits_.frequencies());
-  const PairLimits limits = limits_.pair(pair.a, pair.b);
   const JumpMethod method = jump_method(method_);
-  const bool has_others = limits_.frequencies() > 2 || pair.a > 0;
-  if (!has_others) return unwrap_by_jumps(jump_estimator_, measured, limits, method, options_);
-  UnwrapResult result =
-      unwrap_by_jumps(jump_estimator_, measured_pair(measured, pair), limits, method, options_);
-  if (pair.a > 0) {
+  const bool has_others = limits_.frequencies() > 2 || pair_.a > 0;
+  if (!has_others) {
+    return unwrap_by_jumps(jump_estimator_, measured, pair_limits_, method, options_);
+  }
+  UnwrapResult result = unwrap_by_jumps(jump_estimator_, measured_pair(measured, pair_),
+                                        pair_limits_, method, options_);
+  if (pair_.a > 0) {
     count_first(measured.returns.phases.front(), limits_.wavelength_m(), result.image);
   }
   return result;
@@ -143,15 +116,16 @@ UnwrapResult Unwrapper::unwrap_relative(const MeasuredFrame& measured) {
 }
 
 UnwrapResult Unwrapper::unwrap(const MeasuredFrame& measured) {
+  const bool is_relative = limits_.frequencies() == 1;
   const auto unwrap_measured = [&] {
     switch (method_) {
       case UnwrapMethod::joint:
-        if (limits_.frequencies() == 1) return unwrap_relative(measured);
+        if (is_relative) return unwrap_relative(measured);
         return unwrap_jointly(count_estimator_, measured, limits_, options_);
       case UnwrapMethod::jump:
       case UnwrapMethod::paper:
       case UnwrapMethod::single:
-        return unwrap_pair(measured);
+        return is_relative ? unwrap_relative(measured) : unwrap_pair(measured);
       case UnwrapMethod::pixel:
         return unwrap_by_pixel(measured, nearest_counts(measured.returns, limits_, measured.sigma),
                                limits_);

@@ -86,7 +86,16 @@ Rgb wrap_count_color(int count) {
                                         {86, 180, 233},
                                         {213, 94, 0},
                                         {0, 0, 0}}};
-  return palette[static_cast<std::size_t>(count) % palette.size()];
+  const auto place = static_cast<std::size_t>(count);
+  const Rgb color = palette[place % palette.size()];
+  // Later rounds through the palette are mixed with white, then with a middle grey, and so on.
+  const std::size_t round = place / palette.size();
+  if (round == 0) return color;
+  const int other = round % 2 == 1 ? 255 : 96;
+  const auto mixed = [other](std::uint8_t own) {
+    return static_cast<std::uint8_t>((9 * own + 11 * other) / 20);
+  };
+  return {mixed(color.red), mixed(color.green), mixed(color.blue)};
 }
 
 Rgb jump_color(float minus, float none, float plus) {

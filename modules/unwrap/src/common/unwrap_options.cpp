@@ -47,10 +47,12 @@ std::vector<OptionField<UnwrapOptions>> UnwrapOptions::fields() {
       {"systematic_errors", &O::systematic_errors, 0, 1, "",
        "joint, jump: estimate the systematic errors in which the frequencies differ, from all "
        "frames so far; false: residuals are attributed to noise alone"},
-      {"pair_first", &O::pair_first, 1, 8, "",
-       "jump, paper, single: the frequency whose phase jumps are found, counted from 1"},
-      {"pair_second", &O::pair_second, 1, 8, "",
-       "jump, paper: the frequency with which it is compared, counted from 1"},
+      {"pair_first", &O::pair_first, 0, 8, "",
+       "jump, paper, single: the frequency whose phase jumps are found, counted from 1; 0: of the "
+       "pair that is unambiguous up to the longest range"},
+      {"pair_second", &O::pair_second, 0, 8, "",
+       "jump, paper: the frequency with which it is compared, counted from 1; 0: as for "
+       "pair_first"},
       {"iterations", &O::iterations, 1, 1000, "",
        "jump, paper, single: largest number of iterations of belief propagation"},
       {"trust_discontinuity", &O::trust_discontinuity, 0, 1, "",

@@ -29,6 +29,7 @@ struct RecordingSurvey {
   double median_period_s = 0;  ///< median time between consecutive frames; 0 if unknown
   double longest_gap_s = 0;    ///< longest time between consecutive frames; 0 if unknown
   int frame_before_gap = 0;    ///< index of the frame at which the longest gap begins
+  std::optional<std::string> copied_images_warning;      ///< see copied_images.hpp
   std::optional<std::string> swapped_amplitude_warning;  ///< see swapped_amplitude.hpp
   std::optional<std::string> axial_depth_warning;        ///< see axial_depth.hpp
   std::vector<ResidualSurvey> residuals;  ///< without those of which too few pixels have returns

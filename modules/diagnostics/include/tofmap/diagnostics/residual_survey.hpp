@@ -24,6 +24,9 @@ struct ResidualSurvey {
   std::vector<double> other_offsets_m;
   double spread_m = 0;          ///< robust standard deviation of single pixels about `offset_m`
   double swapped_spread_m = 0;  ///< `spread_m` if the frequencies of A and B are swapped
+  /// Another frequency, counted from 0, with which B seems to be exchanged: with the wavelengths of
+  /// each other, the two agree much better with A. 0: none.
+  std::size_t exchanged_with = 0;
   /// By how much A's range minus B's range changes with one more wrap of both: |λ_A − λ_B|.
   double ambiguity_m = 0;
 };
@@ -46,7 +49,9 @@ std::optional<std::string> pairing_warning(const ResidualSurvey& residual, bool 
 std::optional<std::string> offset_warning(const ResidualSurvey& residual,
                                           const CameraErrors* camera, bool map_agrees = false);
 
-/// A warning if the frequencies cannot tell wrap counts apart. Otherwise empty.
-std::optional<std::string> frequency_warning(const Modulation& modulation);
+/// A warning if the frequencies cannot tell wrap counts apart. Otherwise empty, as for a single
+/// frequency if no range exceeds its wavelength: `max_range_m`, or, if it is 0, what the sensor
+/// says. Throws UsageError as unwrap_limits() does.
+std::optional<std::string> frequency_warning(const SensorModel& sensor, double max_range_m = 0);
 
 }  // namespace tofmap

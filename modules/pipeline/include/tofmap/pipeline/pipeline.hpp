@@ -79,11 +79,14 @@ struct MapHooks {
   std::function<void(int index, const SurfaceCloud& still)> on_motion;
 };
 
+/// Throws UsageError if the method is to find absolute wrap counts, which the single frequency of
+/// the sensor does not determine (are_absolute): surfaces would be at wrong ranges.
+void check_mappable(const SensorModel& sensor, const UnwrapOptions& options);
+
 /// A run that maps a room from frames. It can be interrupted, saved, and resumed later.
 class MapRun {
  public:
-  /// Throws UsageError if the options for unwrapping are not allowed, or if the sensor has a single
-  /// frequency, which does not determine absolute wrap counts (are_absolute).
+  /// Throws UsageError if the options for unwrapping are not allowed, and as check_mappable() does.
   MapRun(const SensorModel& sensor, const PipelineOptions& options);
 
   /// Processes frames from the source until the source ends or a hook ends the run. Frames that

@@ -5,6 +5,7 @@
 #include <span>
 
 #include <tofmap/core/frame.hpp>
+#include <tofmap/unwrap/common/compared_pair.hpp>
 #include <tofmap/unwrap/common/unwrap_limits.hpp>
 #include <tofmap/unwrap/common/unwrap_options.hpp>
 #include <tofmap/unwrap/common/unwrap_result.hpp>
@@ -21,14 +22,15 @@ namespace tofmap {
 /// The planes of the resulting RangeImage have the size of the frame:
 ///   range_m     radial: (phase + n) λ of the first frequency, with the wrap count n. For `joint`,
 ///               by default, the weighted mean of the ranges of all frequencies (fuse_ranges). For
-///               `jump`, `paper` and `single`, that of the frequency `pair_first`.
+///               `jump`, `paper` and `single`, that of the first frequency of compared_pair().
 ///   sigma_m     standard deviation of range_m by phase noise, which is estimated for each frame.
 ///   confidence  the probability that the wrap count is right. The confidence of `joint` is
 ///               calibrated (docs/unwrapping.md has the measurement); that of other methods only
 ///               ranks the pixels of a frame.
 ///
 /// With a single frequency, `joint` gives wrap counts relative to the nearest pixel of each region,
-/// as `single` does: the absolute ones are not known (are_absolute), and the confidence says so.
+/// and so does `single`: the absolute ones are not known (are_absolute), and the confidence says
+/// so.
 ///
 /// Invalid pixels:
 ///   no_return   no return at one of the frequencies. These pixels take no part in any method, so
@@ -73,6 +75,8 @@ class Unwrapper {
   UnwrapOptions options_;
   UnwrapMethod method_;
   UnwrapLimits limits_;
+  ComparedPair pair_;
+  PairLimits pair_limits_;  ///< of methods that find jumps
   FrameMeasurer measurer_;
   WrapCountEstimator count_estimator_;
   JumpEstimator jump_estimator_;

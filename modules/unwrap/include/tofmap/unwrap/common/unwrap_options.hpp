@@ -82,10 +82,10 @@ struct UnwrapOptions {
 
   // Options of jump, paper and single.
 
-  /// The two frequencies that are compared, counted from 1 in the order of the recording; 1 … 8.
-  /// `single` uses the first of them alone.
-  int pair_first = 1;
-  int pair_second = 2;  ///< see pair_first
+  /// The two frequencies that are compared, counted from 1 in the order of the recording; 0 … 8. 0
+  /// leaves it to compared_pair(). `single` uses the first of them alone.
+  int pair_first = 0;
+  int pair_second = 0;  ///< see pair_first
 
   /// Largest number of iterations of belief propagation over phase jumps, 1 … 1000. It stops
   /// earlier if every loop of 2 x 2 pixels satisfies the zero-curl constraint.

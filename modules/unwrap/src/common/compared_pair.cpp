@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/unwrap/common/compared_pair.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
+
+namespace tofmap {
+namespace {
+
+/// The range up to which two frequencies are unambiguous.
+double combined_range_m(const ComparedPair& pair, const Modulation& modulation) {
+  Modulation both;
+  both.frequencies_hz = {modulation.frequencies_hz[pair.a], modulation.frequencies_hz[pair.b]};
+  return combined_range_m(both, noise_tolerance_cycles);
+}
+
+/// Throws UsageError unless an option that names a frequency, counted from 1, names one of these.
+void check(int named, const char* option, const Modulation& modulation) {
+  if (named <= static_cast<int>(modulation.count())) return;
+  throw UsageError(fmt::format("unwrap.{} is {}, but the recording has {}", option, named,
+                               counted(modulation.count(), "frequency", "frequencies")));
+}
+
+}  // namespace
+
+ComparedPair compared_pair(const UnwrapOptions& options, const Modulation& modulation) {
+  const int first = options.pair_first;
+  const int second = options.pair_second;
+  check(first, "pair_first", modulation);
+  if (options.method == UnwrapMethod::single) {
+    const std::size_t a = first > 0 ? static_cast<std::size_t>(first) - 1 : 0;
+    return {a, a + 1};
+  }
+  if (modulation.count() == 1) {
+    throw UsageError(fmt::format(
+        "unwrap.method: {} compares two frequencies, but the recording has one; use joint or "
+        "single",
+        name_of(options.method)));
+  }
+  check(second, "pair_second", modulation);
+  if (first > 0 && first == second) {
+    throw UsageError("unwrap.pair_first and unwrap.pair_second must differ");
+  }
+  std::optional<ComparedPair> best;
+  double best_m = 0;
+  for (std::size_t a = 0; a < modulation.count(); ++a) {
+    if (first > 0 && a != static_cast<std::size_t>(first) - 1) continue;
+    for (std::size_t b = 0; b < modulation.count(); ++b) {
+      if (b == a || (second > 0 && b != static_cast<std::size_t>(second) - 1)) continue;
+      const bool is_in_order =
+          modulation.count() == 2 ? a < b : modulation.wavelength_m(a) < modulation.wavelength_m(b);
+      if (first == 0 && second == 0 && !is_in_order) continue;
+      const double range_m = combined_range_m({a, b}, modulation);
+      if (best && range_m <= best_m) continue;
+      best = ComparedPair{a, b};
+      best_m = range_m;
+    }
+  }
+  return *best;
+}
+
+PairLimits pair_limits(const ComparedPair& pair, const Modulation& modulation,
+                       const UnwrapLimits& limits) {
+  PairLimits out = limits.pair(pair.a, pair.b);
+  if (limits.frequencies() <= 2 || pair.b >= limits.frequencies()) return out;
+  out.max_range_m = std::min(out.max_range_m, combined_range_m(pair, modulation));
+  out.count_a = wrap_limit(out.wavelength_a_m, out.max_range_m);
+  return out;
+}
+
+std::optional<std::string> pair_warning(const UnwrapOptions& options, const SensorModel& sensor) {
+  const bool compares_two =
+      options.method == UnwrapMethod::jump || options.method == UnwrapMethod::paper;
+  const Modulation& modulation = sensor.modulation;
+  if (!compares_two || modulation.count() <= 2) return std::nullopt;
+  const UnwrapLimits limits = unwrap_limits(sensor, options.max_range_m);
+  const ComparedPair pair = compared_pair(options, modulation);
+  const double pair_m = pair_limits(pair, modulation, limits).max_range_m;
+  if (pair_m >= limits.max_range_m) return std::nullopt;
+  return fmt::format(
+      "{} compares {:.6g} and {:.6g} MHz, which are unambiguous up to {:.2f} m only; surfaces "
+      "beyond appear nearer by that much; joint uses all frequencies, up to {:.2f} m",
+      name_of(options.method), 1e-6 * modulation.frequencies_hz[pair.a],
+      1e-6 * modulation.frequencies_hz[pair.b], pair_m, limits.max_range_m);
+}
+
+}  // namespace tofmap
