@@ -25,6 +25,10 @@ constexpr const char* calibration_format = "tofmap-camera";
 constexpr int calibration_version_of_pairs = 1;
 constexpr int latest_calibration_version = 2;
 
+constexpr const char* pattern_key = "fixed_pattern";
+constexpr const char* pattern_name_expected =
+    "the name of a .npy file in the folder of the calibration";
+
 /// The key of the error at a frequency: "error_a" for the first one.
 std::string error_key(std::size_t frequency) {
   return std::string("error_") + frequency_letter(frequency);
@@ -196,6 +200,33 @@ std::string one_line(const std::string& comment) {
   return line;
 }
 
+/// The name of a file beside the calibration. Throws InputError if it is a path.
+std::string read_pattern_name(const YamlSection& root) {
+  const auto name = root.value<std::string>(pattern_key, pattern_name_expected);
+  const std::filesystem::path path(name);
+  if (path != path.filename() || path.extension() != ".npy") {
+    root.fail(pattern_key,
+              std::string("must be ") + pattern_name_expected + ", not '" + name + "'");
+  }
+  return name;
+}
+
+/// Reads the pattern that a calibration names.
+FixedPattern read_named_pattern(const CameraCalibration& calibration) {
+  // A link to a calibration stands for the file that it leads to.
+  const std::filesystem::path folder =
+      std::filesystem::weakly_canonical(calibration.file).parent_path();
+  const std::filesystem::path file = folder / calibration.fixed_pattern_file;
+  FixedPattern pattern = read_fixed_pattern(file);
+  if (calibration.with) {
+    const CalibratedWith& with = *calibration.with;
+    naming(file.string(), [&] {
+      check_fixed_pattern(pattern, with.modulation.count(), with.width_px, with.height_px);
+    });
+  }
+  return pattern;
+}
+
 SensorModel with_calibration(SensorModel sensor, const CameraCalibration& calibration) {
   if (calibration.saturation_amplitude > 0) {
     sensor.saturation_amplitude = calibration.saturation_amplitude;
@@ -212,6 +243,8 @@ SensorModel with_calibration(SensorModel sensor, const CameraCalibration& calibr
                        "; does it belong to another camera?");
     }
   }
+  check_fixed_pattern(calibration.fixed_pattern, modulation.count(), sensor.camera.width_px,
+                      sensor.camera.height_px);
   if (!calibration.camera) return sensor;
   const CameraModel& given = *calibration.camera;
   check_size(given.width_px, given.height_px, sensor.camera);
@@ -240,7 +273,7 @@ CameraCalibration read_calibration(const std::filesystem::path& file) {
   const int version = check_format(root, calibration_format, latest_calibration_version);
   root.allow_only({"format", "version", "calibrated_with", "camera", "error_a", "error_b",
                    "error_c", "error_d", "error_e", "error_f", "error_g", "error_h",
-                   "saturation_amplitude"});
+                   "saturation_amplitude", pattern_key});
   CameraCalibration calibration;
   calibration.file = file;
   if (root.has("calibrated_with")) {
@@ -265,6 +298,10 @@ CameraCalibration read_calibration(const std::filesystem::path& file) {
                 "must be above 0 and at most 65535; leave it out if it is not known");
     }
   }
+  if (root.has(pattern_key)) {
+    calibration.fixed_pattern_file = read_pattern_name(root);
+    calibration.fixed_pattern = read_named_pattern(calibration);
+  }
   return calibration;
 }
 
@@ -274,6 +311,16 @@ bool is_calibration(const std::filesystem::path& file) {
     return true;
   } catch (const InputError&) {
     return false;
+  }
+}
+
+std::string fixed_pattern_file_in(const std::filesystem::path& file) {
+  try {
+    const YamlSection root = load_yaml(file, "");
+    check_format(root, calibration_format, latest_calibration_version);
+    return root.has(pattern_key) ? read_pattern_name(root) : "";
+  } catch (const InputError&) {
+    return "";
   }
 }
 
@@ -301,6 +348,9 @@ void write_calibration(const std::filesystem::path& file, const CameraCalibratio
   for (std::size_t f = 0; f < calibration.errors.size(); ++f) {
     write_error(out, error_key(f), calibration.errors[f]);
   }
+  if (!calibration.fixed_pattern_file.empty()) {
+    out << pattern_key << ": " << YAML::Dump(YAML::Node(calibration.fixed_pattern_file)) << '\n';
+  }
   if (calibration.saturation_amplitude > 0) {
     out << "saturation_amplitude: " << shortest(calibration.saturation_amplitude) << '\n';
   }
@@ -315,6 +365,7 @@ SensorModel calibrated(const SensorModel& sensor, const CameraCalibration& calib
 }
 
 void calibrate(Frame& frame, const Modulation& modulation, const CameraCalibration& calibration) {
+  subtract_fixed_pattern(frame, modulation, calibration.fixed_pattern);
   const std::size_t known = std::min(calibration.errors.size(), frame.frequencies());
   for (std::size_t f = 0; f < known; ++f) {
     correct(frame.phases[f], calibration.errors[f], modulation.wavelength_m(f));

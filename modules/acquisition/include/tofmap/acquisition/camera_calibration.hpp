@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <tofmap/acquisition/fixed_pattern.hpp>
 #include <tofmap/core/frame.hpp>
 
 namespace tofmap {
@@ -48,18 +49,23 @@ struct CameraCalibration {
   std::optional<CameraModel> camera;   ///< replaces the camera of the recording, if not empty
   /// The error at each frequency; frequencies beyond the last element have none.
   std::vector<PhaseError> errors;
+  /// The errors of individual pixels at each frequency, besides `errors`. Empty: none.
+  FixedPattern fixed_pattern;
+  /// Name of the file with `fixed_pattern`, in the folder of the calibration file. Empty: none.
+  std::string fixed_pattern_file;
   /// A pixel with this amplitude or a larger one is saturated. 0: unknown; the value of the
   /// recording remains.
   double saturation_amplitude = 0;
 };
 
-/// Reads a calibration file (docs/calibration.md). Throws InputError, which names the file, the key
-/// and what is expected, if the file cannot be read or is not valid.
+/// Reads a calibration file (docs/calibration.md) and the fixed pattern beside it, if it names one.
+/// Throws InputError, which names the file, the key and what is expected, if one of the files
+/// cannot be read or is not valid.
 CameraCalibration read_calibration(const std::filesystem::path& file);
 
 /// Writes a calibration file in which every number reads back as the same bits. `comment` becomes
-/// one line at the top, unless it is empty. Throws InputError if the file cannot be written
-/// completely.
+/// one line at the top, unless it is empty. The file names `fixed_pattern_file`; the pattern itself
+/// is written by write_fixed_pattern(). Throws InputError if the file cannot be written completely.
 void write_calibration(const std::filesystem::path& file, const CameraCalibration& calibration,
                        const std::string& comment = "");
 
@@ -67,13 +73,19 @@ void write_calibration(const std::filesystem::path& file, const CameraCalibratio
 /// Does not check the rest of the file.
 bool is_calibration(const std::filesystem::path& file);
 
+/// The name of the fixed pattern's file that a calibration file contains. Empty if it contains
+/// none, or if the file is no calibration. Does not read the pattern.
+std::string fixed_pattern_file_in(const std::filesystem::path& file);
+
 /// The sensor with the camera and the saturation amplitude of the calibration, where it has them.
-/// Throws InputError if the calibration is of a camera of another size or with other frequencies,
-/// or if an error rises so fast with the phase that a longer range would measure shorter.
+/// Throws InputError if the calibration or its fixed pattern is of a camera of another size or with
+/// other frequencies, or if an error rises so fast with the phase that a longer range would measure
+/// shorter.
 SensorModel calibrated(const SensorModel& sensor, const CameraCalibration& calibration);
 
-/// Subtracts the errors of the calibration from the phases of a frame. The phases stay in [0, 1);
-/// NaN stays NaN.
+/// Subtracts the errors of the calibration from the phases of a frame: first the fixed pattern,
+/// then the error that depends on the phase without it (docs/calibration.md, equation 1). The
+/// phases stay in [0, 1); NaN stays NaN.
 void calibrate(Frame& frame, const Modulation& modulation, const CameraCalibration& calibration);
 
 }  // namespace tofmap
