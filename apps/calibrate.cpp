@@ -6,8 +6,9 @@
 #include "console/progress.hpp"
 #include "input/recording.hpp"
 #include "options/options.hpp"
+#include "output/calibration_output.hpp"
 #include "output/frame_report.hpp"
-#include "output/output_file.hpp"
+#include "reports/fixed_pattern_report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +24,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <tofmap/calibration/fixed_pattern_fit.hpp>
 #include <tofmap/calibration/phase_error_fit.hpp>
 #include <tofmap/calibration/recording_samples.hpp>
 #include <tofmap/calibration/wall_reference.hpp>
@@ -33,6 +36,9 @@
 
 namespace tofmap::app {
 namespace {
+
+/// With fewer frames, errors of single surfaces do not average out.
+constexpr std::size_t some_frames = 5;
 
 struct CalibrateArguments {
   std::filesystem::path sequence;
@@ -57,7 +63,8 @@ CalibrationReference reference_of(const CalibrationOptions& options, const Seque
   return truth.has_ranges() ? CalibrationReference::truth : CalibrationReference::residual;
 }
 
-/// The function that returns the reference ranges of a frame. `source` and `truth` must outlive it.
+/// The function that returns the reference ranges of a frame, and tells once of each frame that no
+/// wall fills. `source` and `truth` must outlive it.
 ReferenceRanges reference_ranges(CalibrationReference reference, const SequenceReader& source,
                                  const RecordedTruth& truth, const ProgramOptions& options) {
   if (reference == CalibrationReference::truth) {
@@ -71,12 +78,12 @@ ReferenceRanges reference_ranges(CalibrationReference reference, const SequenceR
   }
   WallDistances distances_m = read_wall_distances(options.calibration.wall_file);
   check_wall_distances(distances_m, options.calibration.wall_file, source);
-  return [distances_m = std::move(distances_m),
-          &source](const Frame& frame) -> std::optional<ImageF> {
+  return [distances_m = std::move(distances_m), &source,
+          told = std::set<int>{}](const Frame& frame) mutable -> std::optional<ImageF> {
     const auto distance = distances_m.find(frame.index);
     if (distance == distances_m.end()) return std::nullopt;
     auto range_m = wall_range(frame, source.sensor(), distance->second);
-    if (!range_m)
+    if (!range_m && told.insert(frame.index).second)
       std::fprintf(stderr, "frame %d: left out, since no flat wall fills the image\n", frame.index);
     return range_m;
   };
@@ -96,6 +103,10 @@ void print_error(const std::string& name, const PhaseError& error, double offset
   std::printf("%s: %s\n", name.c_str(), joined(parts, ", ").c_str());
 }
 
+void print_lines(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) std::printf("%s\n", line.c_str());
+}
+
 void print_samples(const RecordingSamples& collected, const SensorModel& sensor) {
   std::printf("from %zu pixels of %s\n", collected.samples.front().size(),
               counted(collected.frames, "frame").c_str());
@@ -111,8 +122,7 @@ void print_samples(const RecordingSamples& collected, const SensorModel& sensor)
   for (const ResidualSurvey& residual : survey_residuals(collected.first_frames, sensor)) {
     if (const auto warning = pairing_warning(residual)) print_warnings({*warning});
   }
-  constexpr std::size_t some = 5;
-  if (collected.frames < some) {
+  if (collected.frames < some_frames) {
     std::printf("warning: with so few frames, errors of single surfaces do not average out\n");
   }
 }
@@ -204,16 +214,47 @@ std::vector<PhaseError> errors_of(const CameraFit& fit) {
   return errors;
 }
 
-/// Whether a file is a calibration with nothing in it but what `calibrate` writes, so that it may
-/// be replaced. True for a calibration file that cannot be read.
-bool holds_nothing_else(const std::filesystem::path& file) {
-  if (!is_calibration(file)) return false;
-  try {
-    const CameraCalibration calibration = read_calibration(file);
-    return !calibration.camera && calibration.saturation_amplitude == 0;
-  } catch (const InputError&) {
-    return true;  // a damaged calibration is of no use
+/// Whether the fixed pattern is to be found. Throws UsageError if it is asked for, but there are no
+/// known ranges.
+bool wants_pattern(FixedPatternOption option, CalibrationReference reference) {
+  if (option == FixedPatternOption::off) return false;
+  if (reference != CalibrationReference::residual) return true;
+  if (option == FixedPatternOption::on) {
+    throw UsageError(
+        "calibration.fixed_pattern=on needs known ranges (range_truth in the recording, or "
+        "calibration.wall_file): the residual shows only differences between the frequencies");
   }
+  return false;
+}
+
+/// Finds the fixed pattern in the frames that the samples come from. `calibration` has the errors
+/// found so far. Empty if that is interrupted, or if the frames are too few without
+/// calibration.fixed_pattern=on.
+std::vector<PatternEstimate> find_pattern(const SequenceReader& source,
+                                          const RecordingSamples& collected,
+                                          const ReferenceRanges& ranges,
+                                          const CameraCalibration& calibration,
+                                          const CalibrationOptions& options, bool quiet) {
+  if (options.fixed_pattern != FixedPatternOption::on && collected.frames < some_frames) {
+    if (!quiet) {
+      std::printf(
+          "fixed pattern: not found from fewer than %zu frames, unless "
+          "calibration.fixed_pattern=on\n",
+          some_frames);
+    }
+    return {};
+  }
+  Progress progress("averaging pixels, frame",
+                    static_cast<int>(pattern_averagings * collected.frames), quiet);
+  int read = 0;
+  const auto estimates =
+      fit_fixed_pattern(referenced_frames(source, collected.frame_indices, ranges, calibration,
+                                          [&] {
+                                            progress.show(read++);
+                                            return !is_interrupted();
+                                          }),
+                        source.sensor(), options.max_error_m);
+  return is_interrupted() ? std::vector<PatternEstimate>{} : estimates;
 }
 
 int run_calibrate(const CalibrateArguments& arguments) {
@@ -228,7 +269,8 @@ int run_calibrate(const CalibrateArguments& arguments) {
                      source.folder().string() +
                      " has one; give known ranges (calibration.wall_file)");
   }
-  OutputFile out(arguments.out, holds_nothing_else);
+  const bool with_pattern = wants_pattern(options.calibration.fixed_pattern, reference);
+  CalibrationOutput out(arguments.out, with_pattern);
   const PhaseErrorFitOptions fit_options{
       .orders = harmonic_orders(options.calibration, reference != CalibrationReference::residual),
       .max_error_m = options.calibration.max_error_m};
@@ -253,13 +295,21 @@ int run_calibrate(const CalibrateArguments& arguments) {
   calibration.errors = errors_of(fit);
   if (!quiet) print_fit(fit, reference);
   if (!quiet) print_samples(collected, source.sensor());
-  write_calibration(out.path(), calibration,
-                    "found by " + std::string(name_of(reference)) + " in " +
-                        source.folder().string() + ", " +
-                        std::to_string(collected.samples.front().size()) + " pixels of " +
-                        counted(collected.frames, "frame"));
-  out.commit();
+  if (with_pattern) {
+    const std::vector<PatternEstimate> found =
+        find_pattern(source, collected, ranges, calibration, options.calibration, quiet);
+    if (is_interrupted()) return exit_status::interrupted;
+    const bool with_one_range = options.calibration.fixed_pattern == FixedPatternOption::on;
+    calibration.fixed_pattern = stored_pattern(found, with_one_range);
+    if (!quiet) print_lines(pattern_lines(found, with_one_range));
+  }
+  const std::filesystem::path pattern_file =
+      out.write(std::move(calibration), "found by " + std::string(name_of(reference)) + " in " +
+                                            source.folder().string() + ", " +
+                                            std::to_string(collected.samples.front().size()) +
+                                            " pixels of " + counted(collected.frames, "frame"));
   if (!quiet) std::printf("calibration: %s\n", arguments.out.c_str());
+  if (!quiet && !pattern_file.empty()) std::printf("fixed pattern: %s\n", pattern_file.c_str());
   return exit_status::done;
 }
 
@@ -268,7 +318,8 @@ int run_calibrate(const CalibrateArguments& arguments) {
 void add_calibrate_command(CLI::App& program, Outcome& outcome) {
   auto arguments = std::make_shared<CalibrateArguments>();
   CLI::App* app = program.add_subcommand(
-      "calibrate", "find a camera's offsets and periodic range errors from a recording");
+      "calibrate",
+      "find a camera's offsets, periodic range errors and fixed pattern from a recording");
   app->add_option("SEQ", arguments->sequence, "folder of the recording")->required();
   app->add_option("--out", arguments->out, "YAML file for the calibration")->required();
   arguments->common.add_to(*app);

@@ -25,6 +25,14 @@ std::span<const NamedValue<CalibrationReference>> named_values(CalibrationRefere
   return references;
 }
 
+std::span<const NamedValue<FixedPatternOption>> named_values(FixedPatternOption) {
+  static constexpr std::array<NamedValue<FixedPatternOption>, 3> values{
+      {{"auto", FixedPatternOption::if_observable},
+       {"off", FixedPatternOption::off},
+       {"on", FixedPatternOption::on}}};
+  return values;
+}
+
 std::vector<OptionField<CalibrationOptions>> CalibrationOptions::fields() {
   using O = CalibrationOptions;
   return {
@@ -43,6 +51,11 @@ std::vector<OptionField<CalibrationOptions>> CalibrationOptions::fields() {
       {"max_error_m", &O::max_error_m, 0.001, 1, "m",
        "pixels whose error (or residual) differs from the median by more than this are outliers, "
        "unless noise explains the difference"},
+      {"fixed_pattern", &O::fixed_pattern, 0, 0, "",
+       "constant range errors of individual pixels. on: found, which needs known ranges (truth or "
+       "wall); off: not found; auto: found if ranges are known, there are at least five frames, "
+       "and "
+       "the ranges of pixels differ between them"},
   };
 }
 

@@ -28,6 +28,14 @@ enum class CalibrationReference {
 };
 std::span<const NamedValue<CalibrationReference>> named_values(CalibrationReference);
 
+/// Whether `calibrate` finds the range errors of individual pixels.
+enum class FixedPatternOption {
+  if_observable,  ///< from known ranges, if frames and ranges differ enough to average out the rest
+  off,            ///< never
+  on,             ///< always; an error if ranges are not known
+};
+std::span<const NamedValue<FixedPatternOption>> named_values(FixedPatternOption);
+
 /// How `calibrate` fits the errors of a camera, group `calibration`.
 struct CalibrationOptions {
   /// What ranges are compared with.
@@ -47,6 +55,9 @@ struct CalibrationOptions {
   /// Pixels whose error (for reference "residual": whose residual) differs from the median by more
   /// than this are outliers, unless noise explains the difference. Metres, 0.001 … 1.
   double max_error_m = PhaseErrorFitOptions{}.max_error_m;
+
+  /// Whether the constant errors of individual pixels are found as well.
+  FixedPatternOption fixed_pattern = FixedPatternOption::if_observable;
 
   static std::vector<OptionField<CalibrationOptions>> fields();
 };

@@ -21,6 +21,9 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
   ~OutputFile();
 
+  /// The file to be written; if a link was named, the file that it leads to.
+  const std::filesystem::path& target() const { return file_; }
+
   /// The path of the temporary file, to be written before commit.
   const std::filesystem::path& path() const { return partial_; }
 

@@ -4,6 +4,7 @@
 #include "tofmap/calibration/phase_error_fit.hpp"
 
 #include "sample_noise.hpp"
+#include "significance.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,13 +19,6 @@
 
 namespace tofmap {
 namespace {
-
-/// Harmonics below this number of standard deviations are left out.
-constexpr double least_significance = 4;
-
-/// Number of samples that count as one independent sample. Pixels of one surface share errors from
-/// the lens, stray light and edges.
-constexpr double correlated_samples = 30;
 
 /// Harmonics below this are left out of fits to the residual, where motion between the two images
 /// and mixed pixels cause harmonics of about a millimetre.

@@ -57,6 +57,7 @@ RecordingSamples collect_samples(const SequenceReader& recording, const Referenc
                            (collected.read - 1) % stride, stride, collected.samples[b]);
     }
     ++collected.frames;
+    collected.frame_indices.push_back(i);
     if (collected.first_frames.size() < most_first_frames)
       collected.first_frames.push_back(*sourced.frame);
   }

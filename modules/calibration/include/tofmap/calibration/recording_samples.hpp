@@ -26,6 +26,7 @@ struct RecordingSamples {
   std::vector<std::size_t> others;
   std::vector<std::vector<RangeSample>> samples;  ///< for each of `others`
   std::size_t frames = 0;                         ///< number of frames that samples were taken from
+  std::vector<int> frame_indices;                 ///< indices of these frames, in ascending order
   std::vector<Frame> first_frames;                ///< the first twelve of these frames
   int read = 0;              ///< number of frames that were tried, damaged or not
   int damaged = 0;           ///< number of frames that could not be read
