@@ -64,6 +64,7 @@ TEST_F(RecordingSamplesTest, AreTakenFromAllFrames) {
 TEST_F(RecordingSamplesTest, AreTakenFromEveryNthFrame) {
   const RecordingSamples found = collect_samples(record({0, 1, 2, 3, 4, 5, 6}), reference(), 3);
   EXPECT_THAT(asked_, ElementsAre(0, 3, 6));
+  EXPECT_THAT(found.frame_indices, ElementsAre(0, 3, 6));
   EXPECT_EQ(found.read, 3);
 }
 
@@ -94,6 +95,7 @@ TEST_F(RecordingSamplesTest, LeaveOutFramesWithoutAReference) {
   EXPECT_EQ(found.frames, 1U);
   ASSERT_EQ(found.first_frames.size(), 1U);
   EXPECT_EQ(found.first_frames[0].index, 1);
+  EXPECT_THAT(found.frame_indices, ElementsAre(1));
 }
 
 TEST_F(RecordingSamplesTest, KeepTheFirstTwelveFrames) {
