@@ -54,8 +54,7 @@ std::vector<OptionField<CalibrationOptions>> CalibrationOptions::fields() {
       {"fixed_pattern", &O::fixed_pattern, 0, 0, "",
        "constant range errors of individual pixels. on: found, which needs known ranges (truth or "
        "wall); off: not found; auto: found if ranges are known, there are at least five frames, "
-       "and "
-       "the ranges of pixels differ between them"},
+       "and the ranges of pixels differ between them"},
   };
 }
 

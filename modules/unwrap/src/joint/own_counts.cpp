@@ -45,12 +45,12 @@ TOFMAP_VECTOR_CLONES void write(int pixels, const float* phase, const std::uint8
     const float odds = exp_of_negative(evidence_exponent * (least - next_cost[i]));
     const float own_count = count[i];
     const float cycles = phase[i] + own_count;  // NaN without a return
-    const float doubt = mixed[i] == 0 ? odds : 1.0F;
-    const float unclear = cycles == cycles ? doubt : 1.0F;
+    const float pure_odds = mixed[i] == 0 ? odds : 1.0F;
+    const float own_odds = cycles == cycles ? pure_odds : 1.0F;
     found.cost[i] = least;
     found.count[i] = static_cast<std::uint8_t>(static_cast<std::int32_t>(own_count));
     found.cycles[i] = cycles;
-    found.odds_against[i] = unclear <= clear ? odds + floor : 1.0F;
+    found.odds_against[i] = own_odds <= clear ? odds + floor : 1.0F;
   }
 }
 

@@ -61,14 +61,14 @@ struct Pixels {
   const float* others;  ///< probability of all other wrap counts together
   const float* sigma_a_cycles;
   const std::uint8_t* counts;
-  const float* trust;  ///< factor of the log odds, if these are positive
+  const float* odds_factor;  ///< of the log odds, if these are positive
 };
 
 /// Log odds of a pixel with three or more frequencies count this much more than the curves say, and
 /// with each jump to a neighbour this much less. Fitted by maximum likelihood to three `random`
-/// scenes (seeds 11 to 13), with noise of 5 to 30 mm at 1 m, with and without systematic errors.
-constexpr float trust_of_surface = 1.1F;
-constexpr float doubt_of_jump = 0.2F;
+/// scenes (seeds 11 to 13), with noise of 5 to 30 mm at 5 m, with and without systematic errors.
+constexpr float odds_factor_without_jump = 1.1F;
+constexpr float odds_factor_of_jump = 0.2F;
 
 /// 1 where the range between two pixels jumps, 0 where it does not or one of them has none.
 TOFMAP_VECTOR_CLONES void find_jumps(int count, const float* range_m, const float* neighbour_m,
@@ -84,13 +84,13 @@ TOFMAP_VECTOR_CLONES void find_jumps(int count, const float* range_m, const floa
   }
 }
 
-/// The trust in pixels of a row, from the jumps to their four neighbours.
-TOFMAP_VECTOR_CLONES void fill_trust(int count, const float* left, const float* above,
-                                     const float* below, float* trust) {
+/// The factors of the log odds of the pixels of a row, from the jumps to their four neighbours.
+TOFMAP_VECTOR_CLONES void fill_odds_factor(int count, const float* left, const float* above,
+                                           const float* below, float* odds_factor) {
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
     const float jumps = left[i] + left[i + 1] + above[i] + below[i];
-    trust[i] = trust_of_surface - doubt_of_jump * jumps;
+    odds_factor[i] = odds_factor_without_jump - odds_factor_of_jump * jumps;
   }
 }
 
@@ -124,7 +124,7 @@ TOFMAP_VECTOR_CLONES void fill_confidence(int count, const Pixels& pixels_, floa
       const float weight = 1 - (off > 0 ? off : -off);
       right += (weight > 0 ? weight : 0) * odds;
     }
-    right = right > 0 ? right * pixels.trust[i] : right;
+    right = right > 0 ? right * pixels.odds_factor[i] : right;
     const float odds_against = exp_of_negative(right > 0 ? -right : right);
     const float probability = (right > 0 ? 1 : odds_against) / (1 + odds_against);
     confidence[i] = pixels.counts[i] == invalid_wrap_count ? 0 : probability;
@@ -144,7 +144,7 @@ ImageF wrap_count_confidence(const WrapCountBeliefs& beliefs, const ImageF& rang
   std::vector<float> left(size + 1, 0.0F);
   std::vector<float> above(size, 0.0F);
   std::vector<float> below(size, 0.0F);
-  std::vector<float> trust(size, 1.0F);
+  std::vector<float> odds_factor(size, 1.0F);
   ImageF confidence(rows, cols);
   for (Eigen::Index v = 0; v < rows; ++v) {
     const Eigen::Index at = v * cols;
@@ -153,12 +153,12 @@ ImageF wrap_count_confidence(const WrapCountBeliefs& beliefs, const ImageF& rang
       find_jumps(width - 1, row + 1, row, left.data() + 1);
       std::ranges::fill(below, 0.0F);
       if (v + 1 < rows) find_jumps(width, row, row + cols, below.data());
-      fill_trust(width, left.data(), above.data(), below.data(), trust.data());
+      fill_odds_factor(width, left.data(), above.data(), below.data(), odds_factor.data());
       above.swap(below);
     }
     fill_confidence(width,
                     {beliefs.probability.data() + at, beliefs.other_probability.data() + at,
-                     sigma_a_cycles.data() + at, beliefs.count.data() + at, trust.data()},
+                     sigma_a_cycles.data() + at, beliefs.count.data() + at, odds_factor.data()},
                     steps_per_cycle, confidence.data() + at);
   }
   return confidence;
