@@ -3,11 +3,10 @@
 
 #include "sequence_header.hpp"
 
+#include "range_limit.hpp"
 #include "yaml_section.hpp"
 
 #include <cmath>
-
-#include <tofmap/core/range_image.hpp>
 
 namespace tofmap {
 namespace {
@@ -61,11 +60,8 @@ SensorModel read_sequence_header(const std::filesystem::path& file) {
   naming(file.string(), [&] {
     validate(sensor.camera);
     validate(sensor.modulation);
-    const double most_m = invalid_wrap_count * sensor.modulation.wavelength_m(0);
-    if (sensor.max_range_m <= most_m) return;
-    throw InputError("max_range_m must be at most " + std::to_string(invalid_wrap_count) +
-                     " wavelengths of the first frequency, " + shortest(most_m) +
-                     " m; give metres, not millimetres");
+    const std::string fault = range_limit_fault(sensor.max_range_m, sensor.modulation);
+    if (!fault.empty()) throw InputError("max_range_m " + fault);
   });
   return sensor;
 }

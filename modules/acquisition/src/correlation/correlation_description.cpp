@@ -4,13 +4,13 @@
 #include "tofmap/acquisition/correlation/correlation_description.hpp"
 
 #include "description_section.hpp"
+#include "range_limit.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <tofmap/core/modulation.hpp>
-#include <tofmap/core/range_image.hpp>
 
 namespace tofmap {
 namespace {
@@ -170,11 +170,8 @@ void read_exposure(const YamlSection& root, CorrelationDescription& description)
   }
   Modulation modulation;
   modulation.frequencies_hz = description.frequencies_hz;
-  if (description.max_range_m > invalid_wrap_count * modulation.wavelength_m(0)) {
-    root.fail("max_range_m", "is " + shortest(description.max_range_m) +
-                                 " m, more than 255 wavelengths of the first frequency; give "
-                                 "metres, not millimetres");
-  }
+  const std::string fault = range_limit_fault(description.max_range_m, modulation);
+  if (!fault.empty()) root.fail("max_range_m", fault);
 }
 
 }  // namespace
