@@ -285,7 +285,7 @@ TEST(UncertainPixels, TakeWeightsOfWrapCountsThatHaveNoSlot) {
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const std::size_t slot = i * UncertainPixels::slots + 20 % UncertainPixels::slots;
     EXPECT_EQ(pixels.counts()[slot], 20);
-    EXPECT_EQ(pixels.evidence()[slot], 1) << "10^18 against a least unary factor of 10^-8";
+    EXPECT_FLOAT_EQ(pixels.evidence()[slot], 1) << "10^18 against a least unary factor of 10^-8";
   }
 }
 
