@@ -3,11 +3,11 @@
 
 // Measures ranges under extreme phase noise, and prints a Markdown table:
 //
-//     bench_extreme_noise [--seed N] [--divide N] [--pictures DIR]
-// The frames resemble a recording at 37.65 and 45.18 MHz without amplitudes: exact phases of
-// simulated rooms with ranges of 2 to 9 m, and the same noise in all pixels. The filters are
-// compared with blurring: the phasors of both frequencies are smoothed by a Gaussian of 8 pixels,
-// and each pixel gets the range of largest likelihood.
+//     bench_extreme_noise [--seed N] [--divide N] [--frequencies MHZ[,MHZ]...] [--pictures DIR]
+// The frames resemble a recording without amplitudes at 37.65 and 45.18 MHz, or at the given
+// frequencies: exact phases of simulated rooms with ranges of 2 to 9 m, and the same noise in all
+// pixels. The filters are compared with blurring: the phasors of all frequencies are smoothed by a
+// Gaussian of 8 pixels, and each pixel gets the range of largest likelihood.
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +17,7 @@
 #include <iterator>
 #include <numbers>
 #include <random>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -105,12 +106,11 @@ bool is_of_the_kind(const ImageF& truth_m) {
 
 /// Frames of a scene in which more than 80 % of the ranges are from 2 to 9 m.
 std::vector<Sample> samples_of(const std::string& scene, int seed, int frames, int width,
-                               int height) {
+                               int height, const std::vector<double>& frequencies_hz) {
   SimulatorOptions options;
   options.width_px = width;
   options.height_px = height;
-  options.frequency_a_hz = 37.65e6;
-  options.frequency_b_hz = 45.18e6;
+  options.frequencies_hz = frequencies_hz;
   options.subpixels = 1;
   options.seed = seed;
   const Simulator simulator(make_scene(scene, seed), options);
@@ -156,22 +156,24 @@ ImageF blurred_ranges(const Frame& frame, const Modulation& modulation, double s
     };
     return along(along(plane, 1, 0), 0, 1);
   };
-  const Plane a = blurred(frame.phases[0]);
-  const Plane b = blurred(frame.phases[1]);
+  std::vector<Plane> planes;
+  for (const ImageF& phase : frame.phases) planes.push_back(blurred(phase));
   constexpr double step_m = 0.04;  // much smaller than the error limit of 0.3 m
   const auto steps = static_cast<int>(std::ceil(combined_range_m(modulation) / step_m));
-  std::vector<std::complex<double>> turn_a;
-  std::vector<std::complex<double>> turn_b;
-  for (int step = 0; step < steps; ++step) {
-    const double range_m = step * step_m;
-    turn_a.push_back(std::polar(1.0, -two_pi * range_m / modulation.wavelength_m(0)));
-    turn_b.push_back(std::polar(1.0, -two_pi * range_m / modulation.wavelength_m(1)));
+  std::vector<std::vector<std::complex<double>>> turns(planes.size());
+  for (std::size_t f = 0; f < planes.size(); ++f) {
+    for (int step = 0; step < steps; ++step) {
+      turns[f].push_back(std::polar(1.0, -two_pi * step * step_m / modulation.wavelength_m(f)));
+    }
   }
   ImageF range_m(rows, cols);
   for (Eigen::Index i = 0; i < range_m.size(); ++i) {
     double best = -1e30;
-    for (std::size_t k = 0; k < turn_a.size(); ++k) {
-      const double fit = (a.data()[i] * turn_a[k]).real() + (b.data()[i] * turn_b[k]).real();
+    for (std::size_t k = 0; k < static_cast<std::size_t>(steps); ++k) {
+      double fit = 0;
+      for (std::size_t f = 0; f < planes.size(); ++f) {
+        fit += (planes[f].data()[i] * turns[f][k]).real();
+      }
       if (fit <= best) continue;
       best = fit;
       range_m.data()[i] = static_cast<float>(step_m * static_cast<double>(k));
@@ -256,10 +258,11 @@ RangeImage ranges_alone(const ImageF& range_m) {
 }
 
 Frame noisy_frame(const Sample& sample, const Noise& noise, std::mt19937_64& random) {
-  Frame frame = blank_frame(2);
   const Modulation& modulation = sample.sensor.modulation;
-  frame.phases[0] = noisy_phase(sample.truth_m, modulation.wavelength_m(0), noise, random);
-  frame.phases[1] = noisy_phase(sample.truth_m, modulation.wavelength_m(1), noise, random);
+  Frame frame = blank_frame(modulation.count());
+  for (std::size_t f = 0; f < modulation.count(); ++f) {
+    frame.phases[f] = noisy_phase(sample.truth_m, modulation.wavelength_m(f), noise, random);
+  }
   return frame;
 }
 
@@ -341,8 +344,19 @@ std::string name_of(const Noise& noise) {
 struct Arguments {
   int seed = 901;
   int divisor = 1;
+  std::vector<double> frequencies_hz = {37.65e6, 45.18e6};
   std::filesystem::path pictures;
 };
+
+/// Frequencies in MHz, separated by commas.
+std::vector<double> read_frequencies(const std::string& words) {
+  std::vector<double> frequencies_hz;
+  std::istringstream stream(words);
+  for (std::string word; std::getline(stream, word, ',');) {
+    frequencies_hz.push_back(1e6 * std::stod(word));
+  }
+  return frequencies_hz;
+}
 
 Arguments read_arguments(const std::vector<std::string>& words) {
   Arguments arguments;
@@ -351,10 +365,13 @@ Arguments read_arguments(const std::vector<std::string>& words) {
       arguments.seed = std::stoi(words[i + 1]);
     } else if (words[i] == "--divide") {
       arguments.divisor = std::max(1, std::stoi(words[i + 1]));
+    } else if (words[i] == "--frequencies") {
+      arguments.frequencies_hz = read_frequencies(words[i + 1]);
     } else if (words[i] == "--pictures") {
       arguments.pictures = words[i + 1];
     } else {
-      throw std::invalid_argument(words[i] + ": only --seed, --divide and --pictures are known");
+      throw std::invalid_argument(
+          words[i] + ": only --seed, --divide, --frequencies and --pictures are known");
     }
   }
   return arguments;
@@ -380,8 +397,9 @@ std::vector<Group> make_groups(const Arguments& arguments) {
       // Many random rooms are too large for ranges of 2 to 9 m.
       const int seeds = std::max(1, (std::string(scene) == "random" ? 12 : 4) / arguments.divisor);
       for (int seed = arguments.seed; seed < arguments.seed + seeds; ++seed) {
-        std::ranges::move(samples_of(scene, seed, 1, size.width, size.height),
-                          std::back_inserter(group.samples));
+        std::ranges::move(
+            samples_of(scene, seed, 1, size.width, size.height, arguments.frequencies_hz),
+            std::back_inserter(group.samples));
       }
       if (!group.samples.empty()) groups.push_back(std::move(group));
     }

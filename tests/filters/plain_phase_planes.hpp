@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Dense>
@@ -15,8 +16,7 @@ namespace tofmap::test {
 
 /// A plane in phase through a pixel.
 struct PlainPhasePlane {
-  std::complex<double> a = 0;
-  std::complex<double> b = 0;
+  std::vector<std::complex<double>> phases;  ///< of each frequency
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();
   double variance = 1e6;
   double lever_variance = 0;
@@ -32,7 +32,9 @@ class PlainPhasePlanes {
         rows_(rows),
         cols_(cols),
         growth_(growth),
-        planes_(static_cast<std::size_t>(rows * cols)) {}
+        planes_(static_cast<std::size_t>(rows * cols)) {
+    for (PlainPhasePlane& plane : planes_) plane.phases.resize(frequencies());
+  }
 
   const PlainPhasePlane& at(int v, int u) const {
     return planes_[static_cast<std::size_t>(v * cols_ + u)];
@@ -47,6 +49,8 @@ class PlainPhasePlanes {
   }
 
  private:
+  std::size_t frequencies() const { return phasors_.frequencies.size(); }
+
   static std::complex<double> value(const PhasorImage& image, int v, int u) {
     return {image.re.row(v)[u], image.im.row(v)[u]};
   }
@@ -55,23 +59,26 @@ class PlainPhasePlanes {
   double agreement(const PlainPhasePlane& own, const PlainPhasePlane& other,
                    const Eigen::Vector2d& offset) const {
     const double turn = own.slope.dot(offset);
-    const double difference_a = std::arg(own.a * std::polar(1.0, turn) * std::conj(other.a));
-    const double difference_b =
-        std::arg(own.b * std::polar(1.0, growth_.wavelength_ratio * turn) * std::conj(other.b));
-    const double noise = own.variance + other.variance + offset.squaredNorm() * own.slope_variance;
-    const double misfit = (4 - 2 * std::cos(difference_a) - 2 * std::cos(difference_b)) / noise;
-    return std::clamp(1.5 - 1.5 * misfit / growth_.max_misfit, 0.0, 1.0);
+    double misfit = 0;
+    for (std::size_t f = 0; f < frequencies(); ++f) {
+      const double ratio = growth_.wavelength_ratios[f];
+      const double difference =
+          std::arg(own.phases[f] * std::polar(1.0, ratio * turn) * std::conj(other.phases[f]));
+      const double variance =
+          own.variance + other.variance + ratio * ratio * offset.squaredNorm() * own.slope_variance;
+      misfit += (2 - 2 * std::cos(difference)) / variance;
+    }
+    const double largest = growth_.max_misfit * static_cast<double>(frequencies());
+    return std::clamp(1.5 - 1.5 * misfit / largest, 0.0, 1.0);
   }
 
   PlainPhasePlane grown_plane(int v, int u, double radius_px, bool is_first) const {
     const PlainPhasePlane& own = at(v, u);
-    const double ratio = growth_.wavelength_ratio;
     struct Member {
       Eigen::Vector2d offset;
       double weight;
       double information;
-      std::complex<double> a;
-      std::complex<double> b;
+      std::vector<std::complex<double>> phasors;
     };
     std::vector<Member> members;
     for (int y = 0; y < rows_; ++y) {
@@ -82,24 +89,25 @@ class PlainPhasePlanes {
         if (share >= 1 || information == 0) continue;
         const double weight = (1 - share) * (is_first ? 1 : agreement(own, at(y, x), offset));
         const double turn = own.slope.dot(offset);
-        members.push_back({offset, weight, information,
-                           value(phasors_.a, y, x) * std::polar(1.0, -turn),
-                           value(phasors_.b, y, x) * std::polar(1.0, -ratio * turn)});
+        members.push_back({offset, weight, information, {}});
+        for (std::size_t f = 0; f < frequencies(); ++f) {
+          members.back().phasors.push_back(value(phasors_.frequencies[f], y, x) *
+                                           std::polar(1.0, -growth_.wavelength_ratios[f] * turn));
+        }
       }
     }
     double s = 0;
     double s2 = 0;
-    std::complex<double> a = 0;
-    std::complex<double> b = 0;
+    std::vector<std::complex<double>> sums(frequencies());
     Eigen::Vector2d middle = Eigen::Vector2d::Zero();
     for (const Member& member : members) {
       s += member.weight * member.information;
       s2 += member.weight * member.weight * member.information;
-      a += member.weight * member.a;
-      b += member.weight * member.b;
+      for (std::size_t f = 0; f < frequencies(); ++f) sums[f] += member.weight * member.phasors[f];
       middle += member.weight * member.information * member.offset;
     }
     PlainPhasePlane out;
+    out.phases.resize(frequencies());
     if (s == 0) return out;
     middle /= s;
     const double prior = 1 / (growth_.slope_sigma * growth_.slope_sigma);
@@ -107,15 +115,19 @@ class PlainPhasePlanes {
     Eigen::Vector2d score = -prior * own.slope;
     for (const Member& member : members) {
       const Eigen::Vector2d from_middle = member.offset - middle;
-      spread += (1 + ratio * ratio) * member.weight * member.information * from_middle *
-                from_middle.transpose();
-      score += member.weight * member.offset *
-               (std::imag(member.a * std::conj(a) / std::abs(a)) +
-                ratio * std::imag(member.b * std::conj(b) / std::abs(b)));
+      for (std::size_t f = 0; f < frequencies(); ++f) {
+        const double ratio = growth_.wavelength_ratios[f];
+        spread += ratio * ratio * member.weight * member.information * from_middle *
+                  from_middle.transpose();
+        score += ratio * member.weight * member.offset *
+                 std::imag(member.phasors[f] * std::conj(sums[f]) / std::abs(sums[f]));
+      }
     }
     const Eigen::Vector2d step = spread.inverse() * score;
-    out.a = a / std::abs(a) * std::polar(1.0, -middle.dot(step));
-    out.b = b / std::abs(b) * std::polar(1.0, -ratio * middle.dot(step));
+    for (std::size_t f = 0; f < frequencies(); ++f) {
+      out.phases[f] = sums[f] / std::abs(sums[f]) *
+                      std::polar(1.0, -growth_.wavelength_ratios[f] * middle.dot(step));
+    }
     out.slope = own.slope + step;
     out.variance = s2 / (s * s);
     out.lever_variance = s2 / s * middle.dot(spread.inverse() * middle);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -69,6 +70,24 @@ TEST(AmbientNoise, IsNotFoundOnCleanScenesWithEdges) {
       EXPECT_LE((ambient > 1.2F).count(), 256) << scene << ", frame " << i;
       EXPECT_LT(ambient.maxCoeff(), 1.7F) << scene << ", frame " << i;
     }
+  }
+}
+
+TEST(AmbientNoise, IsNotFoundWhereDifferencesWrap) {
+  // Without amplitudes, so that all pixels are predicted to be equally noisy.
+  for (const double sigma_cycles : {0.1, 0.15, 0.2, 0.25, 0.3}) {
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> normal(0.5, sigma_cycles);
+    Frame frame;
+    for (int f = 0; f < 2; ++f) {
+      ImageF phase(144, 176);
+      for (float& cycles : phase.reshaped()) {
+        const double drawn = normal(random);
+        cycles = static_cast<float>(drawn - std::floor(drawn));
+      }
+      frame.phases.push_back(phase);
+    }
+    EXPECT_EQ(find_ambient_noise(frame, estimate_phase_noise(frame)).size(), 0) << sigma_cycles;
   }
 }
 

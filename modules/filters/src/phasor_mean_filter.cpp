@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 #include <tofmap/core/median.hpp>
@@ -19,7 +21,7 @@ namespace {
 constexpr double two_pi = 2 * std::numbers::pi;
 
 /// Standard deviation of a phase that the largest windows are to reach. At 40 MHz it is 6 cm of
-/// range from one frequency, and 4 cm from both.
+/// range from one frequency, and 4 cm from two.
 constexpr double enough_sigma_rad = 0.1;
 
 /// Factor by which the standard deviation of a mean over a window that selects agreeing pixels
@@ -54,60 +56,87 @@ double cycles_of(const PhasorImage& phasors, int v, int u) {
   return cycles - std::floor(cycles);
 }
 
-/// The wrapped ranges of both frequencies at a pixel, from its plane.
-struct PhasePair {
-  double wrapped_a_m;
-  double wrapped_b_m;
-  double variance_a_m2;
-  double variance_b_m2;
-  double common_variance_m2;  ///< of the error that both have in common
+/// What one frequency says of a pixel.
+struct WrappedRange {
+  double range_m;  ///< modulo the wavelength
+  double wavelength_m;
+  double variance_m2;
+};
 
-  PhasePair(const PhasePlanes& planes, int v, int u, const Modulation& modulation) {
+/// The order in which a range is narrowed down: A, whose wrap counts are tried, then the others
+/// from the longest wavelength to the shortest, so that the range is known well enough to tell
+/// which period of a short wavelength it is in.
+std::vector<std::size_t> order_of(const Modulation& modulation) {
+  std::vector<std::size_t> order(modulation.count());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin() + 1, order.end(), [&](std::size_t one, std::size_t other) {
+    return modulation.wavelength_m(one) > modulation.wavelength_m(other);
+  });
+  return order;
+}
+
+/// The wrapped ranges of all frequencies at a pixel, from its plane.
+struct WrappedRanges {
+  std::vector<WrappedRange> frequencies;  ///< as ordered by order_of()
+  double common_variance_m2 = 0;          ///< of the error that all have in common
+
+  /// Reads the pixel (v, u) of the planes. Its memory is used again.
+  void read(const PhasePlanes& planes, int v, int u, const Modulation& modulation,
+            const std::vector<std::size_t>& order) {
     constexpr double least_coherence = 0.05;
-    const double a_m = modulation.wavelength_m(0);
-    const double b_m = modulation.wavelength_m(1);
-    wrapped_a_m = cycles_of(planes.a, v, u) * a_m;
-    wrapped_b_m = cycles_of(planes.b, v, u) * b_m;
     // If the phasors of the window cancel more than predicted, noise is larger by that factor.
     const double coherence = std::max<double>(least_coherence, planes.coherence.row(v)[u]);
     const double scale = selection / (coherence * two_pi);
     const double cycles2 = scale * scale * planes.variance.row(v)[u];
-    variance_a_m2 = cycles2 * a_m * a_m;
-    variance_b_m2 = cycles2 * b_m * b_m;
+    frequencies.clear();
+    for (const std::size_t f : order) {
+      const double wavelength_m = modulation.wavelength_m(f);
+      frequencies.push_back({cycles_of(planes.phases[f], v, u) * wavelength_m, wavelength_m,
+                             cycles2 * wavelength_m * wavelength_m});
+    }
+    const double a_m = modulation.wavelength_m(0);
     common_variance_m2 = scale * scale * planes.lever_variance.row(v)[u] * a_m * a_m;
-  }
-
-  double fused_variance_m2() const {
-    return variance_a_m2 * variance_b_m2 / (variance_a_m2 + variance_b_m2);
   }
 };
 
-/// A range from both frequencies for one wrap count.
+/// A range from all frequencies for one wrap count.
 struct CountedRange {
   double range_m = 0;
+  double variance_m2 = 0;
   double probability = 0;
 };
 
+/// The range for the wrap count n of A, with its likelihood in place of its probability
+/// (docs/filters.md, equation 14).
+CountedRange counted_range(const std::vector<WrappedRange>& frequencies, int n) {
+  const WrappedRange& a = frequencies.front();
+  CountedRange out{a.range_m + n * a.wavelength_m, a.variance_m2, 1};
+  for (std::size_t i = 1; i < frequencies.size(); ++i) {
+    const WrappedRange& other = frequencies[i];
+    const double variance_m2 = out.variance_m2 + other.variance_m2;
+    const double residual_m = std::remainder(out.range_m - other.range_m, other.wavelength_m);
+    out.probability *= std::exp(-0.5 * residual_m * residual_m / variance_m2);
+    out.range_m -= residual_m * out.variance_m2 / variance_m2;
+    out.variance_m2 *= other.variance_m2 / variance_m2;
+  }
+  return out;
+}
+
 /// The most probable range among the wrap counts 0 … `counts` − 1 of A (docs/filters.md, equation
 /// 14). range_m is 0 if no count is possible.
-CountedRange likeliest_range(const PhasePair& pair, const Modulation& modulation, int counts,
+CountedRange likeliest_range(const std::vector<WrappedRange>& frequencies, int counts,
                              double own_range_m, double own_confidence) {
-  const double a_m = modulation.wavelength_m(0);
-  const double b_m = modulation.wavelength_m(1);
-  const double variance_m2 = pair.variance_a_m2 + pair.variance_b_m2;
   const double own = std::clamp(own_confidence, 0.01, 0.99);
   CountedRange best;
   double sum = 0;
   for (int n = 0; n < counts; ++n) {
-    const double range_a_m = pair.wrapped_a_m + n * a_m;
-    const double residual_m = std::remainder(range_a_m - pair.wrapped_b_m, b_m);
-    const double range_m = range_a_m - residual_m * pair.variance_a_m2 / variance_m2;
-    if (range_m <= 0) continue;
-    const bool is_own = std::abs(range_m - own_range_m) < a_m / 2;
-    const double prior = is_own ? own : (1 - own) / std::max(1, counts - 1);
-    const double probability = prior * std::exp(-0.5 * residual_m * residual_m / variance_m2);
-    sum += probability;
-    if (probability > best.probability) best = {range_m, probability};
+    CountedRange counted = counted_range(frequencies, n);
+    if (counted.range_m <= 0) continue;
+    const bool is_own =
+        std::abs(counted.range_m - own_range_m) < frequencies.front().wavelength_m / 2;
+    counted.probability *= is_own ? own : (1 - own) / std::max(1, counts - 1);
+    sum += counted.probability;
+    if (counted.probability > best.probability) best = counted;
   }
   best.probability *= (1 - mixed_share) / (sum > 0 ? sum : 1);
   return best;
@@ -133,31 +162,35 @@ RangeImage average_phasors(const RangeImage& image, const Frame& frame,
   if (noisy == 0 || noisy < least_share * image.count_valid()) return image;
   if (frame.frequencies() == 1) return image;
   const auto fits = [&](const ImageF& phase) { return same_size(image.range_m, phase); };
-  if (frame.phases.empty() || !std::ranges::all_of(frame.phases, fits)) {
-    throw UsageError("phasor_mean filter: range image and frame differ in size");
+  if (frame.phases.size() != modulation.count() || !std::ranges::all_of(frame.phases, fits)) {
+    throw UsageError("phasor_mean filter: range image and frame differ in size or frequencies");
   }
   const double radius_px = std::min(limits.max_radius_px, wanted_radius_px(noise, least_noise));
   if (radius_px < 2) return image;
-  const WindowGrowth growth{
-      .wavelength_ratio = modulation.wavelength_m(0) / modulation.wavelength_m(1),
-      .last_radius_px = radius_px};
-  const Phasors phasors(frame.phases[0], frame.phases[1], noise,
-                        static_cast<int>(std::ceil(radius_px)));
+  WindowGrowth growth;
+  growth.last_radius_px = radius_px;
+  for (std::size_t f = 0; f < modulation.count(); ++f) {
+    growth.wavelength_ratios.push_back(
+        static_cast<float>(modulation.wavelength_m(0) / modulation.wavelength_m(f)));
+  }
+  const Phasors phasors(frame.phases, noise, static_cast<int>(std::ceil(radius_px)));
   const PhasePlanes planes = grow_phase_planes(phasors, static_cast<int>(image.rows()),
                                                static_cast<int>(image.cols()), growth);
   const int counts = count_limit(image);
+  const std::vector<std::size_t> order = order_of(modulation);
+  WrappedRanges wrapped;
   RangeImage out = image;
   out.averaged_px = ImageF::Ones(image.rows(), image.cols());
   for (int v = 0; v < image.rows(); ++v) {
     for (int u = 0; u < image.cols(); ++u) {
       if (!(noise(v, u) > least_noise)) continue;
-      const PhasePair pair(planes, v, u, modulation);
+      wrapped.read(planes, v, u, modulation, order);
       const CountedRange best =
-          likeliest_range(pair, modulation, counts, image.range_m(v, u), image.confidence(v, u));
+          likeliest_range(wrapped.frequencies, counts, image.range_m(v, u), image.confidence(v, u));
       if (!(best.range_m > 0)) continue;
       out.range_m(v, u) = static_cast<float>(best.range_m);
       out.sigma_m(v, u) =
-          static_cast<float>(std::sqrt(pair.fused_variance_m2() + pair.common_variance_m2));
+          static_cast<float>(std::sqrt(best.variance_m2 + wrapped.common_variance_m2));
       out.wrap_count(v, u) = static_cast<std::uint8_t>(best.range_m / modulation.wavelength_m(0));
       out.confidence(v, u) = static_cast<float>(best.probability);
       out.averaged_px(v, u) =

@@ -4,7 +4,6 @@
 #include "phasor_windows.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -72,15 +71,6 @@ class RowPhasors {
   std::vector<float> im_;
 };
 
-/// Unit phasors of the phase that the plane of each pixel of a row adds between the pixel and an
-/// offset, for both frequencies.
-struct Rotors {
-  RowPhasors a;
-  RowPhasors b;
-
-  explicit Rotors(int cols) : a(cols), b(cols) {}
-};
-
 struct RotorRow {
   float* re;
   float* im;
@@ -102,25 +92,38 @@ TOFMAP_VECTOR_CLONES void rotate(int pixels, const RotorRow& rotors_, const Roto
   }
 }
 
-void rotate(int pixels, Rotors& rotors, Rotors& by) {
-  rotate(pixels, RotorRow(rotors.a), RotorRow(by.a));
-  rotate(pixels, RotorRow(rotors.b), RotorRow(by.b));
-}
+/// Unit phasors of the phase that the plane of each pixel of a row adds between the pixel and an
+/// offset, for each frequency.
+class Rotors {
+ public:
+  Rotors(std::size_t frequencies, int cols) : frequencies_(frequencies, RowPhasors(cols)) {}
 
-/// Sets `out` to the rotors of the offset (x, y). `ratio` is λ_A / λ_B.
-void set_rotors(int pixels, const float* slope_x, const float* slope_y, int x, int y, float ratio,
-                Rotors& out) {
-  for (int i = 0; i < pixels; ++i) {
-    const float angle = slope_x[i] * static_cast<float>(x) + slope_y[i] * static_cast<float>(y);
-    out.a.re()[i] = std::cos(angle);
-    out.a.im()[i] = std::sin(angle);
-    out.b.re()[i] = std::cos(ratio * angle);
-    out.b.im()[i] = std::sin(ratio * angle);
+  RotorRow row(std::size_t frequency) { return RotorRow(frequencies_[frequency]); }
+
+  /// Sets the rotors to those of the offset (x, y).
+  void set(int pixels, const float* slope_x, const float* slope_y, int x, int y,
+           const std::vector<float>& wavelength_ratios) {
+    for (std::size_t f = 0; f < frequencies_.size(); ++f) {
+      const RotorRow out = row(f);
+      for (int i = 0; i < pixels; ++i) {
+        const float angle = slope_x[i] * static_cast<float>(x) + slope_y[i] * static_cast<float>(y);
+        out.re[i] = std::cos(wavelength_ratios[f] * angle);
+        out.im[i] = std::sin(wavelength_ratios[f] * angle);
+      }
+    }
   }
-}
 
-/// Weighted sums of phasors z over windows: of z, x z and y z, where (x, y) is the offset.
-struct FrequencySums {
+  void rotate_by(int pixels, Rotors& by) {
+    for (std::size_t f = 0; f < frequencies_.size(); ++f) rotate(pixels, row(f), by.row(f));
+  }
+
+ private:
+  std::vector<RowPhasors> frequencies_;
+};
+
+/// Weighted sums of the phasors z of one frequency over the windows of a row's pixels: of z, x z
+/// and y z, where (x, y) is the offset.
+struct PhasorSums {
   float *re, *im, *x_re, *x_im, *y_re, *y_im;
 
   [[gnu::always_inline]] void add(int i, Complex z, float w, float wx, float wy) const {
@@ -133,10 +136,8 @@ struct FrequencySums {
   }
 };
 
-/// Sums over the windows of a row's pixels.
-struct SumRow {
-  FrequencySums a;
-  FrequencySums b;
+/// Sums of the information over the windows of a row's pixels.
+struct InformationSums {
   float *s, *sx, *sy, *sxx, *sxy, *syy;  ///< weighted information, times products of the offset
   float* s2;                             ///< information times squared weights
 };
@@ -144,55 +145,28 @@ struct SumRow {
 /// Memory of the sums of a row.
 class WindowSums {
  public:
-  explicit WindowSums(int cols) {
-    for (auto& values : values_) values.resize(static_cast<std::size_t>(cols));
-  }
+  WindowSums(std::size_t frequencies, int cols)
+      : values_(information_sums + phasor_sums * frequencies,
+                std::vector<float>(static_cast<std::size_t>(cols))) {}
 
   void set_zero() {
     for (auto& values : values_) std::ranges::fill(values, 0.0F);
   }
 
-  SumRow row() {
-    const auto at = [this](std::size_t i) { return values_[i].data(); };
-    return {{at(0), at(1), at(2), at(3), at(4), at(5)},
-            {at(6), at(7), at(8), at(9), at(10), at(11)},
-            at(12),
-            at(13),
-            at(14),
-            at(15),
-            at(16),
-            at(17),
-            at(18)};
+  InformationSums information() { return {at(0), at(1), at(2), at(3), at(4), at(5), at(6)}; }
+
+  PhasorSums phasors(std::size_t frequency) {
+    const std::size_t first = information_sums + phasor_sums * frequency;
+    return {at(first), at(first + 1), at(first + 2), at(first + 3), at(first + 4), at(first + 5)};
   }
 
  private:
-  std::array<std::vector<float>, 19> values_;
-};
+  static constexpr std::size_t information_sums = 7;
+  static constexpr std::size_t phasor_sums = 6;
 
-/// Planes of a row, from column `offset` on.
-struct PhasePlaneRow {
-  PhasorRow a;
-  PhasorRow b;
-  const float* variance;
-  const float* slope_variance;
+  float* at(std::size_t i) { return values_[i].data(); }
 
-  PhasePlaneRow(const PhasePlanes& planes, int v, int offset)
-      : a(planes.a, v, offset),
-        b(planes.b, v, offset),
-        variance(planes.variance.row(v) + offset),
-        slope_variance(planes.slope_variance.row(v) + offset) {}
-};
-
-/// Measurements of a row, from column `offset` on.
-struct MeasuredRow {
-  PhasorRow a;
-  PhasorRow b;
-  const float* information;
-
-  MeasuredRow(const Phasors& phasors, int v, int offset)
-      : a(phasors.a, v, offset),
-        b(phasors.b, v, offset),
-        information(phasors.information.row(v) + offset) {}
+  std::vector<std::vector<float>> values_;
 };
 
 /// One offset in the window.
@@ -203,44 +177,78 @@ struct Place {
   float inverse_misfit;  ///< 1 / the largest accepted misfit; 0 accepts all pixels
 };
 
-/// Adds the pixels at one offset to the windows, weighted by how well their planes agree with the
-/// plane of the window's pixel (docs/filters.md, equation 13). The weight is full up to a third of
-/// the largest accepted misfit, and falls linearly to 0 at the largest.
-TOFMAP_VECTOR_CLONES void add_place(int pixels, const Place& place_, const RotorRow& rotor_a_,
-                                    const RotorRow& rotor_b_, const PhasePlaneRow& own_,
-                                    const PhasePlaneRow& other_, const MeasuredRow& measured_,
-                                    const SumRow& sums_) {
-  const Place place = place_;
-  const RotorRow rotor_a = rotor_a_;
-  const RotorRow rotor_b = rotor_b_;
-  const PhasePlaneRow own = own_;
-  const PhasePlaneRow other = other_;
-  const MeasuredRow measured = measured_;
-  const SumRow sums = sums_;
-  const float length2 = place.x * place.x + place.y * place.y;
+/// How uncertain the planes of a row are, from column `offset` on.
+struct UncertaintyRow {
+  const float* variance;
+  const float* slope_variance;
+
+  UncertaintyRow(const PhasePlanes& planes, int v, int offset)
+      : variance(planes.variance.row(v) + offset),
+        slope_variance(planes.slope_variance.row(v) + offset) {}
+};
+
+/// Phasors of one frequency at a place: of the plane of the window's pixel, of that of the pixel at
+/// the place, and the rotors between the two.
+struct PlacePhasors {
+  PhasorRow own;
+  PhasorRow other;
+  RotorRow rotors;
+};
+
+/// Adds to `misfit` by how much the phases of one frequency differ between the plane of the pixel
+/// at a place and that of the window's pixel, squared standard deviations (docs/filters.md,
+/// equation 13).
+TOFMAP_VECTOR_CLONES void add_misfit(int pixels, const Place& place, float wavelength_ratio,
+                                     const PlacePhasors& phasors_, const UncertaintyRow& own_,
+                                     const UncertaintyRow& other_, float* misfit) {
+  const PlacePhasors phasors = phasors_;
+  const UncertaintyRow own = own_;
+  const UncertaintyRow other = other_;
+  const float length =
+      wavelength_ratio * wavelength_ratio * (place.x * place.x + place.y * place.y);
 #pragma GCC ivdep
   for (int i = 0; i < pixels; ++i) {
-    const Complex rotation_a = rotor_a[i];
-    const Complex rotation_b = rotor_b[i];
-    const float cosines = dot(product(own.a[i], rotation_a), other.a[i]) +
-                          dot(product(own.b[i], rotation_b), other.b[i]);
-    const float noise = own.variance[i] + other.variance[i] + length2 * own.slope_variance[i];
-    const float misfit = (4 - 2 * cosines) / noise * place.inverse_misfit;
-    const float ramp = 1.5F - 1.5F * misfit;
+    const float cosine = dot(product(phasors.own[i], phasors.rotors[i]), phasors.other[i]);
+    const float variance = own.variance[i] + other.variance[i] + length * own.slope_variance[i];
+    misfit[i] += (2 - 2 * cosine) / variance;
+  }
+}
+
+/// Replaces misfits by the weights of the pixels at one offset: full up to a third of the largest
+/// accepted misfit, falling linearly to 0 at the largest. Adds their information to the windows.
+TOFMAP_VECTOR_CLONES void weigh_place(int pixels, const Place& place_, const float* information,
+                                      float* misfits_or_weights, const InformationSums& sums_) {
+  const Place place = place_;
+  const InformationSums sums = sums_;
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    const float ramp = 1.5F - 1.5F * misfits_or_weights[i] * place.inverse_misfit;
     const float share = ramp < 0 ? 0.0F : (ramp > 1 ? 1.0F : ramp);
     const float w = place.weight * share;
-    const float wx = w * place.x;
-    const float wy = w * place.y;
-    sums.a.add(i, rotated_back(measured.a[i], rotation_a), w, wx, wy);
-    sums.b.add(i, rotated_back(measured.b[i], rotation_b), w, wx, wy);
-    const float information = measured.information[i];
-    sums.s[i] += w * information;
-    sums.sx[i] += wx * information;
-    sums.sy[i] += wy * information;
-    sums.sxx[i] += wx * place.x * information;
-    sums.sxy[i] += wx * place.y * information;
-    sums.syy[i] += wy * place.y * information;
-    sums.s2[i] += w * w * information;
+    const float weighted = w * information[i];
+    misfits_or_weights[i] = w;
+    sums.s[i] += weighted;
+    sums.sx[i] += place.x * weighted;
+    sums.sy[i] += place.y * weighted;
+    sums.sxx[i] += place.x * place.x * weighted;
+    sums.sxy[i] += place.x * place.y * weighted;
+    sums.syy[i] += place.y * place.y * weighted;
+    sums.s2[i] += w * weighted;
+  }
+}
+
+/// Adds the phasors of one frequency at one offset to the windows.
+TOFMAP_VECTOR_CLONES void add_phasors(int pixels, const Place& place_, const float* weights,
+                                      const PhasorRow& measured_, const RotorRow& rotors_,
+                                      const PhasorSums& sums_) {
+  const Place place = place_;
+  const PhasorRow measured = measured_;
+  const RotorRow rotors = rotors_;
+  const PhasorSums sums = sums_;
+#pragma GCC ivdep
+  for (int i = 0; i < pixels; ++i) {
+    const float w = weights[i];
+    sums.add(i, rotated_back(measured[i], rotors[i]), w, w * place.x, w * place.y);
   }
 }
 
@@ -251,7 +259,7 @@ struct MeanPhasor {
   float slope_score_x;  ///< derivative of the log likelihood by the slope along x
   float slope_score_y;  ///< derivative of the log likelihood by the slope along y
 
-  MeanPhasor(const FrequencySums& sums, int i)
+  MeanPhasor(const PhasorSums& sums, int i)
       : length(std::hypot(sums.re[i], sums.im[i])),
         direction{sums.re[i] / length, sums.im[i] / length},
         slope_score_x(rotated_back({sums.x_re[i], sums.x_im[i]}, direction).im),
@@ -265,47 +273,55 @@ struct MeanPhasor {
 
 /// Estimates the plane of one pixel by one step of Fisher scoring, starting at the plane of
 /// `before`, by whose slopes the sums were rotated back (docs/filters.md, equations 11 and 12). The
-/// phases of both frequencies are independent; the slope is common to both. Leaves the plane empty
-/// if no pixel of the window contributes.
-void solve(const SumRow& sums, int v, int i, const WindowGrowth& growth, const PhasePlanes& before,
+/// phases of the frequencies are independent; the slope is common to all. Leaves the plane empty if
+/// no pixel of the window contributes.
+void solve(WindowSums& window, int v, int i, const WindowGrowth& growth, const PhasePlanes& before,
            PhasePlanes& out) {
+  const InformationSums sums = window.information();
   const float s = sums.s[i];
   if (!(s > 0)) return;
-  const MeanPhasor a(sums.a, i);
-  const MeanPhasor b(sums.b, i);
-  if (!(a.length > 0 && b.length > 0)) return;
-  const auto ratio = static_cast<float>(growth.wavelength_ratio);
-  const float both = 1 + ratio * ratio;
   const float prior = 1 / static_cast<float>(growth.slope_sigma * growth.slope_sigma);
-  const float mean_x = sums.sx[i] / s;
-  const float mean_y = sums.sy[i] / s;
-  const float xx = both * (sums.sxx[i] - mean_x * sums.sx[i]) + prior;
-  const float xy = both * (sums.sxy[i] - mean_x * sums.sy[i]);
-  const float yy = both * (sums.syy[i] - mean_y * sums.sy[i]) + prior;
-  const float determinant = xx * yy - xy * xy;
   const float slope_x = before.slope_x.row(v)[i];
   const float slope_y = before.slope_y.row(v)[i];
-  const float score_x = a.slope_score_x + ratio * b.slope_score_x - prior * slope_x;
-  const float score_y = a.slope_score_y + ratio * b.slope_score_y - prior * slope_y;
+  const std::size_t frequencies = out.phases.size();
+  float all = 0;  // sum of the squared wavelength ratios
+  float length = 0;
+  float score_x = -prior * slope_x;
+  float score_y = -prior * slope_y;
+  for (std::size_t f = 0; f < frequencies; ++f) {
+    const MeanPhasor mean(window.phasors(f), i);
+    if (!(mean.length > 0)) return;
+    const float ratio = growth.wavelength_ratios[f];
+    all += ratio * ratio;
+    length += mean.length;
+    score_x += ratio * mean.slope_score_x;
+    score_y += ratio * mean.slope_score_y;
+  }
+  const float mean_x = sums.sx[i] / s;
+  const float mean_y = sums.sy[i] / s;
+  const float xx = all * (sums.sxx[i] - mean_x * sums.sx[i]) + prior;
+  const float xy = all * (sums.sxy[i] - mean_x * sums.sy[i]);
+  const float yy = all * (sums.syy[i] - mean_y * sums.sy[i]) + prior;
+  const float determinant = xx * yy - xy * xy;
   const float step_x = (yy * score_x - xy * score_y) / determinant;
   const float step_y = (xx * score_y - xy * score_x) / determinant;
   // The sum phasor gives the phase at the centroid of the window; the plane needs that at the
   // pixel.
   const float back = -(mean_x * step_x + mean_y * step_y);
-  const Complex at_a = a.rotated(back);
-  const Complex at_b = b.rotated(ratio * back);
+  for (std::size_t f = 0; f < frequencies; ++f) {
+    const Complex at_pixel =
+        MeanPhasor(window.phasors(f), i).rotated(growth.wavelength_ratios[f] * back);
+    out.phases[f].re.row(v)[i] = at_pixel.re;
+    out.phases[f].im.row(v)[i] = at_pixel.im;
+  }
   const float spread = sums.s2[i] / s;
   const float lever = yy * mean_x * mean_x - 2 * xy * mean_x * mean_y + xx * mean_y * mean_y;
-  out.a.re.row(v)[i] = at_a.re;
-  out.a.im.row(v)[i] = at_a.im;
-  out.b.re.row(v)[i] = at_b.re;
-  out.b.im.row(v)[i] = at_b.im;
   out.slope_x.row(v)[i] = slope_x + step_x;
   out.slope_y.row(v)[i] = slope_y + step_y;
   out.variance.row(v)[i] = spread / s;
   out.lever_variance.row(v)[i] = spread * lever / determinant;
   out.slope_variance.row(v)[i] = 0.5F * spread * (xx + yy) / determinant;
-  out.coherence.row(v)[i] = (a.length + b.length) / (2 * s);
+  out.coherence.row(v)[i] = length / (static_cast<float>(frequencies) * s);
 }
 
 /// Estimates the planes of all pixels from windows of one radius. Its buffers are used again in
@@ -318,32 +334,35 @@ class WindowStep {
         cols_(cols),
         margin_(margin),
         growth_(growth),
-        sums_(cols),
-        right_(cols),
-        down_(cols),
-        row_start_(cols),
-        rotors_(cols) {}
+        sums_(frequencies(), cols),
+        weights_(static_cast<std::size_t>(cols)),
+        right_(frequencies(), cols),
+        down_(right_),
+        row_start_(right_),
+        rotors_(right_) {}
 
   /// The planes from windows of `radius_px`, given those of the previous step.
   PhasePlanes grow(const PhasePlanes& before, double radius_px, double inverse_misfit) {
-    PhasePlanes out(rows_, cols_, margin_);
+    PhasePlanes out(frequencies(), rows_, cols_, margin_);
     for (int v = 0; v < rows_; ++v) {
       sums_.set_zero();
       add_window(before, v, static_cast<float>(radius_px), static_cast<float>(inverse_misfit));
-      for (int i = 0; i < cols_; ++i) solve(sums_.row(), v, i, growth_, before, out);
+      for (int i = 0; i < cols_; ++i) solve(sums_, v, i, growth_, before, out);
     }
     return out;
   }
 
  private:
+  std::size_t frequencies() const { return phasors_.frequencies.size(); }
+
   /// Adds up the windows of all pixels of row v.
   void add_window(const PhasePlanes& before, int v, float radius_px, float inverse_misfit) {
     const int reach = static_cast<int>(std::ceil(radius_px)) - 1;
     const int top = std::max(-reach, -v);
     const int bottom = std::min(reach, rows_ - 1 - v);
     const auto set = [&](int x, int y, Rotors& rotors) {
-      set_rotors(cols_, before.slope_x.row(v), before.slope_y.row(v), x, y,
-                 static_cast<float>(growth_.wavelength_ratio), rotors);
+      rotors.set(cols_, before.slope_x.row(v), before.slope_y.row(v), x, y,
+                 growth_.wavelength_ratios);
     };
     set(1, 0, right_);
     set(0, 1, down_);
@@ -353,14 +372,34 @@ class WindowStep {
       for (int x = -reach; x <= reach; ++x) {
         const float share = static_cast<float>(x * x + y * y) / (radius_px * radius_px);
         if (share < 1) {
-          add_place(cols_,
-                    {static_cast<float>(x), static_cast<float>(y), 1 - share, inverse_misfit},
-                    RotorRow(rotors_.a), RotorRow(rotors_.b), PhasePlaneRow(before, v, 0),
-                    PhasePlaneRow(before, v + y, x), MeasuredRow(phasors_, v + y, x), sums_.row());
+          add_place(before, v,
+                    {static_cast<float>(x), static_cast<float>(y), 1 - share, inverse_misfit});
         }
-        rotate(cols_, rotors_, right_);
+        rotors_.rotate_by(cols_, right_);
       }
-      rotate(cols_, row_start_, down_);
+      row_start_.rotate_by(cols_, down_);
+    }
+  }
+
+  /// Adds the pixels at one offset from those of row v, weighted by how well their planes agree
+  /// with the plane of the window's pixel.
+  void add_place(const PhasePlanes& before, int v, const Place& place) {
+    const int x = static_cast<int>(place.x);
+    const int other_v = v + static_cast<int>(place.y);
+    const UncertaintyRow own(before, v, 0);
+    const UncertaintyRow other(before, other_v, x);
+    std::ranges::fill(weights_, 0.0F);
+    for (std::size_t f = 0; f < frequencies(); ++f) {
+      const PhasorImage& phases = before.phases[f];
+      add_misfit(cols_, place, growth_.wavelength_ratios[f],
+                 {PhasorRow(phases, v, 0), PhasorRow(phases, other_v, x), rotors_.row(f)}, own,
+                 other, weights_.data());
+    }
+    weigh_place(cols_, place, phasors_.information.row(other_v) + x, weights_.data(),
+                sums_.information());
+    for (std::size_t f = 0; f < frequencies(); ++f) {
+      add_phasors(cols_, place, weights_.data(), PhasorRow(phasors_.frequencies[f], other_v, x),
+                  rotors_.row(f), sums_.phasors(f));
     }
   }
 
@@ -370,6 +409,7 @@ class WindowStep {
   int margin_;
   const WindowGrowth& growth_;
   WindowSums sums_;
+  std::vector<float> weights_;  ///< of the pixels at one offset
   Rotors right_;
   Rotors down_;
   Rotors row_start_;
@@ -383,36 +423,37 @@ float phase_information(float sigma_cycles) {
   return moments.mean * moments.mean / moments.variance_across;
 }
 
-Phasors::Phasors(int rows, int cols, int margin) : a(rows, cols, margin), b(a), information(a.re) {}
-
-Phasors::Phasors(const ImageF& phase_a, const ImageF& phase_b, const ImageF& sigma_cycles,
-                 int margin)
-    : Phasors(static_cast<int>(phase_a.rows()), static_cast<int>(phase_a.cols()), margin) {
-  for (int v = 0; v < phase_a.rows(); ++v) {
-    for (int u = 0; u < phase_a.cols(); ++u) {
-      const float phase_a_rad = two_pi * phase_a(v, u);
-      const float phase_b_rad = two_pi * phase_b(v, u);
-      if (!std::isfinite(phase_a_rad + phase_b_rad + sigma_cycles(v, u))) continue;
+Phasors::Phasors(const std::vector<ImageF>& phases, const ImageF& sigma_cycles, int margin)
+    : information(static_cast<int>(sigma_cycles.rows()), static_cast<int>(sigma_cycles.cols()),
+                  margin) {
+  const auto rows = static_cast<int>(sigma_cycles.rows());
+  const auto cols = static_cast<int>(sigma_cycles.cols());
+  frequencies.assign(phases.size(), PhasorImage(rows, cols, margin));
+  for (int v = 0; v < rows; ++v) {
+    for (int u = 0; u < cols; ++u) {
+      float sum = sigma_cycles(v, u);
+      for (const ImageF& phase : phases) sum += phase(v, u);
+      if (!std::isfinite(sum)) continue;
       const PhasorMoments moments(sigma_cycles(v, u));
       const float weight = moments.mean / moments.variance_across;
-      a.re.row(v)[u] = weight * std::cos(phase_a_rad);
-      a.im.row(v)[u] = weight * std::sin(phase_a_rad);
-      b.re.row(v)[u] = weight * std::cos(phase_b_rad);
-      b.im.row(v)[u] = weight * std::sin(phase_b_rad);
+      for (std::size_t f = 0; f < phases.size(); ++f) {
+        const float phase_rad = two_pi * phases[f](v, u);
+        frequencies[f].re.row(v)[u] = weight * std::cos(phase_rad);
+        frequencies[f].im.row(v)[u] = weight * std::sin(phase_rad);
+      }
       information.row(v)[u] = weight * moments.mean;
     }
   }
 }
 
-PhasePlanes::PhasePlanes(int rows, int cols, int margin)
-    : a(rows, cols, margin),
-      b(a),
-      slope_x(a.re),
-      slope_y(a.re),
+PhasePlanes::PhasePlanes(std::size_t frequencies, int rows, int cols, int margin)
+    : phases(frequencies, PhasorImage(rows, cols, margin)),
+      slope_x(rows, cols, margin),
+      slope_y(slope_x),
       variance(rows, cols, margin, 1e6F),  // phase unknown
-      lever_variance(a.re),
-      slope_variance(a.re),
-      coherence(a.re) {}
+      lever_variance(slope_x),
+      slope_variance(slope_x),
+      coherence(slope_x) {}
 
 PhasePlanes grow_phase_planes(const Phasors& phasors, int rows, int cols,
                               const WindowGrowth& growth) {
@@ -423,12 +464,14 @@ PhasePlanes grow_phase_planes(const Phasors& phasors, int rows, int cols,
       std::max(1, static_cast<int>(std::ceil(std::log(whole) / std::log(growth.growth))));
   WindowStep step(phasors, rows, cols, margin, growth);
   // In the first step there are no planes to compare: all pixels of the window are accepted.
-  PhasePlanes planes = step.grow(PhasePlanes(rows, cols, margin),
+  const std::size_t frequencies = phasors.frequencies.size();
+  PhasePlanes planes = step.grow(PhasePlanes(frequencies, rows, cols, margin),
                                  std::min(growth.first_radius_px, growth.last_radius_px), 0);
   for (int i = 1; i <= steps; ++i) {
     const double radius_px =
         growth.first_radius_px * std::pow(whole, static_cast<double>(i) / steps);
-    planes = step.grow(planes, radius_px, 1 / growth.max_misfit);
+    planes =
+        step.grow(planes, radius_px, 1 / (static_cast<double>(frequencies) * growth.max_misfit));
   }
   return planes;
 }

@@ -25,6 +25,11 @@ constexpr int block_px = 16;
 constexpr float half_sigmas = 0.6745F;
 constexpr float most_sigmas = 2.5F;
 
+/// Differences with more predicted noise, in cycles, are left out: they wrap so often that they
+/// look quieter than they are. At the limit, they do so by a factor of 0.88, which factor_of() does
+/// not take for a difference.
+constexpr float largest_sigma_cycles = 0.4F;
+
 /// Number of differences in one block, and how many of them are below each limit.
 struct Shares {
   int all = 0;
@@ -32,15 +37,15 @@ struct Shares {
   int below_most = 0;
 };
 
-/// Fills flags (1 or 0) for each difference of a row: whether it exists, and whether it is below
-/// each limit.
+/// Fills flags (1 or 0) for each difference of a row: whether it exists and its noise does not
+/// wrap, and whether it is below each limit.
 TOFMAP_VECTOR_CLONES void compare(int count, const float* cycles, const float* relative_sigma,
                                   float scale, int* present, int* below_half, int* below_most) {
 #pragma GCC ivdep
   for (int i = 0; i < count; ++i) {
     const float size = cycles[i] < 0 ? -cycles[i] : cycles[i];
     const float sigma = scale * relative_sigma[i];
-    const int is_present = sigma < 1e9F ? 1 : 0;
+    const int is_present = sigma <= largest_sigma_cycles ? 1 : 0;
     present[i] = is_present;
     below_half[i] = size < half_sigmas * sigma ? is_present : 0;
     below_most[i] = size < most_sigmas * sigma ? is_present : 0;

@@ -18,7 +18,8 @@ namespace tofmap {
 /// m is estimated in blocks of 16 x 16 pixels, from second differences of the phases divided by
 /// their predicted noise. The shares of differences below 0.67 and below 2.5 separate the factor
 /// from differences across edges, which are large for another reason. Between the centres of
-/// blocks, the logarithm of m is interpolated.
+/// blocks, the logarithm of m is interpolated. m is 1 where the predicted noise is so large that
+/// differences wrap (above 0.16 cycles).
 ImageF find_ambient_noise(const Frame& frame, const std::vector<PhaseNoise>& noise);
 
 }  // namespace tofmap

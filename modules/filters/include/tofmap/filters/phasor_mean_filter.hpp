@@ -21,7 +21,8 @@ struct PhasorMeanLimits {
 /// seen. The windows grow with the noise, along surfaces but not across edges (docs/filters.md,
 /// section phasor_mean).
 ///
-/// A plane is fitted to the phasors of the first two frequencies in the window of each noisy pixel.
+/// A plane is fitted to the phasors of all frequencies in the window of each noisy pixel, whose
+/// phases are taken to be equally noisy.
 /// The pixel gets the range of that plane, with the wrap count that is most probable given the
 /// phases of the plane and the pixel's previous wrap count and confidence:
 /// - wrap_count is the number of whole λ_A in the range,
@@ -32,8 +33,8 @@ struct PhasorMeanLimits {
 /// Pixels with less noise contribute their phasors, but are not changed. The image is returned
 /// unchanged if fewer than half of its valid pixels are noisy. No pixel becomes valid or invalid.
 /// With one frequency, the image is returned unchanged.
-/// Throws UsageError if image, frame and rays differ in size; the frame is checked only if there
-/// are enough noisy pixels.
+/// Throws UsageError if image, frame and rays differ in size, or frame and modulation in
+/// frequencies; the frame is checked only if there are enough noisy pixels.
 RangeImage average_phasors(const RangeImage& image, const Frame& frame,
                            const Modulation& modulation, const PixelRays& rays,
                            const PhasorMeanLimits& limits);
