@@ -232,12 +232,13 @@ TEST_F(BadKinect2Recording, HasAnotherEncodingOrClock) {
 
 TEST_F(BadKinect2Recording, HasIntrinsicsOfNoCamera) {
   const std::vector<std::vector<std::string>> cases{
-      {"\"fx\": 365", "\"fx\": 0", "calibration.ir.fx must be above 0"},
-      {"\"fy\": 366", "\"fy\": -366", "calibration.ir.fy must be above 0"},
+      {"\"fx\": 365", "\"fx\": 0", "calibration.ir.fx must be from 200 to 600 pixels"},
+      {"\"fx\": 365", "\"fx\": 900", "calibration.ir.fx must be from 200 to 600 pixels"},
+      {"\"fy\": 366", "\"fy\": -366", "calibration.ir.fy must be from 200 to 600 pixels"},
       {"\"fx\": 365", "\"fx\": null", "calibration.ir.fx must be a number, got null"},
       {"\"fx\": 365", "\"fx\": \"365\"", "calibration.ir.fx must be a number"},
       {"\"fx\": 365, ", "", "calibration.ir.fx is missing"},
-      {"\"fx\": 365", "\"fx\": 1e300", "calibration.ir: camera: fx and fy"},
+      {"\"fx\": 365", "\"fx\": 1e300", "calibration.ir.fx must be from 200 to 600 pixels"},
       {"\"cx\": 256", "\"cx\": 513", "calibration.ir.cx must be in the image, from 0 to 512"},
       {"\"cx\": 256", "\"cx\": -1", "calibration.ir.cx must be in the image"},
       {"\"cy\": 208", "\"cy\": 425", "calibration.ir.cy must be in the image, from 0 to 424"},

@@ -12,6 +12,10 @@ constexpr double first_centre_px = 0.5;
 
 }  // namespace
 
+bool is_possible_focal_length(double focal_length_px) {
+  return focal_length_px >= 200 && focal_length_px <= 600;
+}
+
 CameraModel camera_of(const Intrinsics& intrinsics) {
   const auto& [fx, fy, cx, cy, k1, k2, k3, p1, p2] = intrinsics;
   return {.width_px = image_width_px,

@@ -13,6 +13,8 @@
 #include <initializer_list>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include <tofmap/acquisition/kinect2/intrinsics.hpp>
 #include <tofmap/acquisition/kinect2/packet.hpp>
 #include <tofmap/core/error.hpp>
@@ -103,8 +105,10 @@ void check_version(const Json& root) {
 void check_intrinsic(const std::string& name, double value) {
   const std::string key = "calibration.ir." + name;
   const bool is_focal = name == "fx" || name == "fy";
-  if (is_focal && !(value > 0)) {
-    throw InputError(key + " must be above 0, got " + std::to_string(value));
+  if (is_focal && !is_possible_focal_length(value)) {
+    throw InputError(fmt::format(
+        "{} must be from 200 to 600 pixels, as that of a Kinect v2 is about 365, got {}", key,
+        value));
   }
   const double most = name == "cx" ? image_width_px : image_height_px;
   if ((name == "cx" || name == "cy") && !(value >= 0 && value <= most)) {

@@ -12,6 +12,7 @@
 #include <span>
 #include <system_error>
 
+#include <tofmap/acquisition/kinect2/intrinsics.hpp>
 #include <tofmap/core/error.hpp>
 
 namespace tofmap::kinect2 {
@@ -59,6 +60,11 @@ RecordingWriter::RecordingWriter(std::filesystem::path folder, const CameraModel
   if (camera.width_px != image_width_px || camera.height_px != image_height_px) {
     throw UsageError("the camera of a Kinect v2 has 512 x 424 pixels, got " +
                      std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px));
+  }
+  for (const double focal_px : {camera.fx_px, camera.fy_px}) {
+    if (is_possible_focal_length(focal_px)) continue;
+    throw UsageError("the focal length of a Kinect v2 is about 365 pixels, from 200 to 600, got " +
+                     std::to_string(focal_px));
   }
   if (serial.empty()) throw UsageError("the serial of a recording must not be empty");
   validate(camera);

@@ -34,6 +34,10 @@ inline constexpr Intrinsics typical_intrinsics{.fx = 365.456,
                                                .p1 = 0,
                                                .p2 = 0};
 
+/// Whether a Kinect v2 can have this focal length, 200 … 600 pixels. All of them have the same
+/// lens, with about 365.
+bool is_possible_focal_length(double focal_length_px);
+
 /// The camera with these intrinsics. Its principal point is (cx - 0.5, cy - 0.5), because the
 /// centre of the first pixel of a CameraModel is at (0, 0).
 CameraModel camera_of(const Intrinsics& intrinsics);

@@ -26,8 +26,9 @@ class RecordingWriter {
   /// whose columns are as a Kinect sends them (mirror.hpp). `serial` names the device; it must not
   /// be empty.
   ///
-  /// Throws UsageError if the camera does not have 512 x 424 pixels or the serial is empty, and
-  /// InputError if the camera is not valid or the folder or a file cannot be written.
+  /// Throws UsageError if the camera does not have 512 x 424 pixels or a possible focal length, or
+  /// the serial is empty, and InputError if the camera is not valid or the folder or a file cannot
+  /// be written.
   RecordingWriter(std::filesystem::path folder, const CameraModel& camera, const P0Tables& p0,
                   const std::string& serial);
 
