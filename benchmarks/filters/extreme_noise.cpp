@@ -17,10 +17,11 @@
 #include <iterator>
 #include <numbers>
 #include <random>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
 
 #include <tofmap/core/median.hpp>
 #include <tofmap/filters/filter_chain.hpp>
@@ -344,38 +345,9 @@ std::string name_of(const Noise& noise) {
 struct Arguments {
   int seed = 901;
   int divisor = 1;
-  std::vector<double> frequencies_hz = {37.65e6, 45.18e6};
+  std::vector<double> frequencies_mhz = {37.65, 45.18};
   std::filesystem::path pictures;
 };
-
-/// Frequencies in MHz, separated by commas.
-std::vector<double> read_frequencies(const std::string& words) {
-  std::vector<double> frequencies_hz;
-  std::istringstream stream(words);
-  for (std::string word; std::getline(stream, word, ',');) {
-    frequencies_hz.push_back(1e6 * std::stod(word));
-  }
-  return frequencies_hz;
-}
-
-Arguments read_arguments(const std::vector<std::string>& words) {
-  Arguments arguments;
-  for (std::size_t i = 0; i + 1 < words.size(); i += 2) {
-    if (words[i] == "--seed") {
-      arguments.seed = std::stoi(words[i + 1]);
-    } else if (words[i] == "--divide") {
-      arguments.divisor = std::max(1, std::stoi(words[i + 1]));
-    } else if (words[i] == "--frequencies") {
-      arguments.frequencies_hz = read_frequencies(words[i + 1]);
-    } else if (words[i] == "--pictures") {
-      arguments.pictures = words[i + 1];
-    } else {
-      throw std::invalid_argument(
-          words[i] + ": only --seed, --divide, --frequencies and --pictures are known");
-    }
-  }
-  return arguments;
-}
 
 /// Frames of one scene and image size.
 struct Group {
@@ -388,6 +360,8 @@ std::vector<Group> make_groups(const Arguments& arguments) {
     int width;
     int height;
   };
+  std::vector<double> frequencies_hz;
+  for (const double mhz : arguments.frequencies_mhz) frequencies_hz.push_back(1e6 * mhz);
   std::vector<Group> groups;
   for (const Size size : {Size{176, 144}, Size{320, 240}}) {
     for (const char* scene : {"random", "flat", "room", "hall"}) {
@@ -397,9 +371,8 @@ std::vector<Group> make_groups(const Arguments& arguments) {
       // Many random rooms are too large for ranges of 2 to 9 m.
       const int seeds = std::max(1, (std::string(scene) == "random" ? 12 : 4) / arguments.divisor);
       for (int seed = arguments.seed; seed < arguments.seed + seeds; ++seed) {
-        std::ranges::move(
-            samples_of(scene, seed, 1, size.width, size.height, arguments.frequencies_hz),
-            std::back_inserter(group.samples));
+        std::ranges::move(samples_of(scene, seed, 1, size.width, size.height, frequencies_hz),
+                          std::back_inserter(group.samples));
       }
       if (!group.samples.empty()) groups.push_back(std::move(group));
     }
@@ -437,9 +410,18 @@ void run(const Arguments& arguments) {
 }  // namespace
 }  // namespace tofmap::bench
 
-int main(int count, char** words) {
+int main(int argc, char** argv) {
+  tofmap::bench::Arguments arguments;
+  CLI::App app{"measures ranges under extreme phase noise"};
+  app.add_option("--seed", arguments.seed, "first seed of the scenes");
+  app.add_option("--divide", arguments.divisor, "divides the number of frames")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--frequencies", arguments.frequencies_mhz, "modulation frequencies, MHz")
+      ->delimiter(',');
+  app.add_option("--pictures", arguments.pictures, "folder for pictures of some frames");
+  CLI11_PARSE(app, argc, argv);
   try {
-    tofmap::bench::run(tofmap::bench::read_arguments({words + 1, words + count}));
+    tofmap::bench::run(arguments);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_extreme_noise: %s\n", error.what());
     return 2;

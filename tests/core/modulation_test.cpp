@@ -138,6 +138,15 @@ TEST(ModulationValidation, TakesOneToEightFrequencies) {
   EXPECT_THROW(validate(Modulation{80e6, 16e6, 80e6}), InputError) << "the first and the third";
 }
 
+TEST(Modulation, OrdersTheOtherFrequenciesByWavelength) {
+  const auto others = [](const Modulation& modulation) {
+    return others_by_wavelength(wavelengths_m(modulation));
+  };
+  EXPECT_EQ(others({80e6, 120e6, 16e6, 60e6}), (std::vector<std::size_t>{2, 3, 1}));
+  EXPECT_EQ(others({29e6, 31e6}), std::vector<std::size_t>{1});
+  EXPECT_TRUE(others({20e6}).empty());
+}
+
 TEST(ModulationValidation, NeedsAnExposureTimeOfEachFrequencyOrOfNone) {
   Modulation modulation{80e6, 16e6, 120e6};
   modulation.exposure_offsets_s = {0, 0.004};

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <sstream>
 #include <string>
 
@@ -54,6 +56,14 @@ std::vector<double> wavelengths_m(const Modulation& modulation) {
   for (std::size_t f = 0; f < modulation.count(); ++f)
     lengths.push_back(modulation.wavelength_m(f));
   return lengths;
+}
+
+std::vector<std::size_t> others_by_wavelength(const std::vector<double>& wavelengths_m) {
+  std::vector<std::size_t> others(wavelengths_m.size() - 1);
+  std::iota(others.begin(), others.end(), std::size_t{1});
+  std::ranges::stable_sort(others, std::ranges::greater(),
+                           [&](std::size_t f) { return wavelengths_m[f]; });
+  return others;
 }
 
 double shortest_wavelength_m(const Modulation& modulation) {

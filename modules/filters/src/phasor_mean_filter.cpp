@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <numbers>
-#include <numeric>
 #include <vector>
 
 #include <tofmap/core/median.hpp>
@@ -63,21 +63,9 @@ struct WrappedRange {
   double variance_m2;
 };
 
-/// The order in which a range is narrowed down: A, whose wrap counts are tried, then the others
-/// from the longest wavelength to the shortest, so that the range is known well enough to tell
-/// which period of a short wavelength it is in.
-std::vector<std::size_t> order_of(const Modulation& modulation) {
-  std::vector<std::size_t> order(modulation.count());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin() + 1, order.end(), [&](std::size_t one, std::size_t other) {
-    return modulation.wavelength_m(one) > modulation.wavelength_m(other);
-  });
-  return order;
-}
-
 /// The wrapped ranges of all frequencies at a pixel, from its plane.
 struct WrappedRanges {
-  std::vector<WrappedRange> frequencies;  ///< as ordered by order_of()
+  std::vector<WrappedRange> frequencies;  ///< A, whose wrap counts are tried, first
   double common_variance_m2 = 0;          ///< of the error that all have in common
 
   /// Reads the pixel (v, u) of the planes. Its memory is used again.
@@ -177,7 +165,8 @@ RangeImage average_phasors(const RangeImage& image, const Frame& frame,
   const PhasePlanes planes = grow_phase_planes(phasors, static_cast<int>(image.rows()),
                                                static_cast<int>(image.cols()), growth);
   const int counts = count_limit(image);
-  const std::vector<std::size_t> order = order_of(modulation);
+  std::vector<std::size_t> order{0};
+  std::ranges::copy(others_by_wavelength(wavelengths_m(modulation)), std::back_inserter(order));
   WrappedRanges wrapped;
   RangeImage out = image;
   out.averaged_px = ImageF::Ones(image.rows(), image.cols());

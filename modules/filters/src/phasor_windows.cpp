@@ -4,11 +4,13 @@
 #include "phasor_windows.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <vector>
 
+#include <tofmap/core/modulation.hpp>
 #include <tofmap/core/vector_clones.hpp>
 
 namespace tofmap {
@@ -264,11 +266,6 @@ struct MeanPhasor {
         direction{sums.re[i] / length, sums.im[i] / length},
         slope_score_x(rotated_back({sums.x_re[i], sums.x_im[i]}, direction).im),
         slope_score_y(rotated_back({sums.y_re[i], sums.y_im[i]}, direction).im) {}
-
-  /// The direction, rotated by `angle`, radians.
-  Complex rotated(float angle) const {
-    return product(direction, {std::cos(angle), std::sin(angle)});
-  }
 };
 
 /// Estimates the plane of one pixel by one step of Fisher scoring, starting at the plane of
@@ -288,10 +285,12 @@ void solve(WindowSums& window, int v, int i, const WindowGrowth& growth, const P
   float length = 0;
   float score_x = -prior * slope_x;
   float score_y = -prior * slope_y;
+  std::array<Complex, most_frequencies> directions;
   for (std::size_t f = 0; f < frequencies; ++f) {
     const MeanPhasor mean(window.phasors(f), i);
     if (!(mean.length > 0)) return;
     const float ratio = growth.wavelength_ratios[f];
+    directions[f] = mean.direction;
     all += ratio * ratio;
     length += mean.length;
     score_x += ratio * mean.slope_score_x;
@@ -309,8 +308,8 @@ void solve(WindowSums& window, int v, int i, const WindowGrowth& growth, const P
   // pixel.
   const float back = -(mean_x * step_x + mean_y * step_y);
   for (std::size_t f = 0; f < frequencies; ++f) {
-    const Complex at_pixel =
-        MeanPhasor(window.phasors(f), i).rotated(growth.wavelength_ratios[f] * back);
+    const float angle = growth.wavelength_ratios[f] * back;
+    const Complex at_pixel = product(directions[f], {std::cos(angle), std::sin(angle)});
     out.phases[f].re.row(v)[i] = at_pixel.re;
     out.phases[f].im.row(v)[i] = at_pixel.im;
   }

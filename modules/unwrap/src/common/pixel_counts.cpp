@@ -83,7 +83,7 @@ TOFMAP_VECTOR_CLONES void add(int pixels, const Measured& other_, Estimate& esti
 template <class Visit>
 void for_each_estimate(const Frame& frame, const UnwrapLimits& limits, const PhaseSigma& sigma,
                        const Visit& visit) {
-  const std::vector<std::size_t> others = others_by_wavelength(limits);
+  const std::vector<std::size_t> others = others_by_wavelength(limits.wavelengths_m);
   const Eigen::Index size = frame.phases.front().size();
   const auto measured = [&](std::size_t f, Eigen::Index at) {
     return Measured{frame.phases[f].data() + at, sigma.cycles[f].data() + at,

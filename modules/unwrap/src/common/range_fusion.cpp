@@ -104,7 +104,7 @@ FusedRanges fuse_ranges(const Frame& frame, const ImageU8& counts, const UnwrapL
   FusedRanges out{ImageF(rows, cols), ImageF(rows, cols)};
   const Estimate estimate{cycles.data(), out.range_m.data(), out.sigma_m.data()};
   start(pixels, sigma.cycles.front().data(), wavelength_m, estimate);
-  for (const std::size_t f : others_by_wavelength(limits)) {
+  for (const std::size_t f : others_by_wavelength(limits.wavelengths_m)) {
     const double systematic_m = residual_sigma_m[f];
     fuse(pixels,
          {frame.phases[f].data(), sigma.cycles[f].data(),

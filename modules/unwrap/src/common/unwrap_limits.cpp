@@ -5,10 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <string>
 
 #include <tofmap/core/error.hpp>
@@ -43,14 +41,6 @@ UnwrapLimits unwrap_limits(const SensorModel& sensor, double max_range_m) {
                      std::to_string(most_m) + " m");
   }
   return limits;
-}
-
-std::vector<std::size_t> others_by_wavelength(const UnwrapLimits& limits) {
-  std::vector<std::size_t> others(limits.frequencies() - 1);
-  std::iota(others.begin(), others.end(), std::size_t{1});
-  std::ranges::stable_sort(others, std::ranges::greater(),
-                           [&](std::size_t f) { return limits.wavelengths_m[f]; });
-  return others;
 }
 
 bool can_tell_apart(const UnwrapLimits& limits, int wrap_count, int other_wrap_count) {

@@ -144,7 +144,7 @@ FrameMeasurer::FrameMeasurer(const SensorModel& sensor, const UnwrapOptions& opt
     trackers_.emplace_back(limits_.pair(0, f),
                            options.correct_exposure ? sensor.camera : CameraModel());
   }
-  order_ = others_by_wavelength(limits_);
+  order_ = others_by_wavelength(limits_.wavelengths_m);
   std::ranges::reverse(order_);
   relative_times_ = relative_times(sensor.modulation, order_.empty() ? 0 : order_.front());
 }

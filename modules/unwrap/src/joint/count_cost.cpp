@@ -145,7 +145,7 @@ CountCost::CountCost(const Frame& frame, const UnwrapLimits& limits, const Phase
       residual_sigma_m_(residual_sigma_m),
       outlier_share_(static_cast<float>(outlier_share)),
       mixed_(mixed),
-      order_(others_by_wavelength(limits)),
+      order_(others_by_wavelength(limits.wavelengths_m)),
       farthest_cycles_(limits.max_range_m / limits.wavelength_m() + noise_tolerance_cycles),
       others_(order_.size()) {}
 

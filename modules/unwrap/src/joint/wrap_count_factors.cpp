@@ -319,7 +319,7 @@ void PixelArrays::assign(std::size_t pixels, std::size_t frequencies, float outl
 
 UnaryFactors::UnaryFactors(const UnwrapLimits& limits)
     : limits_(limits),
-      others_(others_by_wavelength(limits)),
+      others_(others_by_wavelength(limits.wavelengths_m)),
       farthest_cycles_(static_cast<float>(limits.max_range_m / limits.wavelength_m() +
                                           noise_tolerance_cycles)) {}
 

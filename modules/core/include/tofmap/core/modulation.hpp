@@ -50,6 +50,10 @@ inline std::string frequency_name(std::size_t frequency) {
 /// All wavelengths, in the order of the frequencies.
 std::vector<double> wavelengths_m(const Modulation& modulation);
 
+/// The frequencies but the first, counted from 0, in descending order of their wavelengths, given
+/// the wavelengths of all. A long wavelength tells which wrap of a shorter one is near.
+std::vector<std::size_t> others_by_wavelength(const std::vector<double>& wavelengths_m);
+
 /// The shortest and the longest wavelength.
 double shortest_wavelength_m(const Modulation& modulation);
 double longest_wavelength_m(const Modulation& modulation);

@@ -21,10 +21,9 @@ struct PhasorMeanLimits {
 /// seen. The windows grow with the noise, along surfaces but not across edges (docs/filters.md,
 /// section phasor_mean).
 ///
-/// A plane is fitted to the phasors of all frequencies in the window of each noisy pixel, whose
-/// phases are taken to be equally noisy.
-/// The pixel gets the range of that plane, with the wrap count that is most probable given the
-/// phases of the plane and the pixel's previous wrap count and confidence:
+/// A plane is fitted to the phasors of all frequencies, which are taken to be equally noisy, in the
+/// window of each noisy pixel. The pixel gets the range of that plane, with the wrap count that is
+/// most probable given the phases of the plane and the pixel's previous wrap count and confidence:
 /// - wrap_count is the number of whole λ_A in the range,
 /// - confidence is the probability of the count,
 /// - sigma_m is the standard deviation of the range if the count is right,

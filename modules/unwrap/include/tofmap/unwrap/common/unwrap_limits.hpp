@@ -49,10 +49,6 @@ inline bool are_absolute(const UnwrapLimits& limits) {
   return limits.frequencies() > 1 || limits.count == 1;
 }
 
-/// The frequencies but the first, counted from 0, in descending order of their wavelengths. A long
-/// wavelength tells which wrap of a shorter one is near.
-std::vector<std::size_t> others_by_wavelength(const UnwrapLimits& limits);
-
 /// Whether the frequencies can tell two wrap counts of the first one apart: false if the residuals
 /// of all other frequencies differ by at most noise_tolerance_cycles, because the difference of
 /// their ranges is a multiple of the combined range.
