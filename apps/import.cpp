@@ -48,19 +48,15 @@ struct ImportedFrames {
   std::int64_t pixels = 0;                 ///< of the frames that were written
   std::int64_t saturated_pixels = 0;       ///< at one of the frequencies
   std::int64_t empty_pixels = 0;           ///< without a return at one of the frequencies
+  int damaged_truth = 0;                   ///< true ranges that could not be read
+  std::string first_damaged_truth;         ///< why
+  float largest_amplitude = 0;
 
   /// A number of pixels in per cent of all.
   double percent(std::int64_t count) const {
     return 100 * static_cast<double>(count) / static_cast<double>(pixels);
   }
 };
-
-/// The number of pixels that have no return at one of the frequencies.
-std::int64_t count_empty(const Frame& frame) {
-  ImageU8 empty = ImageU8::Zero(frame.rows(), frame.cols());
-  for (const ImageF& phase : frame.phases) empty = empty.max(phase.isNaN().cast<std::uint8_t>());
-  return (empty != 0).count();
-}
 
 /// What the imported frames tell of the description.
 std::vector<std::string> warnings_about(const ImportedRecording& recording,
@@ -70,6 +66,23 @@ std::vector<std::string> warnings_about(const ImportedRecording& recording,
   if (frames.percent(frames.empty_pixels) > most_empty_percent) {
     warnings.push_back(
         fmt::format("{:.1f} % of the pixels have no return", frames.percent(frames.empty_pixels)));
+  }
+  constexpr double most_saturated_percent = 50;
+  if (frames.percent(frames.saturated_pixels) > most_saturated_percent) {
+    warnings.push_back(fmt::format("{:.1f} % of the pixels are saturated",
+                                   frames.percent(frames.saturated_pixels)));
+  }
+  if (frames.damaged_truth > 0) {
+    warnings.push_back(fmt::format("the true ranges of {} are left out; {}",
+                                   counted(static_cast<std::size_t>(frames.damaged_truth), "frame"),
+                                   frames.first_damaged_truth));
+  }
+  // Integers that are read as numbers with fractions are mostly below the smallest normal one.
+  constexpr float least_amplitude = 1e-20F;
+  if (frames.largest_amplitude > 0 && frames.largest_amplitude < least_amplitude) {
+    warnings.push_back(
+        fmt::format("no amplitude exceeds {:.2g}; are type and byte order those of the data?",
+                    frames.largest_amplitude));
   }
   if (!recording.relative_residuals) return warnings;
   constexpr const char* remedy =
@@ -95,11 +108,15 @@ std::vector<std::string> warnings_about(const ImportedRecording& recording,
   return warnings;
 }
 
-/// The true ranges of a frame, if they have the camera's size.
-std::optional<ImageF> true_range_m(const ImportedTruth& truth, const Frame& frame) {
-  std::optional<ImageF> range_m = truth.range_m(frame.index);
-  if (range_m && !same_size(*range_m, frame.phases.front())) range_m.reset();
-  return range_m;
+/// The true ranges of a frame. Those that cannot be read are counted.
+std::optional<ImageF> true_range_m(const ImportedTruth& truth, const Frame& frame,
+                                   ImportedFrames& frames) {
+  try {
+    return truth.range_m(frame.index, frame.rows(), frame.cols());
+  } catch (const InputError& error) {
+    if (frames.damaged_truth++ == 0) frames.first_damaged_truth = error.what();
+    return std::nullopt;
+  }
 }
 
 /// Writes one frame and counts its pixels. Returns why the frame cannot be written; empty if it
@@ -107,14 +124,18 @@ std::optional<ImageF> true_range_m(const ImportedTruth& truth, const Frame& fram
 std::string write_frame(const Frame& frame, const ImportedRecording& recording,
                         SequenceWriter& writer, ImportedFrames& frames) {
   try {
-    writer.add(frame, {}, true_range_m(recording.truth, frame));
+    writer.add(frame, {}, true_range_m(recording.truth, frame, frames));
   } catch (const UsageError& error) {
     return error.what();
   }
   frames.pixels += frame.rows() * frame.cols();
-  frames.empty_pixels += count_empty(frame);
+  frames.empty_pixels += missing_returns(frame).count();
   frames.saturated_pixels +=
       saturated_pixels(frame, recording.source->sensor().saturation_amplitude).count();
+  for (const ImageF& amplitude : frame.amplitudes) {
+    frames.largest_amplitude =
+        std::fmax(frames.largest_amplitude, amplitude.maxCoeff<Eigen::PropagateNumbers>());
+  }
   return "";
 }
 

@@ -7,14 +7,18 @@
 #include "input/recording.hpp"
 #include "options/options.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/core/text.hpp>
 #include <tofmap/diagnostics/recording_survey.hpp>
+#include <tofmap/unwrap/common/unwrap_limits.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -33,7 +37,13 @@ void print_sensor(const SensorModel& sensor) {
     std::printf("%s: %.3f MHz, non-ambiguity range %.3f m\n", frequency_name(f).c_str(),
                 modulation.frequencies_hz[f] / 1e6, modulation.wavelength_m(f));
   }
-  std::printf("combined unambiguous range: %.2f m\n", combined_range_m(modulation));
+  const double combined_m = combined_range_m(modulation);
+  const double noisy_m = combined_range_m(modulation, noise_tolerance_cycles);
+  std::printf("combined unambiguous range: %.2f m", combined_m);
+  if (noisy_m < combined_m) {
+    std::printf(", and %.2f m with phase noise of %.2f cycles", noisy_m, noise_tolerance_cycles);
+  }
+  std::printf("\n");
   if (sensor.max_range_m > 0)
     std::printf("largest range of the scene: %.2f m\n", sensor.max_range_m);
 }
@@ -42,12 +52,26 @@ void print_sensor(const SensorModel& sensor) {
 void print_truth(const SequenceReader& source) {
   const RecordedTruth truth(source);
   bool has_ranges = false;
+  double longest_m = 0;
   for (int i = 0; i < *source.frame_count() && !is_interrupted(); ++i) {
-    has_ranges = truth.range_m(i).has_value() || has_ranges;
+    const std::optional<ImageF> range_m = truth.range_m(i);
+    if (!range_m) continue;
+    has_ranges = true;
+    for (const float one_m : range_m->reshaped()) longest_m = std::fmax(longest_m, one_m);
   }
   std::printf("ground truth: poses %s, ranges %s\n", truth.poses().empty() ? "no" : "yes",
               has_ranges ? "yes" : "no");
   for (const std::string& remark : truth.remarks()) std::printf("  %s\n", remark.c_str());
+  const Modulation& modulation = source.sensor().modulation;
+  const double combined_m = combined_range_m(modulation, noise_tolerance_cycles);
+  if (modulation.count() > 1 && longest_m > combined_m &&
+      source.sensor().max_range_m <= combined_m) {
+    print_warnings({fmt::format(
+        "true ranges reach {:.2f} m, beyond the {:.2f} m up to which the frequencies are "
+        "unambiguous: surfaces beyond appear nearer by as much; with unwrap.max_range_m={:.0f}, "
+        "pixels that may be either are left out",
+        longest_m, combined_m, std::ceil(longest_m))});
+  }
 }
 
 void print_residuals(const std::vector<ResidualSurvey>& residuals, std::size_t frequencies) {

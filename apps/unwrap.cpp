@@ -210,7 +210,9 @@ void say_what_is_missing(const UnwrappedRecording& result) {
   std::fprintf(
       stderr,
       "tofmap: %s in %s had ranges outside the 0.001 m to 65.535 m that images can store; they are "
-      "invalid (out_of_range). unwrap.max_range_m limits the range of the scene\n",
+      "invalid (out_of_range). Surfaces near 0 m, or near the range up to which the frequencies "
+      "are "
+      "unambiguous, have such ranges; unwrap.max_range_m tells how far the scene reaches\n",
       counted(static_cast<std::size_t>(result.out_of_range), "pixel").c_str(),
       counted(static_cast<std::size_t>(result.frames_out_of_range), "frame").c_str());
 }
@@ -243,8 +245,9 @@ int run_unwrap(const UnwrapArguments& arguments) {
   out.commit(interrupted ? Completeness::interrupted : Completeness::whole);
   say_what_is_missing(result);
   const UnwrapOptions& unwrap = options.pipeline.unwrap;
-  for (const auto& warning : {frequency_warning(source.sensor(), unwrap.max_range_m),
-                              pair_warning(unwrap, source.sensor())}) {
+  for (const auto& warning :
+       {frequency_warning(source.sensor(), unwrap.max_range_m),
+        order_warning(source.sensor().modulation), pair_warning(unwrap, source.sensor())}) {
     if (warning) print_warnings({*warning});
   }
   if (!arguments.common.quiet) {

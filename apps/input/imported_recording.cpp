@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <system_error>
 
+#include <fmt/format.h>
+
 #include <tofmap/acquisition/correlation/correlation_source.hpp>
 #include <tofmap/acquisition/kinect2/kinect2_source.hpp>
 #include <tofmap/acquisition/png_image.hpp>
@@ -98,18 +100,19 @@ std::span<const NamedValue<ImportFormat>> named_values(ImportFormat) {
   return values;
 }
 
-std::optional<ImageF> ImportedTruth::range_m(int index) const {
+std::optional<ImageF> ImportedTruth::range_m(int index, Eigen::Index rows,
+                                             Eigen::Index cols) const {
   if (folder_.empty()) return std::nullopt;
   char name[24];
   std::snprintf(name, sizeof name, "%06d.png", index);
   const fs::path file = folder_ / "range_truth" / name;
   if (!is_there(file)) return std::nullopt;
-  try {
-    const ImageU16 range_mm = read_png_16(file);
-    return (range_mm == 0).select(nan, range_mm.cast<float>() / 1000.0F);
-  } catch (const InputError&) {
-    return std::nullopt;
+  const ImageU16 range_mm = read_png_16(file);
+  if (range_mm.rows() != rows || range_mm.cols() != cols) {
+    throw InputError(fmt::format("{}: is {} x {} pixels, but the camera has {} x {}", file.string(),
+                                 range_mm.cols(), range_mm.rows(), cols, rows));
   }
+  return (range_mm == 0).select(nan, range_mm.cast<float>() / 1000.0F);
 }
 
 void ImportedTruth::copy_to(const fs::path& sequence) const {

@@ -38,9 +38,9 @@ class ImportedTruth {
   /// An empty folder stands for no truth.
   explicit ImportedTruth(std::filesystem::path folder = {}) : folder_(std::move(folder)) {}
 
-  /// The true ranges of the frame of this index. Empty if there are none, or if they cannot be
-  /// read.
-  std::optional<ImageF> range_m(int index) const;
+  /// The true ranges of the frame of this index. Empty if there are none. Throws InputError if they
+  /// cannot be read or do not have this size.
+  std::optional<ImageF> range_m(int index, Eigen::Index rows, Eigen::Index cols) const;
 
   /// Copies groundtruth.txt and scene.ply, if they exist, into the folder of a sequence. Throws
   /// InputError if a file cannot be copied.

@@ -31,7 +31,7 @@ Picture jump_stages_picture(const Frame& recorded, const SensorModel& sensor,
   const JumpMethod method = jump_method(options.method);
   const ComparedPair pair = compared_pair(options, sensor.modulation);
   // `single` has no second frequency.
-  const std::size_t b = method.has_frequency_term ? pair.b : pair.a;
+  const std::size_t b = method.has_frequency_term ? pair.b.value_or(pair.a) : pair.a;
   const Frame frame = frequency_pair(recorded, pair.a, b);
   JumpEstimator estimator;
   const JumpEstimate& jumps = estimator.estimate(

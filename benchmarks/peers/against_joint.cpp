@@ -6,12 +6,14 @@
 
 #include "peers/kde_unwrap.hpp"
 #include "peers/libfreenect2_unwrap.hpp"
+#include "peers/phase_noise.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <functional>
+#include <numbers>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -20,6 +22,8 @@
 #include <CLI/CLI.hpp>
 #include <malloc.h>
 
+#include <tofmap/acquisition/kinect2/phases.hpp>
+#include <tofmap/simulation/kinect2_recording.hpp>
 #include <tofmap/simulation/simulator.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
@@ -32,14 +36,12 @@ struct Place {
   int seed;
 };
 
-/// A camera like the Kinect v2. The contrasts are the inverse of libfreenect2's factors.
+/// A camera like the Kinect v2.
 SimulatorOptions kinect_options(const Place& place, bool has_errors) {
-  SimulatorOptions options;
-  options.width_px = 512;
-  options.height_px = 424;
-  options.horizontal_fov_deg = 70.03;
-  options.frequencies_hz = {80e6, 16e6, 120e6};
-  options.contrasts = {1 / 1.322581, 1, 1 / 1.612903};
+  SimulatorOptions options = kinect2_simulator_options();
+  options.frame_rate_hz = SimulatorOptions().frame_rate_hz;
+  options.max_translation_m = SimulatorOptions().max_translation_m;
+  options.max_rotation_deg = SimulatorOptions().max_rotation_deg;
   options.range_noise_m = place.range_noise_m;
   options.seed = place.seed;
   options.subpixels = 2;
@@ -100,13 +102,27 @@ double timed_ms(const Call& call) {
   return 1000.0 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
+/// What the peers get of a frame: amplitudes with libfreenect2's factors.
 peers::ThreePhases three_phases(const Frame& frame) {
   peers::ThreePhases out;
   for (std::size_t f = 0; f < 3; ++f) {
     out.phase_cycles[f] = frame.phases[f];
-    out.amplitude[f] = frame.amplitudes[f];
+    out.amplitude[f] = static_cast<float>(kinect2::amplitude_factors[f]) * frame.amplitudes[f];
   }
   return out;
+}
+
+/// The facts that the peers need of the simulated camera: the scale at which their model of the
+/// noise gives that of 80 MHz at 5 m on a surface of reflectance 0.5.
+peers::CameraFacts facts_about(const Place& place, const Modulation& modulation) {
+  // The contrast at 80 MHz is the inverse of its factor.
+  const double sigma_rad = kinect2::amplitude_factors[0] * 2 * std::numbers::pi *
+                           place.range_noise_m / modulation.wavelength_m(0);
+  const double theirs = peers::amplitude_of_q(peers::kinect_v2_noise[0], 1 / std::sin(sigma_rad));
+  constexpr double simulated = amplitude_unit * 0.5 / (5.0 * 5.0);
+  peers::CameraFacts facts;
+  facts.amplitude_scale = theirs / simulated;
+  return facts;
 }
 
 struct Method {
@@ -138,6 +154,7 @@ void compare(const Place& place, bool has_errors, int frames, int pairs) {
     }
   }
   unwrapper.look_ahead(std::span(measured).first(std::min<std::size_t>(8, measured.size())));
+  const peers::CameraFacts facts = facts_about(place, simulator.sensor().modulation);
   Method joint{"joint", {}, 0};
   Method kde_2{"KDE, 2 hypotheses", {}, 0};
   Method kde_3{"KDE, 3 hypotheses", {}, 0};
@@ -158,6 +175,7 @@ void compare(const Place& place, bool has_errors, int frames, int pairs) {
       kde.hypotheses = hypotheses;
       kde.smooth = smooth;
       kde.min_confidence = 0;
+      kde.camera = facts;
       peers::KdeResult found;
       method.milliseconds += timed_ms([&] { found = peers::kde_unwrap(phases, kde); });
       method.tally.add(found.range_m, found.confidence, truth_m[i]);
@@ -167,6 +185,7 @@ void compare(const Place& place, bool has_errors, int frames, int pairs) {
     run_kde(3, false, kde_3_raw);
     peers::Libfreenect2Options own;
     own.reject_outliers = false;
+    own.camera = facts;
     peers::Libfreenect2Result found;
     libfreenect2.milliseconds += timed_ms([&] { found = peers::libfreenect2_unwrap(phases, own); });
     libfreenect2.tally.add(found.range_m, ImageF::Ones(424, 512), truth_m[i]);

@@ -45,10 +45,10 @@ inline constexpr std::array<PhaseNoise, 3> kinect_v2_noise{{
 
 inline constexpr float smallest_sigma_rad = 0.001F;
 
-/// The smallest amplitude at which q(a) = 1.
-double amplitude_of_unit_q(const PhaseNoise& noise);
+/// The smallest amplitude with this q(a); the largest float if there is none.
+double amplitude_of_q(const PhaseNoise& noise, double q);
 
-/// σ in radians of one amplitude. `unit` is amplitude_of_unit_q().
+/// σ in radians of one amplitude. `unit` is amplitude_of_q(1).
 [[gnu::always_inline]] inline float phase_sigma_rad(float amplitude, float gamma_0, float gamma_1,
                                                     float gamma_2, float unit) {
   constexpr float quarter_turn = std::numbers::pi_v<float> / 2;

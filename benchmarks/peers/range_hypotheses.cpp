@@ -34,7 +34,7 @@ struct Frequency {
   float gamma_0;
   float gamma_1;
   float gamma_2;
-  float unit;  ///< amplitude_of_unit_q()
+  float unit;  ///< amplitude_of_q(1)
 };
 
 struct Model {
@@ -66,7 +66,7 @@ Model model_of(const WrapTriplets& triplets, const ThreePhases& phases, const Kd
         .gamma_0 = static_cast<float>(noise.gamma_0),
         .gamma_1 = static_cast<float>(noise.gamma_1),
         .gamma_2 = static_cast<float>(noise.gamma_2),
-        .unit = static_cast<float>(amplitude_of_unit_q(noise))};
+        .unit = static_cast<float>(amplitude_of_q(noise, 1))};
     model.residual_weight[m] = static_cast<float>(options.residual_weights[m]);
   }
   for (const WrapTriplet& n : triplets.triplets) {

@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tofmap/acquisition/frame_pairing.hpp>
@@ -12,6 +13,9 @@
 
 namespace tofmap {
 namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
 
 /// An image whose content says of which instant it is.
 DeviceImage image_of(int instant, DeviceStream stream) {
@@ -162,7 +166,12 @@ JoinedImages joined_of(const Taken& taken, double jitter_s) {
   return images;
 }
 
-constexpr AlternatingPairer::Settings in_turn{.period_s = 0.05, .longer = Half::a, .first = {}};
+/// A has the longer wavelength.
+const AlternatingJoiner::Settings in_turn{
+    .period_s = 0.05, .wavelengths_m = {5.2, 4.8}, .first = {}};
+
+/// The wavelength that the ranges of an image exceed.
+double beyond_m(bool reaches_beyond) { return reaches_beyond ? 4.8 : 0; }
 
 TEST_P(UnderFaults, ImagesTakenInTurnArePairedRightAndEveryOneIsCounted) {
   std::mt19937 random(200U + static_cast<unsigned>(GetParam()));
@@ -170,18 +179,19 @@ TEST_P(UnderFaults, ImagesTakenInTurnArePairedRightAndEveryOneIsCounted) {
   Faults loss = faults();
   loss.repeat = loss.swap = 0;  // what arrives is in order: StreamJoiner sees to that
   const auto arriving = with_faults(take_in_turn(instants, random), loss, random);
-  AlternatingPairer pairer(in_turn);
+  AlternatingJoiner joiner(in_turn);
   PairingCounts counts;
   int pairs = 0;
   for (const Taken& taken : arriving) {
     ++counts.paired;  // as the joiner counts
-    const auto pair = pairer.add(joined_of(taken, jitter_s(random)), taken.reaches_beyond, counts);
-    if (!pair) continue;
+    const auto pair =
+        joiner.add(joined_of(taken, jitter_s(random)), beyond_m(taken.reaches_beyond), counts);
+    if (pair.empty()) continue;
     ++pairs;
-    EXPECT_EQ(pair->a.key % 2, 0);
-    EXPECT_EQ(pair->b.key, pair->a.key + 1);
+    EXPECT_EQ(pair[0].key % 2, 0);
+    EXPECT_EQ(pair[1].key, pair[0].key + 1);
   }
-  pairer.finish(counts);
+  joiner.finish(counts);
   EXPECT_EQ(counts.paired, 2 * pairs);
   EXPECT_EQ(counts.paired + counts.dropped(), static_cast<int>(arriving.size()));
   EXPECT_EQ(counts.lost, 1 + arriving.back().instant - arriving.front().instant -
@@ -196,52 +206,114 @@ TEST_P(UnderFaults, ImagesTakenInTurnArePairedRightAndEveryOneIsCounted) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, UnderFaults, testing::Range(0, 8));
 
-TEST(AlternatingPairer, DoesNotGuessWhichIsWhich) {
-  AlternatingPairer pairer(in_turn);
+TEST(AlternatingJoiner, DoesNotGuessWhichIsWhich) {
+  AlternatingJoiner joiner(in_turn);
   PairingCounts counts;
-  for (int i = 0; i < 20; ++i) EXPECT_FALSE(pairer.add(joined_of({i, false}, 0), false, counts));
+  for (int i = 0; i < 20; ++i)
+    EXPECT_THAT(joiner.add(joined_of({i, false}, 0), 0, counts), IsEmpty());
   EXPECT_EQ(counts.undecided, 20);
 }
 
-TEST(AlternatingPairer, BelievesContentMoreThanWhatItWasTold) {
-  AlternatingPairer::Settings wrong = in_turn;
-  wrong.first = Half::b;  // but instant 0 is A
-  AlternatingPairer pairer(wrong);
+TEST(AlternatingJoiner, BelievesContentMoreThanWhatItWasTold) {
+  AlternatingJoiner::Settings wrong = in_turn;
+  wrong.first = 1;  // but instant 0 is A
+  AlternatingJoiner joiner(wrong);
   PairingCounts counts;
   for (int i = 0; i < 20; ++i) {
-    const auto pair = pairer.add(joined_of({i, false}, 0), i % 2 == 0, counts);
-    EXPECT_EQ(pair.has_value(), i % 2 == 1);
-    EXPECT_TRUE(!pair || pair->a.key % 2 == 0);
+    const auto pair = joiner.add(joined_of({i, false}, 0), beyond_m(i % 2 == 0), counts);
+    EXPECT_EQ(pair.size(), i % 2 == 1 ? 2U : 0U);
+    EXPECT_TRUE(pair.empty() || pair[0].key % 2 == 0);
   }
 }
 
-TEST(AlternatingPairer, TakesWhatItWasToldWhereContentDoesNotTell) {
-  AlternatingPairer::Settings told = in_turn;
-  told.first = Half::a;
-  AlternatingPairer pairer(told);
+TEST(AlternatingJoiner, TakesWhatItWasToldWhereContentDoesNotTell) {
+  AlternatingJoiner::Settings told = in_turn;
+  told.first = 0;
+  AlternatingJoiner joiner(told);
   PairingCounts counts;
   for (int i = 0; i < 20; ++i) {
-    EXPECT_EQ(pairer.add(joined_of({i, false}, 0), false, counts).has_value(), i % 2 == 1);
+    EXPECT_EQ(joiner.add(joined_of({i, false}, 0), 0, counts).size(), i % 2 == 1 ? 2U : 0U);
   }
 }
 
-TEST(AlternatingPairer, StartsAnewWhereTimesDoNotTellHowManyPeriodsHavePassed) {
-  AlternatingPairer::Settings told = in_turn;
-  told.first = Half::a;
-  AlternatingPairer pairer(told);
+TEST(AlternatingJoiner, StartsAnewWhereTimesDoNotTellHowManyPeriodsHavePassed) {
+  AlternatingJoiner::Settings told = in_turn;
+  told.first = 0;
+  AlternatingJoiner joiner(told);
   PairingCounts counts;
-  pairer.add(joined_of({0, false}, 0), false, counts);
-  EXPECT_FALSE(pairer.add(joined_of({1, false}, 0.02), false, counts)) << "1.4 periods later";
-  EXPECT_FALSE(pairer.add(joined_of({2, false}, 0), false, counts));
+  joiner.add(joined_of({0, false}, 0), 0, counts);
+  EXPECT_THAT(joiner.add(joined_of({1, false}, 0.02), 0, counts), IsEmpty()) << "1.4 periods later";
+  EXPECT_THAT(joiner.add(joined_of({2, false}, 0), 0, counts), IsEmpty());
   EXPECT_EQ(counts.undecided, 2);
-  EXPECT_FALSE(pairer.add(joined_of({4, false}, 0), true, counts)) << "A's, as content tells";
-  EXPECT_TRUE(pairer.add(joined_of({5, false}, 0), false, counts));
+  EXPECT_THAT(joiner.add(joined_of({4, false}, 0), beyond_m(true), counts), IsEmpty())
+      << "A's, as content tells";
+  EXPECT_EQ(joiner.add(joined_of({5, false}, 0), 0, counts).size(), 2U);
 }
 
-TEST(AlternatingPairer, NeedsAPeriod) {
-  AlternatingPairer::Settings none = in_turn;
+TEST(AlternatingJoiner, KnowsEightFrequenciesByTheOneThatContentTells) {
+  AlternatingJoiner::Settings eight{.period_s = 0.05, .wavelengths_m = {}, .first = {}};
+  for (int f = 0; f < 8; ++f) eight.wavelengths_m.push_back(f == 5 ? 9 : 1 + 0.1 * f);
+  AlternatingJoiner joiner(eight);
+  PairingCounts counts;
+  int frames = 0;
+  for (int i = 3; i < 40; ++i) {  // the first image is of the fourth frequency
+    ++counts.paired;
+    // Instant 29 shows ranges beyond all wavelengths but the longest; the others tell nothing.
+    const auto images = joiner.add(joined_of({i, false}, 0), i == 29 ? 1.75 : 0, counts);
+    if (images.empty()) continue;
+    ++frames;
+    ASSERT_EQ(images.size(), 8U);
+    for (std::size_t f = 0; f < 8; ++f)
+      EXPECT_EQ(images[f].key, images[0].key + static_cast<int>(f));
+    EXPECT_EQ(images[0].key % 8, 0);
+  }
+  EXPECT_EQ(frames, 1) << "32 … 39";
+  EXPECT_EQ(counts.undecided, 26) << "3 … 28";
+  EXPECT_EQ(counts.half_missing, 3) << "29 … 31";
+  EXPECT_EQ(counts.paired, 8);
+}
+
+TEST(AlternatingJoiner, IsNotToldByContentThatSeveralFrequenciesMayHave) {
+  AlternatingJoiner::Settings three{
+      .period_s = 0.05, .wavelengths_m = {1.87, 9.37, 2.5}, .first = {}};
+  AlternatingJoiner joiner(three);
+  PairingCounts counts;
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_THAT(joiner.add(joined_of({i, false}, 0), 1.87, counts), IsEmpty());
+  }
+  EXPECT_EQ(counts.undecided, 6) << "of 9.37 m or 2.5 m";
+}
+
+TEST(AlternatingJoiner, DropsAFrameOfWhichOneImageIsLost) {
+  AlternatingJoiner::Settings three{
+      .period_s = 0.05, .wavelengths_m = {1.87, 9.37, 1.25}, .first = 0};
+  AlternatingJoiner joiner(three);
+  PairingCounts counts;
+  std::vector<std::int64_t> first_keys;
+  for (const int i : {0, 1, 2, 3, 5, 6, 7, 8, 10, 11}) {  // 4 and 9 are lost
+    ++counts.paired;
+    const auto images = joiner.add(joined_of({i, false}, 0), i % 3 == 1 ? 1.87 : 0, counts);
+    if (!images.empty()) first_keys.push_back(images[0].key);
+  }
+  EXPECT_THAT(first_keys, ElementsAre(0, 6));
+  EXPECT_EQ(counts.half_missing, 4) << "3, 5, 10 and 11";
+  EXPECT_EQ(counts.lost, 2);
+}
+
+TEST(AlternatingJoiner, MakesAFrameOfEachImageOfASingleFrequency) {
+  AlternatingJoiner joiner({.period_s = 0.05, .wavelengths_m = {5.2}, .first = {}});
+  PairingCounts counts;
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(joiner.add(joined_of({i, false}, 0), 0, counts).size(), 1U);
+}
+
+TEST(AlternatingJoiner, NeedsAPeriodAndAFirstImageOfOneOfItsFrequencies) {
+  AlternatingJoiner::Settings none = in_turn;
   none.period_s = 0;
-  EXPECT_THROW(AlternatingPairer{none}, UsageError);
+  EXPECT_THROW(AlternatingJoiner{none}, UsageError);
+  AlternatingJoiner::Settings third = in_turn;
+  third.first = 2;
+  EXPECT_THROW(AlternatingJoiner{third}, UsageError);
+  EXPECT_THROW(AlternatingJoiner({.period_s = 0.05, .wavelengths_m = {}, .first = {}}), UsageError);
 }
 
 }  // namespace

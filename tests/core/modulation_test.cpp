@@ -22,6 +22,13 @@ TEST(Wavelength, IsHalfTheWayLightGoesInAPeriod) {
   EXPECT_NEAR(paper.wavelength_m(1), 4.83536223, 1e-8);
 }
 
+TEST(MeanWavelength, TellsTheNoiseOfAMeanOfRanges) {
+  EXPECT_NEAR(mean_wavelength_m({30e6}), 4.9965, 1e-4);
+  // Inverse variances of both ranges, with a phase noise of one cycle.
+  const double inverse = 1 / std::pow(5.16883548, 2) + 1 / std::pow(4.83536223, 2);
+  EXPECT_NEAR(std::pow(mean_wavelength_m(paper), -2), inverse, 1e-9);
+}
+
 TEST(CombinedRange, IsThatOfTheGreatestCommonDivisor) {
   const double c = speed_of_light_m_per_s;
   EXPECT_NEAR(combined_range_m(paper), c / 2 / 1e6, 1e-6);

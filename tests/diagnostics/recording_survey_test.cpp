@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tofmap/core/frame_masks.hpp>
 #include <tofmap/diagnostics/camera_warning.hpp>
 #include <tofmap/diagnostics/recording_survey.hpp>
 #include <tofmap/simulation/simulator.hpp>
@@ -203,6 +204,26 @@ TEST(FrequencyWarning, IsThereWhereOneWavelengthIsAllThatTheFrequenciesTell) {
   EXPECT_THAT(frequency_warning({{}, {15e6}}).value_or(""),
               HasSubstr("cannot tell wrap counts apart"));
   EXPECT_FALSE(frequency_warning({{}, {15e6}}, 9)) << "within the wavelength of 9.99 m";
+}
+
+TEST(FrequencyWarning, IsTheSameInEveryOrder) {
+  EXPECT_FALSE(frequency_warning({{}, {20e6, 100e6}}));
+  EXPECT_FALSE(frequency_warning({{}, {100e6, 20e6}}));
+}
+
+TEST(SaturatedPixels, AreNoneWithoutALimit) {
+  Frame frame = blank_frame(1);
+  frame.phases[0] = ImageF::Constant(2, 3, 0.5F);
+  frame.amplitudes = {ImageF::Constant(2, 3, 100)};
+  EXPECT_EQ(saturated_pixels(frame, 0).count(), 0);
+  EXPECT_EQ(saturated_pixels(frame, 100).count(), 6);
+}
+
+TEST(OrderWarning, IsThereIfTheFirstWavelengthIsMuchLongerThanAnother) {
+  EXPECT_FALSE(order_warning({29e6, 31e6}));
+  EXPECT_FALSE(order_warning({80e6, 16e6, 120e6}));
+  EXPECT_FALSE(order_warning({30e6}));
+  EXPECT_THAT(order_warning({16e6, 80e6}).value_or(""), HasSubstr("9.37 m"));
 }
 
 TEST(ErrorWarnings, BeginAtACentimetreOfPeriodicError) {

@@ -56,6 +56,38 @@ TEST(IsolatedWrapFilter, CorrectsARegionThatIsAWavelengthOff) {
   }
 }
 
+/// Whether a region that is a wavelength of A off is corrected although the frequencies `f` and A
+/// differ by this many standard deviations of their phase noise there, in the wrong direction.
+bool is_corrected_against(const Modulation& frequencies, std::size_t f, double sigmas) {
+  constexpr double noise_cycles = 0.02;
+  const double mean_m = mean_wavelength_m(frequencies);
+  RangeImage image = plane(6, static_cast<float>(noise_cycles * mean_m));
+  const auto a_m = static_cast<float>(frequencies.wavelength_m(0));
+  image.wrap_count = (image.range_m / a_m).cast<std::uint8_t>();
+  Frame frame = frame_of(image.range_m, frequencies);
+  const double ratio = a_m / frequencies.wavelength_m(f);
+  // The residual of the right wrap count, and that of the count that the region has.
+  const double shift = ratio - std::round(ratio);
+  const double residual = std::copysign(sigmas * noise_cycles * std::hypot(1, ratio), shift);
+  frame.phases[f](8, 10) =
+      std::fmod(frame.phases[f](8, 10) + static_cast<float>(residual) + 1, 1.0F);
+  image.wrap_count(8, 10) = static_cast<std::uint8_t>(image.wrap_count(8, 10) + 1);
+  image.range_m(8, 10) += a_m;
+  const RangeImage out = mend_isolated_wraps(image, frame, frequencies, {.max_share = 0.05});
+  EXPECT_TRUE(out.sigma_m(8, 10) == image.sigma_m(8, 10) ||
+              std::abs(out.sigma_m(8, 10) / (noise_cycles * a_m) - 1) < 1e-5)
+      << "noise of A alone";
+  return out.wrap_count(8, 10) < image.wrap_count(8, 10);
+}
+
+TEST(IsolatedWrapFilter, TakesTheNoiseOfEachFrequencyForWhatItIs) {
+  const Modulation kinect{80e6, 16e6, 120e6};
+  // The shift of 120 MHz by a wrap is half a cycle, so both counts cost the most, 4.5 nats.
+  EXPECT_TRUE(is_corrected_against(kinect, 2, 1));
+  EXPECT_TRUE(is_corrected_against(kinect, 1, 2));
+  EXPECT_TRUE(is_corrected_against({16e6, 80e6, 120e6}, 1, 1));
+}
+
 TEST(IsolatedWrapFilter, CorrectsAtTheBorderOfTheImage) {
   Wall wall;
   const RangeImage truth = wall.image;

@@ -40,14 +40,12 @@ inline RangeImage plane(double depth_m, float sigma_m = 0.001F) {
 inline Modulation modulation() { return {29e6, 31e6}; }
 
 /// What a camera without noise measures of these ranges; no amplitudes.
-inline Frame frame_of(const ImageF& range_m) {
-  const auto phase = [&](double wavelength_m) -> ImageF {
+inline Frame frame_of(const ImageF& range_m, const Modulation& frequencies = modulation()) {
+  Frame frame;
+  for (const double wavelength_m : wavelengths_m(frequencies)) {
     const ImageF cycles = range_m / static_cast<float>(wavelength_m);
-    return cycles - cycles.floor();
-  };
-  Frame frame = blank_frame(2);
-  frame.phases[0] = phase(modulation().wavelength_m(0));
-  frame.phases[1] = phase(modulation().wavelength_m(1));
+    frame.phases.push_back(cycles - cycles.floor());
+  }
   return frame;
 }
 

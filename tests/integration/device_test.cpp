@@ -28,12 +28,19 @@ class Device : public testing::Test {
  protected:
   static constexpr int frame_count = 12;
 
-  Device() {
-    EXPECT_EQ(run_program({"simulate", "room", "--frames", std::to_string(frame_count), "--out",
-                           recording_.string(), "--set", "simulator.width_px=88",
-                           "simulator.height_px=72", "simulator.subpixels=2"})
-                  .status,
-              0);
+  explicit Device(const std::vector<std::string>& options = {}) {
+    std::vector<std::string> arguments = {"simulate",
+                                          "room",
+                                          "--frames",
+                                          std::to_string(frame_count),
+                                          "--out",
+                                          recording_.string(),
+                                          "--set",
+                                          "simulator.width_px=88",
+                                          "simulator.height_px=72",
+                                          "simulator.subpixels=2"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    EXPECT_EQ(run_program(arguments).status, 0);
   }
 
   /// Frames are made when they are asked for.
@@ -51,21 +58,20 @@ class Device : public testing::Test {
   nlohmann::json images() const { return read_json(out_ / "report.json")["acquisition"]["images"]; }
 
   /// Frames `first` … of what was recorded hold the ranges of the recording, to the step of the
-  /// format.
-  void expect_same_ranges(int count, int first = 0) const {
+  /// device's images.
+  void expect_same_ranges(int count, int first = 0, double step_m = 1e-4) const {
     const SequenceReader original(recording_);
     const SequenceReader copy(out_);
     ASSERT_EQ(copy.frame_count(), count);
     const Modulation& modulation = original.sensor().modulation;
-    EXPECT_EQ(copy.sensor().modulation.frequencies_hz[0], modulation.frequencies_hz[0]);
-    EXPECT_EQ(copy.sensor().modulation.frequencies_hz[1], modulation.frequencies_hz[1]);
+    ASSERT_EQ(copy.sensor().modulation.frequencies_hz, modulation.frequencies_hz);
     for (int i = 0; i < count; ++i) {
       const Frame wanted = *original.read(first + i).frame;
       const Frame found = *copy.read(i).frame;
-      expect_same_phases(found.phases[0], wanted.phases[0], modulation.wavelength_m(0));
-      expect_same_phases(found.phases[1], wanted.phases[1], modulation.wavelength_m(1));
-      EXPECT_TRUE((found.amplitudes[0] == wanted.amplitudes[0]).all());
-      EXPECT_TRUE((found.amplitudes[1] == wanted.amplitudes[1]).all());
+      for (std::size_t f = 0; f < modulation.count(); ++f) {
+        expect_same_phases(found.phases[f], wanted.phases[f], modulation.wavelength_m(f), step_m);
+        EXPECT_TRUE((found.amplitudes[f] == wanted.amplitudes[f]).all());
+      }
       EXPECT_NEAR(
           found.timestamp_s - copy.files()[0].timestamp_s,
           wanted.timestamp_s - original.files()[static_cast<std::size_t>(first)].timestamp_s, 2e-6)
@@ -73,7 +79,8 @@ class Device : public testing::Test {
     }
   }
 
-  static void expect_same_phases(const ImageF& found, const ImageF& wanted, double wavelength_m) {
+  static void expect_same_phases(const ImageF& found, const ImageF& wanted, double wavelength_m,
+                                 double step_m) {
     ASSERT_TRUE((found.isNaN() == wanted.isNaN()).all());
     double worst_m = 0;
     for (Eigen::Index i = 0; i < found.size(); ++i) {
@@ -81,8 +88,11 @@ class Device : public testing::Test {
       if (std::isnan(cycles)) continue;
       worst_m = std::max(worst_m, wavelength_m * std::abs(cycles - std::round(cycles)));
     }
-    // Half a step of 0.1 mm, and half a step of a sequence's phase images.
-    EXPECT_LE(worst_m, 0.5e-4 + 0.5 * wavelength_m / 65535 + 1e-6);
+    // Half a step of the images, and half a step of a sequence's phase images. A range that rounds
+    // to 0 is written as a whole wavelength, which is rounded to a step, too.
+    const double whole_m = step_m * std::round(wavelength_m / step_m);
+    EXPECT_LE(worst_m,
+              0.5 * step_m + std::abs(wavelength_m - whole_m) + 0.5 * wavelength_m / 65535 + 1e-6);
   }
 
   TemporaryFolder folder_;
@@ -249,6 +259,48 @@ TEST_F(Device, ThatTakesBothFrequenciesInTurnIsPaired) {
   EXPECT_EQ(images()["half_missing"], 2 * 4);
   EXPECT_EQ(images()["paired"], 4 * (frame_count - 4));
 }
+
+/// A device with one frequency, or with three as a Kinect v2.
+class DeviceOfFrequencies : public Device, public testing::WithParamInterface<std::string> {
+ protected:
+  DeviceOfFrequencies() : Device({"simulator.frequencies_hz=" + GetParam()}) {}
+
+  int frequencies() const { return 1 + static_cast<int>(std::ranges::count(GetParam(), ',')); }
+
+  /// Depth in steps of 0.1 mm does not reach as far as a wavelength of 16 MHz.
+  double step_m() const { return frequencies() == 1 ? 1e-4 : 1e-3; }
+};
+
+TEST_P(DeviceOfFrequencies, InTurnGivesWholeFrames) {
+  const std::vector<std::string> configured = {"--set", "device.layout=alternating",
+                                               "device.depth=radial", "device.first=a"};
+  const Finished finished = record(uri("layout=alternating"), configured);
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  expect_same_ranges(frame_count, 0, step_m());
+  EXPECT_EQ(images()["paired"], 2 * frequencies() * frame_count);
+
+  ASSERT_EQ(record(uri("layout=alternating&lose_every=6"), configured).status, 0);
+  const SequenceReader copy(out_);
+  const int lost = frequencies() * frame_count / 6;
+  EXPECT_EQ(copy.frame_count(), frame_count - lost);
+  EXPECT_EQ(images()["half_missing"], 2 * (frequencies() - 1) * lost);
+}
+
+TEST_P(DeviceOfFrequencies, InOneImageWithATagNeedsNoConfiguration) {
+  const Finished finished = record(uri());
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  expect_same_ranges(frame_count, 0, step_m());
+}
+
+TEST_P(DeviceOfFrequencies, IsNotTakenForOneThatBeginsWithAFrequencyItHasNot) {
+  const Finished finished =
+      record(uri("layout=alternating"), {"--set", "device.layout=alternating", "device.first=d"});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_THAT(finished.err, HasSubstr("device.first"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Counts, DeviceOfFrequencies,
+                         testing::Values("[30e6]", "[80e6,16e6,120e6]"));
 
 TEST_F(Device, ThatDoesNotSayHowItTakesBothFrequenciesMustBeConfigured) {
   const Finished finished = record(uri("layout=alternating"));

@@ -152,6 +152,17 @@ TEST_F(Kinect2Import, WithoutP0TablesSaysWhereTheyComeFrom) {
   expect_refusal("p0.bin", "the camera's answer to the request for its P0 tables");
 }
 
+TEST_F(Kinect2Import, LeavesOutDamagedTruthAndNamesIt) {
+  const fs::path damaged = recording_ / "range_truth" / "000001.png";
+  fs::resize_file(damaged, fs::file_size(damaged) / 2);
+  const Finished finished = import();
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  EXPECT_THAT(finished.out, AllOf(HasSubstr("true ranges of 1 frame"), HasSubstr("000001.png")));
+  EXPECT_EQ(SequenceReader(out_).frame_count(), 3);
+  EXPECT_FALSE(SequenceReader(out_).range_truth(1));
+  EXPECT_TRUE(SequenceReader(out_).range_truth(2));
+}
+
 TEST_F(Kinect2Import, LeavesOutADamagedPacketAndNamesIt) {
   fs::resize_file(packet(1), 1000);
   const Finished finished = import();

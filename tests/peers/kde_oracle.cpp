@@ -23,7 +23,7 @@ struct Hypothesis {
 double sigma_rad(double amplitude, const PhaseNoise& noise) {
   const double q =
       noise.gamma_0 * amplitude + noise.gamma_1 * amplitude * amplitude + noise.gamma_2;
-  const double unit = amplitude_of_unit_q(noise);
+  const double unit = amplitude_of_q(noise, 1);
   const double largest = std::numbers::pi / 2;
   if (amplitude <= unit) return largest;
   const double beyond = largest * unit / amplitude;

@@ -17,7 +17,7 @@ TEST(PhaseNoise, ArcSineAgreesWithTheLibrary) {
 
 TEST(PhaseNoise, WeakAmplitudesHaveAQuarterTurnAndStrongOnesTheModel) {
   for (const PhaseNoise& noise : kinect_v2_noise) {
-    const double unit = amplitude_of_unit_q(noise);
+    const double unit = amplitude_of_q(noise, 1);
     EXPECT_NEAR(noise.gamma_0 * unit + noise.gamma_1 * unit * unit + noise.gamma_2, 1, 1e-9);
     const auto sigma = [&](double amplitude) {
       return phase_sigma_rad(static_cast<float>(amplitude), static_cast<float>(noise.gamma_0),
@@ -33,9 +33,9 @@ TEST(PhaseNoise, WeakAmplitudesHaveAQuarterTurnAndStrongOnesTheModel) {
 }
 
 TEST(PhaseNoise, TheAuthorsGiveTheseAmplitudesOfUnitQ) {
-  EXPECT_NEAR(amplitude_of_unit_q(kinect_v2_noise[0]), 5.64173671, 1e-5);
-  EXPECT_NEAR(amplitude_of_unit_q(kinect_v2_noise[1]), 4.31705182, 1e-5);
-  EXPECT_NEAR(amplitude_of_unit_q(kinect_v2_noise[2]), 6.84453530, 1e-5);
+  EXPECT_NEAR(amplitude_of_q(kinect_v2_noise[0], 1), 5.64173671, 1e-5);
+  EXPECT_NEAR(amplitude_of_q(kinect_v2_noise[1], 1), 4.31705182, 1e-5);
+  EXPECT_NEAR(amplitude_of_q(kinect_v2_noise[2], 1), 6.84453530, 1e-5);
 }
 
 }  // namespace

@@ -353,6 +353,8 @@ TEST(Simulator, RefusesOptionsThatAreNotAllowed) {
   refused("range_noise_m", [](SimulatorOptions& o) { o.range_noise_m = std::nan(""); });
   refused("max_translation_m", [](SimulatorOptions& o) { o.max_translation_m = 0; });
   refused("width_px", [](SimulatorOptions& o) { o.width_px = -1; });
+  refused("offsets_m", [](SimulatorOptions& o) { o.offsets_m = {0.01, 0.02, 0.03, 0.04}; });
+  refused("periodic_errors_m", [](SimulatorOptions& o) { o.periodic_errors_m = {0.01}; });
 }
 
 TEST(Simulator, RefusesFramesThatItDoesNotHave) {

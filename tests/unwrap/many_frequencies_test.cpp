@@ -3,6 +3,7 @@
 
 // Cameras with one frequency and with more than two.
 
+#include "common/frequency_order.hpp"
 #include "common/pixel_counts.hpp"
 
 #include <algorithm>
@@ -81,19 +82,102 @@ TEST_P(EveryOrder, OfThreeFrequenciesUnwrapsALitRoom) {
   SimulatorOptions lit = small_camera(GetParam());
   // The same phase noise, whichever frequency is the first.
   lit.range_noise_m = 0.01 * 80e6 / GetParam().front();
+  // Motion and systematic errors are estimated relative to the first frequency. Ranges at 16 MHz
+  // are five times as noisy, so what they tell of the others spoils some pixels.
+  const double most_wrong_percent = GetParam().front() == 16e6 ? 2.5 : 0.5;
   const Simulator simulator(make_scene("room"), lit);
   Unwrapper unwrapper(simulator.sensor(), {});
   for (const int index : {0, 40}) {
     const SimulatedFrame simulated = simulator.simulate(index);
     const UnwrapResult result = unwrapper.unwrap(simulated.frame);
-    EXPECT_LT(wrong_percent(result.image, simulated.range_truth_m, 1.8737), 0.5);
+    EXPECT_LT(wrong_percent(result.image, simulated.range_truth_m, 1.8737), most_wrong_percent);
     ASSERT_EQ(result.errors.size(), 3U);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Frequencies, EveryOrder,
                          testing::Values(std::vector<double>{80e6, 16e6, 120e6},
-                                         std::vector<double>{120e6, 80e6, 16e6}));
+                                         std::vector<double>{80e6, 120e6, 16e6},
+                                         std::vector<double>{120e6, 80e6, 16e6},
+                                         std::vector<double>{120e6, 16e6, 80e6},
+                                         std::vector<double>{16e6, 80e6, 120e6},
+                                         std::vector<double>{16e6, 120e6, 80e6}));
+
+/// The frequencies of a frame in another order.
+Frame reordered(const Frame& frame, const std::vector<std::size_t>& order) {
+  Frame out;
+  out.index = frame.index;
+  out.timestamp_s = frame.timestamp_s;
+  for (const std::size_t f : order) {
+    out.phases.push_back(frame.phases[f]);
+    out.amplitudes.push_back(frame.amplitudes[f]);
+  }
+  return out;
+}
+
+TEST(ManyFrequencies, GiveTheSameRangesInEveryOrder) {
+  SimulatorOptions options = small_camera({80e6, 16e6, 120e6});
+  options.range_noise_m = 0.05;
+  const Simulator simulator(make_scene("random"), options);
+  const SimulatedFrame simulated = simulator.simulate(0);
+  UnwrapOptions by_noise_alone;
+  by_noise_alone.systematic_errors = false;  // they are those of the first frequency to the others
+  for (const bool fuses : {true, false}) {
+    by_noise_alone.fuse_frequencies = fuses;
+    const RangeImage wanted = unwrap(simulated.frame, simulator.sensor(), by_noise_alone).image;
+    std::vector<std::size_t> order = {0, 1, 2};
+    while (std::ranges::next_permutation(order).found) {
+      SensorModel sensor = simulator.sensor();
+      for (std::size_t f = 0; f < 3; ++f) {
+        sensor.modulation.frequencies_hz[f] =
+            simulator.sensor().modulation.frequencies_hz[order[f]];
+      }
+      const Frame frame = reordered(simulated.frame, order);
+      const RangeImage found = unwrap(frame, sensor, by_noise_alone).image;
+      for (Eigen::Index i = 0; i < found.range_m.size(); ++i) {
+        ASSERT_EQ(found.reason.data()[i], wanted.reason.data()[i]);
+        if (found.reason.data()[i] != 0) continue;
+        const double range_m = found.range_m.data()[i];
+        const double cycles = range_m / sensor.modulation.wavelength_m(0);
+        const int count = found.wrap_count.data()[i];
+        if (fuses) {
+          ASSERT_EQ(found.range_m.data()[i], wanted.range_m.data()[i]);
+          ASSERT_EQ(found.sigma_m.data()[i], wanted.sigma_m.data()[i]);
+          // Counts that follow from ranges are those nearest to them, but not negative.
+          const double off = std::abs(cycles - count - frame.phases[0].data()[i]);
+          ASSERT_TRUE(order.front() == 0 || count == 0 || off <= 0.5) << off;
+        } else {
+          ASSERT_NEAR(cycles, count + frame.phases[0].data()[i], 1e-5);
+        }
+        ASSERT_EQ(found.confidence.data()[i], wanted.confidence.data()[i]);
+      }
+    }
+  }
+}
+
+TEST(CountingOrder, TakesTheFirstOfTwoAndTheLongestShortWavelengthOfMore) {
+  const auto counted_hz = [](const std::vector<double>& frequencies_hz, double max_range_m) {
+    const UnwrapLimits limits = unwrap_limits(sensor_with(frequencies_hz), max_range_m);
+    return frequencies_hz[counting_order(limits).front()];
+  };
+  EXPECT_EQ(counted_hz({29e6, 31e6}, 0), 29e6);
+  EXPECT_EQ(counted_hz({31e6, 29e6}, 0), 31e6);
+  EXPECT_EQ(counted_hz({80e6, 100e6}, 0), 80e6);
+  EXPECT_EQ(counted_hz({16e6, 80e6}, 0), 80e6) << "a fifth of the wavelength";
+  EXPECT_EQ(counted_hz({80e6, 16e6}, 0), 80e6);
+  EXPECT_EQ(counted_hz({16e6, 120e6, 80e6}, 0), 80e6) << "of 1.9 m, 120 MHz of 1.2 m";
+  EXPECT_EQ(counted_hz({16e6, 80e6}, 1000), 16e6) << "534 wrap counts of 80 MHz";
+  EXPECT_EQ(counted_hz({30e6}, 0), 30e6);
+}
+
+TEST(CountingOrder, KeepsTheOtherFrequenciesAsTheyWere) {
+  const UnwrapLimits limits = unwrap_limits(sensor_with({16e6, 120e6, 80e6}), 12);
+  const std::vector<std::size_t> order = counting_order(limits);
+  EXPECT_THAT(order, testing::ElementsAre(2, 0, 1));
+  const UnwrapLimits counted = in_order(limits, order);
+  EXPECT_EQ(counted.count, 7);
+  EXPECT_DOUBLE_EQ(counted.wavelengths_m[1], limits.wavelengths_m[0]);
+}
 
 TEST(ManyFrequencies, AreBetterThanTwoOfThem) {
   SimulatorOptions options = small_camera({80e6, 16e6, 120e6});
@@ -184,7 +268,7 @@ TEST(ComparedPair, IsUnambiguousUpToTheLongestRange) {
     options.pair_first = first;
     options.pair_second = second;
     const ComparedPair pair = compared_pair(options, sensor_with(frequencies_hz).modulation);
-    return std::pair(pair.a, pair.b);
+    return std::pair(pair.a, pair.b.value());
   };
   using Pair = std::pair<std::size_t, std::size_t>;
   const std::vector<double> kinect_hz{80e6, 16e6, 120e6};

@@ -3,10 +3,13 @@
 
 #include "tofmap/acquisition/frame_pairing.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/modulation.hpp>
 
 namespace tofmap {
 namespace {
@@ -21,8 +24,6 @@ constexpr std::size_t most_recent = 64;
 /// Largest difference between the time from one image to the next and a whole number of periods, in
 /// periods. With a larger difference the number of periods is uncertain.
 constexpr double most_period_error = 1.0 / 3;
-
-Half other(Half half) { return half == Half::a ? Half::b : Half::a; }
 
 int images_in(const JoinedImages& joined) { return joined.has_amplitude() ? 2 : 1; }
 
@@ -94,57 +95,80 @@ void StreamJoiner::finish(PairingCounts& counts) {
   amplitude_.waiting.clear();
 }
 
-AlternatingPairer::AlternatingPairer(const Settings& settings) : settings_(settings) {
-  if (!(settings.period_s > 0)) throw UsageError("the period between two images must be above 0 s");
-}
-
-std::optional<Half> AlternatingPairer::half_of(double timestamp_s, bool reaches_beyond,
-                                               PairingCounts& counts) const {
-  std::optional<Half> expected;
-  if (!last_timestamp_s_) {
-    expected = settings_.first;
-  } else {
-    const double periods = (timestamp_s - *last_timestamp_s_) / settings_.period_s;
-    const double whole = std::round(periods);
-    if (whole > 1) counts.lost += static_cast<int>(whole) - 1;
-    if (last_half_ && std::abs(periods - whole) < most_period_error) {
-      expected = std::fmod(whole, 2) == 0 ? *last_half_ : other(*last_half_);
-    }
+AlternatingJoiner::AlternatingJoiner(Settings settings) : settings_(std::move(settings)) {
+  const std::vector<double>& wavelengths_m = settings_.wavelengths_m;
+  if (!(settings_.period_s > 0))
+    throw UsageError("the period between two images must be above 0 s");
+  if (wavelengths_m.empty()) throw UsageError("images in turn need a frequency");
+  if (settings_.first.value_or(0) >= wavelengths_m.size()) {
+    throw UsageError("the first image cannot be of frequency " + frequency_name(*settings_.first) +
+                     " of " + std::to_string(wavelengths_m.size()) + "; change device.first");
   }
-  if (reaches_beyond) return settings_.longer;
-  return expected;
+  longest_m_ = std::ranges::max(wavelengths_m);
 }
 
-void AlternatingPairer::drop_waiting(PairingCounts& counts) {
-  if (!waiting_a_) return;
-  counts.paired -= images_in(*waiting_a_);
-  counts.half_missing += images_in(*waiting_a_);
-  waiting_a_.reset();
+/// Whether an image whose ranges exceed the wavelength `beyond_m` can be of this frequency. The
+/// longest wavelength is always possible: some ranges of damaged images exceed all.
+bool AlternatingJoiner::is_possible(std::size_t frequency, double beyond_m) const {
+  const double wavelength_m = settings_.wavelengths_m[frequency];
+  return wavelength_m > beyond_m || wavelength_m == longest_m_;
 }
 
-std::optional<AlternatingPair> AlternatingPairer::add(JoinedImages images, bool reaches_beyond,
-                                                      PairingCounts& counts) {
-  const std::optional<Half> half = half_of(images.timestamp_s, reaches_beyond, counts);
+/// The frequency of an image by its time. Counts the instants that were lost before it.
+std::optional<std::size_t> AlternatingJoiner::expected(double timestamp_s,
+                                                       PairingCounts& counts) const {
+  if (!last_timestamp_s_) return settings_.first;
+  const double periods = (timestamp_s - *last_timestamp_s_) / settings_.period_s;
+  const double whole = std::round(periods);
+  if (whole > 1) counts.lost += static_cast<int>(whole) - 1;
+  if (!last_frequency_ || std::abs(periods - whole) >= most_period_error) return std::nullopt;
+  const auto frequencies = static_cast<double>(settings_.wavelengths_m.size());
+  const double last = static_cast<double>(*last_frequency_);
+  return static_cast<std::size_t>(std::fmod(last + std::fmod(whole, frequencies), frequencies));
+}
+
+/// The expected frequency if the content admits it; else the only one that it admits, if there is
+/// only one.
+std::optional<std::size_t> AlternatingJoiner::frequency_of(std::optional<std::size_t> expected,
+                                                           double beyond_m) const {
+  if (expected && is_possible(*expected, beyond_m)) return expected;
+  std::optional<std::size_t> only;
+  for (std::size_t f = 0; f < settings_.wavelengths_m.size(); ++f) {
+    if (!is_possible(f, beyond_m)) continue;
+    if (only) return std::nullopt;
+    only = f;
+  }
+  return only;
+}
+
+void AlternatingJoiner::drop_waiting(PairingCounts& counts) {
+  for (const JoinedImages& images : waiting_) {
+    counts.paired -= images_in(images);
+    counts.half_missing += images_in(images);
+  }
+  waiting_.clear();
+}
+
+std::vector<JoinedImages> AlternatingJoiner::add(JoinedImages images, double beyond_m,
+                                                 PairingCounts& counts) {
+  const std::optional<std::size_t> frequency =
+      frequency_of(expected(images.timestamp_s, counts), beyond_m);
   const bool follows =
       last_timestamp_s_ && std::abs(images.timestamp_s - *last_timestamp_s_ - settings_.period_s) <
                                most_period_error * settings_.period_s;
   last_timestamp_s_ = images.timestamp_s;
-  last_half_ = half;
-  if (half == Half::b && waiting_a_ && follows) {
-    AlternatingPair pair{std::move(*waiting_a_), std::move(images)};
-    waiting_a_.reset();
-    return pair;
+  last_frequency_ = frequency;
+  if (!follows || frequency != waiting_.size()) drop_waiting(counts);
+  if (frequency != waiting_.size()) {
+    counts.paired -= images_in(images);
+    (frequency ? counts.half_missing : counts.undecided) += images_in(images);
+    return {};
   }
-  drop_waiting(counts);
-  if (half == Half::a) {
-    waiting_a_ = std::move(images);
-    return std::nullopt;
-  }
-  counts.paired -= images_in(images);
-  (half ? counts.half_missing : counts.undecided) += images_in(images);
-  return std::nullopt;
+  waiting_.push_back(std::move(images));
+  if (waiting_.size() < settings_.wavelengths_m.size()) return {};
+  return std::exchange(waiting_, {});
 }
 
-void AlternatingPairer::finish(PairingCounts& counts) { drop_waiting(counts); }
+void AlternatingJoiner::finish(PairingCounts& counts) { drop_waiting(counts); }
 
 }  // namespace tofmap

@@ -14,6 +14,7 @@
 
 #include <tofmap/acquisition/openni2_properties.hpp>
 #include <tofmap/core/error.hpp>
+#include <tofmap/core/modulation.hpp>
 
 namespace tofmap {
 namespace {
@@ -233,11 +234,16 @@ bool OpenNi2Connection::waits_for_reader() const {
          speed == as_frames_are_asked_for;
 }
 
-std::optional<double> OpenNi2Connection::number(int property) const {
-  if (!device_.isPropertySupported(property)) return std::nullopt;
-  double value = 0;
-  if (device_.getProperty(property, &value) != openni::STATUS_OK) return std::nullopt;
-  return value;
+std::vector<double> OpenNi2Connection::frequencies_hz() const {
+  if (!device_.isPropertySupported(openni2_property::frequencies_hz)) return {};
+  std::vector<double> values(most_frequencies);
+  auto bytes = static_cast<int>(values.size() * sizeof(double));
+  if (device_.getProperty(openni2_property::frequencies_hz, values.data(), &bytes) !=
+      openni::STATUS_OK) {
+    return {};
+  }
+  values.resize(static_cast<std::size_t>(bytes) / sizeof(double));
+  return values;
 }
 
 }  // namespace tofmap

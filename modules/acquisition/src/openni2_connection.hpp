@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <OpenNI.h>
 
@@ -47,8 +48,9 @@ class OpenNi2Connection {
   /// True if the device makes an image only when a client waits for one.
   bool waits_for_reader() const;
 
-  /// The value of a device property of type double. Empty if the device does not have the property.
-  std::optional<double> number(int property) const;
+  /// The modulation frequencies that the device reports, in the order of its images. Empty if it
+  /// reports none.
+  std::vector<double> frequencies_hz() const;
 
  private:
   /// Keeps OpenNI2 initialised, with a device and its streams.

@@ -35,25 +35,36 @@ bool has_beyond(int beyond, Eigen::Index pixels) {
   return beyond >= std::max(least_telling * 1.0, telling_share * static_cast<double>(pixels));
 }
 
+/// The modulation frequencies of a device whose images carry no tag, in the order of its images.
+std::vector<double> untagged_frequencies_hz(const std::string& uri, const OpenNi2Connection& device,
+                                            const DeviceOptions& options) {
+  if (!options.frequencies_hz.empty()) return options.frequencies_hz;
+  std::vector<double> frequencies_hz = device.frequencies_hz();
+  const double wanted_hz[] = {options.frequency_a_hz, options.frequency_b_hz};
+  for (std::size_t f = 0; f < 2; ++f) {
+    if (!(wanted_hz[f] > 0)) continue;
+    frequencies_hz.resize(std::max(frequencies_hz.size(), f + 1));
+    frequencies_hz[f] = wanted_hz[f];
+  }
+  if (frequencies_hz.empty() || std::ranges::min(frequencies_hz) <= 0) {
+    throw UsageError(uri + ": does not report its modulation frequencies; set " +
+                     "device.frequencies_hz");
+  }
+  return frequencies_hz;
+}
+
 /// The sensor of a device whose images carry no tag, from the options, the calibration and the
 /// properties of the device.
 SensorModel untagged_sensor(const std::string& uri, const OpenNi2Connection& device,
                             const RawImage& image, const OpenNi2Source::Settings& settings) {
   const DeviceOptions& options = settings.options;
   SensorModel sensor;
-  const auto frequency = [&](double wanted_hz, int property) {
-    return wanted_hz > 0 ? wanted_hz : device.number(property).value_or(0);
-  };
-  sensor.modulation = {frequency(options.frequency_a_hz, openni2_property::frequency_a_hz),
-                       frequency(options.frequency_b_hz, openni2_property::frequency_b_hz)};
+  sensor.modulation.frequencies_hz = untagged_frequencies_hz(uri, device, options);
   sensor.max_range_m = options.max_range_m;
-  if (!(sensor.modulation.frequencies_hz[0] > 0 && sensor.modulation.frequencies_hz[1] > 0)) {
-    throw UsageError(uri + ": does not report its modulation frequencies; set " +
-                     "device.frequency_a_hz and device.frequency_b_hz");
-  }
-  const int halves = options.layout == ImageLayout::stacked ? 2 : 1;
+  const auto images_in_one =
+      options.layout == ImageLayout::stacked ? static_cast<int>(sensor.modulation.count()) : 1;
   const auto width = static_cast<int>(image.pixels.cols());
-  const auto height = static_cast<int>(image.pixels.rows()) / halves;
+  const auto height = static_cast<int>(image.pixels.rows()) / images_in_one;
   const double view_rad = device.horizontal_fov_rad();
   if (settings.calibration.camera) {
     sensor.camera = *settings.calibration.camera;
@@ -94,7 +105,8 @@ class OpenNi2Source::Impl {
   std::optional<DeviceImage> understand(RawImage image);
   std::optional<Frame> add(RawImage image);
   std::optional<Frame> frame_of(JoinedImages joined);
-  Frame frame_of_pair(const AlternatingPair& pair) const;
+  double wavelength_exceeded_m(const ImageU16& range) const;
+  Frame frame_of_images(const std::vector<JoinedImages>& images) const;
   SourcedFrame sourced(Frame frame);
   void check_fruit() const;
   std::string silence() const;
@@ -106,7 +118,7 @@ class OpenNi2Source::Impl {
   std::optional<FrameTag> first_tag_;
   std::optional<DeviceImageCodec> codec_;
   std::optional<StreamJoiner> joiner_;
-  std::optional<AlternatingPairer> alternating_;
+  std::optional<AlternatingJoiner> alternating_;
   std::deque<RawImage> early_;  ///< images that arrived before their meaning was known
   int index_ = 0;
   int images_ = 0;
@@ -145,7 +157,7 @@ void OpenNi2Source::Impl::begin(const SensorModel& sensor, const RangeScale& sca
 
 void OpenNi2Source::Impl::take_as_tagged(const FrameTag& tag) {
   if (settings_.options.layout == ImageLayout::alternating) {
-    throw InputError(uri_ + ": its images say that they hold both frequencies; leave out " +
+    throw InputError(uri_ + ": its images say that they hold all frequencies; leave out " +
                      "device.layout=alternating");
   }
   first_tag_ = tag;
@@ -155,19 +167,26 @@ void OpenNi2Source::Impl::take_as_tagged(const FrameTag& tag) {
 void OpenNi2Source::Impl::take_as_configured(const RawImage& image) {
   const DeviceOptions& options = settings_.options;
   if (options.layout == ImageLayout::by_tag) {
-    throw UsageError(uri_ + ": its images do not say how they hold both frequencies; set " +
+    throw UsageError(uri_ + ": its images do not say how they hold the frequencies; set " +
                      "device.layout to stacked or alternating (docs/cameras.md)");
   }
-  const SensorModel sensor = untagged_sensor(uri_, device_, image, settings_);
+  SensorModel sensor = untagged_sensor(uri_, device_, image, settings_);
+  const bool is_stacked = options.layout == ImageLayout::stacked;
+  AlternatingJoiner::Settings joining;
+  joining.period_s = options.period_s > 0 ? options.period_s : 1.0 / device_.frame_rate_hz();
+  joining.wavelengths_m = wavelengths_m(sensor.modulation);
+  if (options.first != FirstImage::by_ranges) {
+    joining.first =
+        static_cast<std::size_t>(options.first) - static_cast<std::size_t>(FirstImage::a);
+  }
+  // Version 1 of the sequence format, which two frequencies are written in, has no exposure times.
+  if (!is_stacked && sensor.modulation.count() != 2) {
+    for (std::size_t f = 0; f < sensor.modulation.count(); ++f) {
+      sensor.modulation.exposure_offsets_s.push_back(static_cast<double>(f) * joining.period_s);
+    }
+  }
   begin(sensor, {image.unit_m, options.depth == DepthKind::z}, ImageKey::time);
-  if (options.layout == ImageLayout::stacked) return;
-  AlternatingPairer::Settings pairing;
-  pairing.period_s = options.period_s > 0 ? options.period_s : 1.0 / device_.frame_rate_hz();
-  const Modulation& modulation = sensor.modulation;
-  pairing.longer = modulation.wavelength_m(0) > modulation.wavelength_m(1) ? Half::a : Half::b;
-  if (options.first == FirstImage::a) pairing.first = Half::a;
-  if (options.first == FirstImage::b) pairing.first = Half::b;
-  alternating_.emplace(pairing);
+  if (!is_stacked) alternating_.emplace(std::move(joining));
 }
 
 std::optional<RawImage> OpenNi2Source::Impl::wait_for_image() {
@@ -208,14 +227,29 @@ std::optional<DeviceImage> OpenNi2Source::Impl::understand(RawImage image) {
   return understood;
 }
 
-Frame OpenNi2Source::Impl::frame_of_pair(const AlternatingPair& pair) const {
-  const Modulation& modulation = sensor_.modulation;
+/// The longest of the wavelengths that ranges exceed, 0 if they exceed none.
+double OpenNi2Source::Impl::wavelength_exceeded_m(const ImageU16& range) const {
+  double longest_m = 0;
+  for (const double wavelength_m : wavelengths_m(sensor_.modulation)) {
+    if (wavelength_m > longest_m &&
+        has_beyond(codec_->count_beyond(range, wavelength_m), range.size())) {
+      longest_m = wavelength_m;
+    }
+  }
+  return longest_m;
+}
+
+Frame OpenNi2Source::Impl::frame_of_images(const std::vector<JoinedImages>& images) const {
   Frame frame;
-  frame.timestamp_s = pair.a.timestamp_s;
-  frame.phases = {codec_->decode_range(pair.a.range, modulation.wavelength_m(0)),
-                  codec_->decode_range(pair.b.range, modulation.wavelength_m(1))};
-  if (pair.a.has_amplitude() && pair.b.has_amplitude()) {
-    frame.amplitudes = {decode_amplitude(pair.a.amplitude), decode_amplitude(pair.b.amplitude)};
+  frame.timestamp_s = images.front().timestamp_s;
+  for (std::size_t f = 0; f < images.size(); ++f) {
+    frame.phases.push_back(
+        codec_->decode_range(images[f].range, sensor_.modulation.wavelength_m(f)));
+  }
+  if (std::ranges::all_of(images, &JoinedImages::has_amplitude)) {
+    for (const JoinedImages& one : images) {
+      frame.amplitudes.push_back(decode_amplitude(one.amplitude));
+    }
   }
   return frame;
 }
@@ -226,12 +260,9 @@ std::optional<Frame> OpenNi2Source::Impl::frame_of(JoinedImages joined) {
     frame.timestamp_s = joined.timestamp_s;
     return frame;
   }
-  const Modulation& modulation = sensor_.modulation;
-  const double shorter_m = shortest_wavelength_m(modulation);
-  const bool reaches_beyond =
-      has_beyond(codec_->count_beyond(joined.range, shorter_m), joined.range.size());
-  const auto pair = alternating_->add(std::move(joined), reaches_beyond, counts_);
-  return pair ? std::optional(frame_of_pair(*pair)) : std::nullopt;
+  const double beyond_m = wavelength_exceeded_m(joined.range);
+  const std::vector<JoinedImages> images = alternating_->add(std::move(joined), beyond_m, counts_);
+  return images.empty() ? std::nullopt : std::optional(frame_of_images(images));
 }
 
 std::optional<Frame> OpenNi2Source::Impl::add(RawImage image) {
@@ -266,7 +297,7 @@ void OpenNi2Source::Impl::check_fruit() const {
   throw InputError(uri_ + ": " + std::to_string(images_) +
                    " images made no frame: " + std::to_string(counts_.half_missing) +
                    " had no counterpart, " + std::to_string(counts_.undecided) +
-                   " could be of either frequency, " + std::to_string(counts_.unreadable) +
+                   " could be of several frequencies, " + std::to_string(counts_.unreadable) +
                    " had a wrong size or tag; do device.layout, device.period_s, device.first and "
                    "the frequencies fit the device?");
 }

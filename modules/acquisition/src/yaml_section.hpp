@@ -39,6 +39,8 @@ class YamlSection {
     }
   }
 
+  const std::filesystem::path& file() const { return file_; }
+
   /// Throws InputError with the file, `key` and `what`.
   [[noreturn]] void fail(const std::string& key, const std::string& what) const {
     throw InputError(file_.string() + ": " + key + " " + what);

@@ -13,7 +13,7 @@ Image<bool> missing_returns(const Frame& frame) {
 
 Image<bool> saturated_pixels(const Frame& frame, double saturation_amplitude) {
   Image<bool> saturated = Image<bool>::Constant(frame.rows(), frame.cols(), false);
-  if (!frame.has_amplitude()) return saturated;
+  if (!frame.has_amplitude() || saturation_amplitude <= 0) return saturated;
   const auto limit = static_cast<float>(saturation_amplitude);
   for (const ImageF& amplitude : frame.amplitudes) saturated = saturated || amplitude >= limit;
   return saturated;

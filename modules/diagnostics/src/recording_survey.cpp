@@ -76,7 +76,6 @@ struct PixelTotals {
   void add(const Frame& frame, double saturation_amplitude) {
     all += static_cast<double>(frame.rows() * frame.cols());
     without_return += static_cast<double>(missing_returns(frame).count());
-    if (saturation_amplitude <= 0) return;
     saturated += static_cast<double>(saturated_pixels(frame, saturation_amplitude).count());
   }
 
@@ -214,11 +213,11 @@ std::vector<std::string> warnings_about(const RecordingSurvey& survey, const Sen
   add(camera_warning(sensor.camera));
   const std::optional<std::string> of_frequencies = frequency_warning(sensor);
   add(of_frequencies);
+  add(order_warning(sensor.modulation));
   if (sensor.modulation.count() > 1 && sensor.max_range_m > combined_range_m(sensor.modulation)) {
     warnings.emplace_back(
         "the scene reaches farther than the combined range of these frequencies; are max_range_m "
-        "and "
-        "the frequencies right?");
+        "and the frequencies right?");
   }
   warn_of_returns(survey, warnings);
   warn_of_images(survey, warnings);

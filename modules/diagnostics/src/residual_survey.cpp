@@ -321,7 +321,8 @@ std::optional<std::string> frequency_warning(const SensorModel& sensor, double m
     return std::nullopt;
   }
   const double combined_m = combined_range_m(modulation);
-  if (combined_m >= least_wavelengths * modulation.wavelength_m(0)) return std::nullopt;
+  const double shortest_m = shortest_wavelength_m(modulation);
+  if (combined_m >= least_wavelengths * shortest_m) return std::nullopt;
   if (modulation.count() == 1) {
     return fmt::format(
         "one frequency cannot tell wrap counts apart: ranges are unambiguous up to {:.2f} m, and "
@@ -330,8 +331,20 @@ std::optional<std::string> frequency_warning(const SensorModel& sensor, double m
   }
   return fmt::format(
       "these frequencies cannot tell wrap counts apart: together they are unambiguous up to "
-      "{:.2f} m, and frequency A alone up to {:.2f} m; are the frequencies right?",
-      combined_m, modulation.wavelength_m(0));
+      "{:.2f} m, and one alone up to {:.2f} m; are the frequencies right?",
+      combined_m, shortest_m);
+}
+
+std::optional<std::string> order_warning(const Modulation& modulation) {
+  constexpr double largest_ratio = 2;
+  const double first_m = modulation.wavelength_m(0);
+  if (first_m <= largest_ratio * shortest_wavelength_m(modulation)) return std::nullopt;
+  return fmt::format(
+      "the wavelength of the first frequency, {:.2f} m, is more than twice the shortest: motion "
+      "and "
+      "systematic errors are estimated relative to the first frequency, and less precisely than "
+      "with a shorter wavelength first",
+      first_m);
 }
 
 }  // namespace tofmap

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -133,15 +132,15 @@ double residual_cost(const Region& region, int change, const RangeImage& image, 
   for (const Pixel at : region.pixels) {
     const double a_cycles =
         frame.phases[0](at.row, at.col) + image.wrap_count(at.row, at.col) + change;
-    // range_m is the mean of the ranges of all frequencies. The standard deviation of the
-    // difference of two of them is twice that of their mean.
-    const double wavelength_m = modulation.wavelength_m(0);
-    const double variance = 4 * image.variance_m2(at.row, at.col) / (wavelength_m * wavelength_m);
+    // range_m is the mean of the ranges of all frequencies.
+    const double mean_m = mean_wavelength_m(modulation);
+    const double phase_variance = image.variance_m2(at.row, at.col) / (mean_m * mean_m);
     for (std::size_t f = 1; f < frame.frequencies(); ++f) {
       const double b_per_a = modulation.frequencies_hz[f] / modulation.frequencies_hz[0];
       const double residual =
           frequency_residual_cycles(static_cast<float>(a_cycles), frame.phases[f](at.row, at.col),
                                     static_cast<float>(b_per_a));
+      const double variance = phase_variance * (1 + b_per_a * b_per_a);
       sum += std::min(sure_nats, residual * residual / (2 * variance));
     }
   }
@@ -157,14 +156,16 @@ bool allows(const Region& region, int change, const RangeImage& image) {
 }
 
 /// Gives a region the wrap counts of its surroundings, and the ranges of A.
-void correct(const Region& region, const Vote& vote, const Frame& frame, double wavelength_m,
-             RangeImage& image) {
+void correct(const Region& region, const Vote& vote, const Frame& frame,
+             const Modulation& modulation, RangeImage& image) {
+  const double wavelength_m = modulation.wavelength_m(0);
+  const auto noise_of_a = static_cast<float>(wavelength_m / mean_wavelength_m(modulation));
   for (const Pixel at : region.pixels) {
     const int count = image.wrap_count(at.row, at.col) + vote.wraps;
     image.wrap_count(at.row, at.col) = static_cast<std::uint8_t>(count);
     image.range_m(at.row, at.col) =
         static_cast<float>((frame.phases[0](at.row, at.col) + count) * wavelength_m);
-    image.sigma_m(at.row, at.col) *= std::numbers::sqrt2_v<float>;  // of A alone
+    image.sigma_m(at.row, at.col) *= noise_of_a;
     image.confidence(at.row, at.col) = vote.confidence;
   }
 }
@@ -192,7 +193,7 @@ void mend(const Region& region, const Frame& frame, const Modulation& modulation
       out.invalidate(at.row, at.col, InvalidReason::isolated_wrap);
     }
   } else if (theirs < own + sure_nats) {
-    correct(region, *surroundings, frame, wavelength_m, out);
+    correct(region, *surroundings, frame, modulation, out);
   }
 }
 

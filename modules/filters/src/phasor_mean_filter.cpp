@@ -32,9 +32,11 @@ constexpr double selection = 1.4;
 /// Chosen on random rooms of the seeds 21 to 32.
 constexpr double mixed_share = 0.005;
 
-/// The range noise of valid pixels as a fraction of λ_A; NaN for invalid pixels.
+/// The phase noise of valid pixels in cycles; NaN for invalid pixels. Where it is so large, ranges
+/// are not fused, but those of the frequency that was counted.
 ImageF noise_cycles(const RangeImage& image, const Modulation& modulation) {
-  return image.sigma_m / static_cast<float>(modulation.wavelength_m(0));
+  const std::size_t counted = counted_frequency(wavelengths_m(modulation));
+  return image.sigma_m / static_cast<float>(modulation.wavelength_m(counted));
 }
 
 /// The radius at which a window without edges reaches `enough_sigma_rad`, for the median noise of

@@ -21,8 +21,8 @@ std::vector<OptionField<PlayerOptions>> PlayerOptions::fields() {
   using P = PlayerOptions;
   return {
       {"layout", &P::layout, 0, 0, "",
-       "stacked: each image holds A above B, and a tag; alternating: images of A and B alternate, "
-       "without a tag"},
+       "stacked: each image holds those of all frequencies, and a tag; alternating: the images of "
+       "the frequencies arrive in turn, without a tag"},
       {"depth", &P::depth, 0, 0, "",
        "what depth images hold; radial: range along each pixel's ray; z: depth along the optical "
        "axis, OpenNI2's convention"},

@@ -18,8 +18,8 @@ inline constexpr const char* uri_scheme = "tofmap://";
 
 /// How a device plays the images of A and B: ImageLayout without the value that leaves it to a tag.
 enum class PlayedLayout {
-  stacked,      ///< each image holds A above B
-  alternating,  ///< the images of A and B alternate
+  stacked,      ///< each image holds those of all frequencies, one below the other
+  alternating,  ///< the images of the frequencies arrive in turn
 };
 
 std::span<const NamedValue<PlayedLayout>> named_values(PlayedLayout);

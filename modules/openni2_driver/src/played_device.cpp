@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <span>
 #include <utility>
 
 #include <tofmap/acquisition/openni2_properties.hpp>
@@ -40,17 +40,12 @@ PlayedDevice::PlayedDevice(const DeviceRequest& request, Events events)
   const CameraModel& camera = player_.sensor().camera;
   const std::size_t frequencies = player_.sensor().modulation.count();
   const bool is_stacked = request.player.layout == PlayedLayout::stacked;
-  if (!is_stacked && frequencies != 2) {
-    throw InputError("layout=alternating is for two frequencies, but there " +
-                     std::string(frequencies == 1 ? "is " : "are ") + std::to_string(frequencies) +
-                     "; leave it out");
-  }
   OniVideoMode mode;
   mode.resolutionX = camera.width_px;
   mode.resolutionY = is_stacked ? static_cast<int>(frequencies) * camera.height_px +
                                       tag_rows(camera.width_px, frequencies)
                                 : camera.height_px;
-  const double images_per_frame = is_stacked ? 1 : 2;
+  const double images_per_frame = is_stacked ? 1 : static_cast<double>(frequencies);
   mode.fps = std::max(1, static_cast<int>(std::lround(images_per_frame / player_.period_s())));
   for (const DepthFormat& format : depth_formats) {
     try {
@@ -131,6 +126,7 @@ OniBool PlayedDevice::isPropertySupported(int id) {
     case ONI_DEVICE_PROPERTY_DRIVER_VERSION:
     case openni2_property::frequency_a_hz:
     case openni2_property::frequency_b_hz:
+    case openni2_property::frequencies_hz:
     case openni2_property::layout:
     case openni2_property::frames_delivered:
     case openni2_property::images_read:
@@ -155,13 +151,11 @@ OniStatus PlayedDevice::getProperty(int id, void* data, int* size) {
     case openni2_property::frequency_b_hz:
       if (modulation.count() < 2) return ONI_STATUS_NOT_SUPPORTED;
       return answer(modulation.frequencies_hz[1], data, size);
+    case openni2_property::frequencies_hz:
+      return answer(std::span(modulation.frequencies_hz), data, size);
     case openni2_property::layout: {
       const std::string layout(name_of(request_.player.layout));
-      const auto needed = static_cast<int>(layout.size()) + 1;
-      if (*size < needed) return ONI_STATUS_BAD_PARAMETER;
-      std::memcpy(data, layout.c_str(), static_cast<std::size_t>(needed));
-      *size = needed;
-      return ONI_STATUS_OK;
+      return answer(std::span(layout.c_str(), layout.size() + 1), data, size);
     }
     case openni2_property::frames_delivered:
       return answer(frames_.load(), data, size);
@@ -316,12 +310,13 @@ void PlayedDevice::deliver(const Frame& frame) {
   const auto amplitude_of = [&](std::size_t f) {
     return frame.has_amplitude() ? encode_amplitude(frame.amplitudes[f]) : no_amplitude;
   };
-  deliver_images(codec().encode_range(frame.phases[0], modulation.wavelength_m(0)), amplitude_of(0),
-                 frame.timestamp_s);
-  const double b_timestamp_s = frame.timestamp_s + player_.period_s() / 2;
-  if (!wait_for_turn(b_timestamp_s)) return;
-  deliver_images(codec().encode_range(frame.phases[1], modulation.wavelength_m(1)), amplitude_of(1),
-                 b_timestamp_s);
+  for (std::size_t f = 0; f < modulation.count(); ++f) {
+    const double timestamp_s = frame.timestamp_s + player_.period_s() * static_cast<double>(f) /
+                                                       static_cast<double>(modulation.count());
+    if (f > 0 && !wait_for_turn(timestamp_s)) return;
+    deliver_images(codec().encode_range(frame.phases[f], modulation.wavelength_m(f)),
+                   amplitude_of(f), timestamp_s);
+  }
 }
 
 void PlayedDevice::play() {

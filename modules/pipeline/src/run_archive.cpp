@@ -82,7 +82,10 @@ void ErrorTally::serialize(Archive& archive, unsigned) {
   static_assert(std::is_trivially_copyable_v<CameraErrors>);
   std::size_t count = cameras_.size();
   archive& count;
-  if constexpr (Archive::is_loading::value) cameras_.resize(std::min(count, most_frequencies));
+  if constexpr (Archive::is_loading::value) {
+    if (count > most_frequencies) throw InputError("too many frequencies");
+    cameras_.resize(count);
+  }
   for (CameraErrors& camera : cameras_) {
     archive& boost::serialization::make_binary_object(&camera, sizeof camera);
   }

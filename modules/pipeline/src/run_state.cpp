@@ -18,7 +18,7 @@ namespace tofmap {
 namespace {
 
 // Raise the number after the comma whenever the stored data change between two releases.
-constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 22";
+constexpr const char* first_line = "tofmap map state " TOFMAP_VERSION ", 23";
 
 /// The camera, frequencies and options of a run, one per line. A run can only resume a run with the
 /// same lines.
@@ -31,7 +31,9 @@ std::vector<std::string> identity(const SensorModel& sensor, PipelineOptions opt
   for (const double coefficient : camera.distortion) text << ' ' << coefficient;
   text << '\n' << "frequencies:";
   for (const double frequency_hz : sensor.modulation.frequencies_hz) text << ' ' << frequency_hz;
-  text << " Hz\n"
+  text << " Hz, exposed at";
+  for (const double offset_s : sensor.modulation.exposure_offsets_s) text << ' ' << offset_s;
+  text << " s\n"
        << "largest range: " << sensor.max_range_m
        << " m, saturation: " << sensor.saturation_amplitude << '\n';
   OptionTable table;

@@ -5,7 +5,27 @@
 
 #include "systematic_errors.hpp"
 
+#include <tofmap/core/error.hpp>
+#include <tofmap/core/text.hpp>
+
 namespace tofmap {
+namespace {
+
+/// Throws UsageError if a list of errors does not have a value for each frequency.
+void check_lists(const SimulatorOptions& options) {
+  const std::size_t frequencies = modulation_of(options).count();
+  const auto check = [&](const char* name, const std::vector<double>& list) {
+    if (list.empty() || list.size() == frequencies) return;
+    throw UsageError(std::string("simulator.") + name + " has " + counted(list.size(), "value") +
+                     ", but there " + (frequencies == 1 ? "is " : "are ") +
+                     counted(frequencies, "frequency", "frequencies"));
+  };
+  check("offsets_m", options.offsets_m);
+  check("periodic_errors_m", options.periodic_errors_m);
+  check("amplitude_errors_m", options.amplitude_errors_m);
+}
+
+}  // namespace
 
 std::span<const NamedValue<PeoplePaths>> named_values(PeoplePaths) {
   static constexpr NamedValue<PeoplePaths> values[] = {
@@ -125,6 +145,7 @@ SimulatorOptions checked_options(SimulatorOptions options) {
       }
     }
   }
+  check_lists(options);
   check_systematic_errors(options);
   return options;
 }

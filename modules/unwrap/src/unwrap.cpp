@@ -4,11 +4,11 @@
 #include "tofmap/unwrap/unwrap.hpp"
 
 #include "common/counted_ranges.hpp"
+#include "common/frequency_order.hpp"
 #include "common/pixel_counts.hpp"
 #include "joint/joint.hpp"
 #include "jump/jump.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -31,15 +31,16 @@ ImageU8 wrapped_counts(const ImageU8& valid) {
   return (valid != 0).select(ImageU8::Zero(valid.rows(), valid.cols()), invalid_wrap_count);
 }
 
-/// The measurements of two frequencies alone; of one, if the frame has no second one.
-MeasuredFrame measured_pair(const MeasuredFrame& frame, const ComparedPair& pair) {
+/// The measurements of the frequencies `order` alone, with residuals to its first one.
+MeasuredFrame in_order(const MeasuredFrame& frame, const std::vector<std::size_t>& order) {
   MeasuredFrame out;
   out.valid = frame.valid;
   out.saturated = frame.saturated;
   out.ambient = frame.ambient;
   out.returns.index = frame.returns.index;
   out.returns.timestamp_s = frame.returns.timestamp_s;
-  const auto take = [&](std::size_t f) {
+  const std::size_t first = order.front();
+  for (const std::size_t f : order) {
     out.returns.phases.push_back(frame.returns.phases[f]);
     if (frame.returns.has_amplitude()) {
       out.returns.amplitudes.push_back(frame.returns.amplitudes[f]);
@@ -47,25 +48,11 @@ MeasuredFrame measured_pair(const MeasuredFrame& frame, const ComparedPair& pair
     out.noise.push_back(frame.noise[f]);
     out.sigma.cycles.push_back(frame.sigma.cycles[f]);
     out.errors.push_back(frame.errors[f]);
-    out.residual_sigma_m.push_back(frame.residual_sigma_m[f]);
-  };
-  take(pair.a);
-  if (pair.b < frame.returns.frequencies()) take(pair.b);
-  // Both residuals are those to the first frequency.
-  if (out.residual_sigma_m.size() == 2) {
-    out.residual_sigma_m[1] = std::hypot(out.residual_sigma_m[0], out.residual_sigma_m[1]);
+    // The residuals of both frequencies are those to the first one of the recording.
+    out.residual_sigma_m.push_back(
+        f == first ? 0 : std::hypot(frame.residual_sigma_m[first], frame.residual_sigma_m[f]));
   }
   return out;
-}
-
-/// The wrap counts of the first frequency at ranges that another one has found.
-void count_first(const ImageF& phase, double wavelength_m, RangeImage& image) {
-  for (Eigen::Index i = 0; i < phase.size(); ++i) {
-    if (image.reason.data()[i] != 0) continue;
-    const double cycles = image.range_m.data()[i] / wavelength_m - phase.data()[i];
-    image.wrap_count.data()[i] =
-        static_cast<std::uint8_t>(std::clamp(std::lround(cycles), 0L, invalid_wrap_count - 1L));
-  }
 }
 
 /// The standard deviation of the systematic error of a range, from those of all frequencies.
@@ -84,6 +71,7 @@ Unwrapper::Unwrapper(const SensorModel& sensor, const UnwrapOptions& options)
     : options_(options),
       method_(options.method),
       limits_(unwrap_limits(sensor, options.max_range_m)),
+      counting_order_(counting_order(limits_)),
       measurer_(sensor, options) {
   if (!finds_jumps(method_)) return;
   pair_ = compared_pair(options, sensor.modulation);
@@ -98,10 +86,34 @@ UnwrapResult Unwrapper::unwrap_pair(const MeasuredFrame& measured) {
   if (!has_others) {
     return unwrap_by_jumps(jump_estimator_, measured, pair_limits_, method, options_);
   }
-  UnwrapResult result = unwrap_by_jumps(jump_estimator_, measured_pair(measured, pair_),
-                                        pair_limits_, method, options_);
+  std::vector<std::size_t> order = {pair_.a};
+  if (pair_.b) order.push_back(*pair_.b);
+  UnwrapResult result =
+      unwrap_by_jumps(jump_estimator_, in_order(measured, order), pair_limits_, method, options_);
   if (pair_.a > 0) {
-    count_first(measured.returns.phases.front(), limits_.wavelength_m(), result.image);
+    count_at_ranges(measured.returns.phases.front(), limits_.wavelength_m(), result.image);
+  }
+  return result;
+}
+
+/// By `joint`. Where another frequency than the first one is counted, the wrap counts of the first
+/// one follow from the ranges.
+UnwrapResult Unwrapper::unwrap_counted(const MeasuredFrame& measured) {
+  if (counting_order_.front() == 0) {
+    return unwrap_jointly(count_estimator_, measured, limits_, options_);
+  }
+  UnwrapResult result = unwrap_jointly(count_estimator_, in_order(measured, counting_order_),
+                                       in_order(limits_, counting_order_), options_);
+  RangeImage& image = result.image;
+  const ImageF& phase = measured.returns.phases.front();
+  count_at_ranges(phase, limits_.wavelength_m(), image);
+  if (!options_.fuse_frequencies) {
+    // Pixels keep their reason and confidence.
+    const RangeImage by_first =
+        make_range_image(phase, measured.sigma.cycles.front(), image.wrap_count, image.confidence,
+                         limits_.wavelength_m());
+    image.range_m = by_first.range_m;
+    image.sigma_m = by_first.sigma_m;
   }
   return result;
 }
@@ -121,7 +133,7 @@ UnwrapResult Unwrapper::unwrap(const MeasuredFrame& measured) {
     switch (method_) {
       case UnwrapMethod::joint:
         if (is_relative) return unwrap_relative(measured);
-        return unwrap_jointly(count_estimator_, measured, limits_, options_);
+        return unwrap_counted(measured);
       case UnwrapMethod::jump:
       case UnwrapMethod::paper:
       case UnwrapMethod::single:

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <tofmap/core/error.hpp>
 #include <tofmap/core/modulation.hpp>
 
 namespace tofmap {
@@ -17,28 +18,14 @@ namespace {
 
 constexpr const char* description_format = "tofmap-correlation";
 constexpr int description_version = 1;
-constexpr std::size_t most_frequencies = 8;
 constexpr std::size_t most_step_angles = 64;
-
-/// As a sequence of tofmap allows them (docs/sequence-format.md).
-constexpr double lowest_hz = 1e4;
-constexpr double highest_hz = 1e11;
 
 std::vector<double> read_frequencies(const YamlSection& root) {
   constexpr const char* name = "frequencies_hz";
   auto frequencies = root.value<std::vector<double>>(name, "a list of frequencies in hertz");
-  if (frequencies.empty() || frequencies.size() > most_frequencies) {
-    root.fail(name, "has " + std::to_string(frequencies.size()) + " entries; allowed: 1 to " +
-                        std::to_string(most_frequencies));
-  }
-  for (const double hz : frequencies) {
-    if (!(hz >= lowest_hz && hz <= highest_hz)) {
-      root.fail(name, "has " + shortest(hz) +
-                          ", which is implausible for a time-of-flight camera; give hertz, as "
-                          "80.0e6");
-    }
-    if (std::ranges::count(frequencies, hz) > 1) root.fail(name, "has " + shortest(hz) + " twice");
-  }
+  Modulation modulation;
+  modulation.frequencies_hz = frequencies;
+  naming(root.file().string(), [&] { validate(modulation); });
   return frequencies;
 }
 

@@ -17,7 +17,7 @@ namespace {
 /// The range up to which two frequencies are unambiguous.
 double combined_range_m(const ComparedPair& pair, const Modulation& modulation) {
   Modulation both;
-  both.frequencies_hz = {modulation.frequencies_hz[pair.a], modulation.frequencies_hz[pair.b]};
+  both.frequencies_hz = {modulation.frequencies_hz[pair.a], modulation.frequencies_hz[*pair.b]};
   return combined_range_m(both, noise_tolerance_cycles);
 }
 
@@ -36,7 +36,7 @@ ComparedPair compared_pair(const UnwrapOptions& options, const Modulation& modul
   check(first, "pair_first", modulation);
   if (options.method == UnwrapMethod::single) {
     const std::size_t a = first > 0 ? static_cast<std::size_t>(first) - 1 : 0;
-    return {a, a + 1};
+    return {a, {}};
   }
   if (modulation.count() == 1) {
     throw UsageError(fmt::format(
@@ -68,8 +68,8 @@ ComparedPair compared_pair(const UnwrapOptions& options, const Modulation& modul
 
 PairLimits pair_limits(const ComparedPair& pair, const Modulation& modulation,
                        const UnwrapLimits& limits) {
-  PairLimits out = limits.pair(pair.a, pair.b);
-  if (limits.frequencies() <= 2 || pair.b >= limits.frequencies()) return out;
+  PairLimits out = limits.pair(pair.a, pair.b.value_or(limits.frequencies()));
+  if (limits.frequencies() <= 2 || !pair.b) return out;
   out.max_range_m = std::min(out.max_range_m, combined_range_m(pair, modulation));
   out.count_a = wrap_limit(out.wavelength_a_m, out.max_range_m);
   return out;
@@ -88,7 +88,7 @@ std::optional<std::string> pair_warning(const UnwrapOptions& options, const Sens
       "{} compares {:.6g} and {:.6g} MHz, which are unambiguous up to {:.2f} m only; surfaces "
       "beyond appear nearer by that much; joint uses all frequencies, up to {:.2f} m",
       name_of(options.method), 1e-6 * modulation.frequencies_hz[pair.a],
-      1e-6 * modulation.frequencies_hz[pair.b], pair_m, limits.max_range_m);
+      1e-6 * modulation.frequencies_hz[*pair.b], pair_m, limits.max_range_m);
 }
 
 }  // namespace tofmap

@@ -209,7 +209,8 @@ ResidualFit ErrorTracker::fit_motion(const SurfaceSamples& samples, const Exposu
                                      const std::optional<Expected>& expected, bool& is_late) const {
   const bool is_first = camera_errors_.frames == 0;
   if (expected && geometry.knows_camera()) {
-    ResidualFit fit(samples, pair, geometry, camera_errors_, expected_motion(expected->motion));
+    ResidualFit fit(samples, pair, geometry, camera_errors_,
+                    expected_motion(expected->motion, expected->share));
     fit.find_motion(expected->motion, is_first);
     is_late = expected->is_late;
     return fit;

@@ -100,6 +100,10 @@ MeasuredFrame measured_alone(const Frame& frame, double saturation_amplitude) {
 /// frequency tells is that of the others, too.
 constexpr double telling_support = 0.8;
 
+/// Largest time to an exposure, relative to that in which a motion was found, for which the motion
+/// tells that of the exposure. Its uncertainty is then that of a motion that was searched for.
+constexpr double largest_share = 3;
+
 /// Replaces the images of frequency `b` by those matched to the first frequency, and fills in the
 /// estimated errors of camera and frame.
 void take_matched(ErrorTracker::Tracked tracked, const PairLimits& limits, std::size_t b,
@@ -162,16 +166,17 @@ MeasuredFrame FrameMeasurer::measure(const Frame& frame) {
   for (const std::size_t b : order_) {
     ErrorTracker& tracker = trackers_[b - 1];
     std::optional<ErrorTracker::Expected> expected;
-    if (led) {
+    if (led && std::abs(relative_times_[b]) <= largest_share) {
       const double share = relative_times_[b];
       expected = {{share * led->motion.translation_m, share * led->motion.rotation_rad},
+                  share,
                   led->is_late};
     }
     take_matched(tracker.track(measured.returns, measured.sigma, b, expected), limits_.pair(0, b),
                  b, measured);
     const FrameErrors& errors = measured.errors[b];
     if (b == order_.front() && !relative_times_.empty() && errors.support >= telling_support) {
-      led = {errors.motion, tracker.is_late()};
+      led = {errors.motion, 1, tracker.is_late()};
     }
   }
   return measured;

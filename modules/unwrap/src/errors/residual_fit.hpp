@@ -6,6 +6,8 @@
 #include "errors/exposure_pair.hpp"
 #include "errors/residual_samples.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -28,9 +30,13 @@ inline const MotionPrior prompt_exposures{0.01, 0.006};
 /// For a hand-held camera whose exposures are up to a frame period apart.
 inline const MotionPrior late_exposures{0.06, 0.06};
 
-/// For an exposure between others whose motion is known: cameras move almost uniformly within a
-/// frame.
-inline MotionPrior expected_motion(const ExposureMotion& mean) { return {0.002, 0.001, mean}; }
+/// For an exposure near others whose motion is known: cameras move almost uniformly within a frame.
+/// `share` is the time to this exposure by the time in which the motion was found; beyond 1 its
+/// error grows with it.
+inline MotionPrior expected_motion(const ExposureMotion& mean, double share) {
+  const double growth = std::max(1.0, std::abs(share));
+  return {0.002 * growth, 0.001 * growth, mean};
+}
 
 /// Explains the inter-frequency residuals of samples by the motion between the exposures, by the
 /// known errors of the camera, and by a constant of this frame. The fit is iteratively reweighted

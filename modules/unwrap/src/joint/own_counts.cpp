@@ -91,7 +91,7 @@ TOFMAP_VECTOR_CLONES void fill_support(int pixels, const Unwrapped& from_, const
 }
 
 /// Finds certain pixels of a row, and replaces the odds against their wrap counts by those of their
-/// beliefs. `before` and `after` are the supports along the edges to opposite neighbours.
+/// beliefs. `left` to `below` are the supports along the edges to the neighbours.
 TOFMAP_VECTOR_CLONES void finish_row(int pixels, const float* left, const float* right,
                                      const float* above, const float* below,
                                      const float* odds_against, std::uint8_t* certain,

@@ -10,11 +10,11 @@
 
 namespace tofmap {
 
-/// How the images of A and B arrive from a device.
+/// How the images of all frequencies arrive from a device.
 enum class ImageLayout {
   by_tag,       ///< `auto`: as the tag of the images says; images without a tag are refused
-  stacked,      ///< each image holds A above B
-  alternating,  ///< the images of A and B alternate
+  stacked,      ///< each image holds those of all frequencies, one below the other
+  alternating,  ///< the images of the frequencies arrive in turn
 };
 
 /// What depth images hold.
@@ -23,11 +23,17 @@ enum class DepthKind {
   radial,  ///< range along the ray of each pixel
 };
 
-/// The first image of a device whose images of A and B alternate.
+/// The frequency of the first image of a device that delivers one frequency after another.
 enum class FirstImage {
   by_ranges,  ///< `auto`: found from the ranges, since none exceeds the wavelength of its image
   a,
   b,
+  c,
+  d,
+  e,
+  f,
+  g,
+  h,
 };
 
 std::span<const NamedValue<ImageLayout>> named_values(ImageLayout);
@@ -38,17 +44,20 @@ std::span<const NamedValue<FirstImage>> named_values(FirstImage);
 /// devices carry a tag that describes them; except for `timeout_s`, the options are for images
 /// without a tag.
 struct DeviceOptions {
-  /// How images of A and B arrive.
+  /// How the images of all frequencies arrive.
   ImageLayout layout = ImageLayout::by_tag;
   /// Modulation frequency of image A in Hz, 0 … 1e9. 0: the device is asked for it.
   double frequency_a_hz = 0;
   /// Modulation frequency of image B in Hz, 0 … 1e9. 0: the device is asked for it.
   double frequency_b_hz = 0;
+  /// One to eight modulation frequencies in Hz, 1 … 1e9, in the order of the images, in place of
+  /// those of A and B. Empty: those of A and B.
+  std::vector<double> frequencies_hz;
   /// What depth images without a tag hold.
   DepthKind depth = DepthKind::z;
   /// Largest range in the scene in metres, 0 … 65.5. 0: unknown.
   double max_range_m = 0;
-  /// The first image of an alternating device.
+  /// The frequency of the first image of an alternating device.
   FirstImage first = FirstImage::by_ranges;
   /// Time between two images of an alternating device in seconds, 0 … 10. 0: the inverse of the
   /// device's frame rate.

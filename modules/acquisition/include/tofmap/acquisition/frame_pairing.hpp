@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <optional>
 #include <set>
+#include <vector>
 
 #include <tofmap/core/image.hpp>
 
@@ -19,7 +21,7 @@ struct PairingCounts {
   int duplicates = 0;    ///< images that arrived a second time
   int out_of_order = 0;  ///< images that arrived after a later image of the same stream
   int unreadable = 0;    ///< images of a wrong size, or whose tag is damaged or does not match
-  int undecided = 0;     ///< images that could be of either frequency
+  int undecided = 0;     ///< images that could be of several frequencies
   int lost = 0;          ///< instants without any image, by gaps in the numbers or times
 
   /// Number of images that arrived but did not become part of a frame.
@@ -85,49 +87,48 @@ class StreamJoiner {
   Stream amplitude_;
 };
 
-/// One of the two images of a dual-frequency frame.
-enum class Half : std::uint8_t { a, b };
-
-/// The images of one dual-frequency frame of a device that delivers A and B alternately.
-struct AlternatingPair {
-  JoinedImages a;
-  JoinedImages b;
-};
-
-/// Pairs the images of a device that delivers A and B alternately: each A with the B that follows
-/// it.
+/// Makes frames of the images of a device that delivers one frequency after another: the image of
+/// the first frequency and those that follow it, one of each frequency.
 ///
-/// The number of periods since the previous image tells whether an image is A or B. The content
-/// overrules it: an image with ranges beyond the shorter wavelength is of the longer wavelength. At
-/// the beginning, unless Settings::first is set, and after a time difference that is not close to a
-/// whole number of periods, only the content can decide; until it does, images are dropped.
-class AlternatingPairer {
+/// The number of periods since the previous image tells of which frequency an image is. The content
+/// overrules it: an image with ranges beyond a wavelength is of a longer wavelength. At the
+/// beginning, unless Settings::first is set, and after a time difference that is not close to a
+/// whole number of periods, only the content can decide; until a single frequency is possible,
+/// images are dropped.
+class AlternatingJoiner {
  public:
   struct Settings {
-    double period_s = 0;        ///< time between two images; above 0
-    Half longer = Half::a;      ///< the image with the longer wavelength
-    std::optional<Half> first;  ///< the first image; empty: unknown, the content decides
+    double period_s = 0;                ///< time between two images; above 0
+    std::vector<double> wavelengths_m;  ///< of each frequency, in the order of the images
+    std::optional<std::size_t> first;   ///< the frequency of the first image, from 0; empty:
+                                        ///< unknown, the content decides
   };
 
-  /// Throws UsageError unless the period is above 0.
-  explicit AlternatingPairer(const Settings& settings);
+  /// Throws UsageError unless the period is above 0, there is a wavelength, and the first image is
+  /// of one of the frequencies.
+  explicit AlternatingJoiner(Settings settings);
 
-  /// Adds the images of the next instant. `reaches_beyond` is true if they contain ranges beyond
-  /// the shorter wavelength. Returns a pair if these images complete it, else nothing.
-  std::optional<AlternatingPair> add(JoinedImages images, bool reaches_beyond,
-                                     PairingCounts& counts);
+  /// Adds the images of the next instant. `beyond_m` is the longest of the wavelengths that their
+  /// ranges exceed, 0 if they exceed none. Returns the images of one frame, one JoinedImages for
+  /// each frequency, if these complete it, else nothing.
+  std::vector<JoinedImages> add(JoinedImages images, double beyond_m, PairingCounts& counts);
 
-  /// Drops and counts an image A that still waits for its B. Call at the end of the streams.
+  /// Drops and counts images that still wait for those of the other frequencies. Call at the end
+  /// of the streams.
   void finish(PairingCounts& counts);
 
  private:
-  std::optional<Half> half_of(double timestamp_s, bool reaches_beyond, PairingCounts& counts) const;
+  bool is_possible(std::size_t frequency, double beyond_m) const;
+  std::optional<std::size_t> expected(double timestamp_s, PairingCounts& counts) const;
+  std::optional<std::size_t> frequency_of(std::optional<std::size_t> expected,
+                                          double beyond_m) const;
   void drop_waiting(PairingCounts& counts);
 
   Settings settings_;
-  std::optional<JoinedImages> waiting_a_;
+  double longest_m_ = 0;
+  std::vector<JoinedImages> waiting_;  ///< of the first frequencies of a frame
   std::optional<double> last_timestamp_s_;
-  std::optional<Half> last_half_;
+  std::optional<std::size_t> last_frequency_;
 };
 
 }  // namespace tofmap

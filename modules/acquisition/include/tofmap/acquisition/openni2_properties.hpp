@@ -15,7 +15,7 @@ inline constexpr const char* usage_error = "tofmap, wrong use: ";
 inline constexpr int vendor = 0x746f0000;
 
 inline constexpr int frequency_a_hz = vendor + 1;    ///< device property, double, read only
-inline constexpr int frequency_b_hz = vendor + 2;    ///< device property, double, read only
+inline constexpr int frequency_b_hz = vendor + 2;    ///< the same, if there are two or more
 inline constexpr int layout = vendor + 3;            ///< device property, text, read only
 inline constexpr int frames_delivered = vendor + 4;  ///< device property, int, read only
 
@@ -24,6 +24,10 @@ inline constexpr int frames_delivered = vendor + 4;  ///< device property, int, 
 /// one was read on all running streams, but waits at most one second, after which OpenNI2 must have
 /// dropped the image. A device whose client never sets it waits 10 ms.
 inline constexpr int images_read = vendor + 5;
+
+/// Device property, one to eight values of type double, read only: all modulation frequencies in
+/// the order of the images. A client whose buffer is too small gets ONI_STATUS_BAD_PARAMETER.
+inline constexpr int frequencies_hz = vendor + 6;
 
 /// Device command, without data: the device disappears as if it had been unplugged.
 inline constexpr int unplug = vendor + 16;

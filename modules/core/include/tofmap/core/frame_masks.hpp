@@ -10,8 +10,8 @@ namespace tofmap {
 /// True where one of the frequencies has no return.
 Image<bool> missing_returns(const Frame& frame);
 
-/// True where the amplitude of one of the frequencies is at least `saturation_amplitude`. False
-/// everywhere without amplitudes.
+/// True where the amplitude of one of the frequencies is at least `saturation_amplitude`
+/// (SensorModel). False everywhere without amplitudes, or if it is 0.
 Image<bool> saturated_pixels(const Frame& frame, double saturation_amplitude);
 
 }  // namespace tofmap

@@ -54,9 +54,21 @@ std::vector<double> wavelengths_m(const Modulation& modulation);
 /// the wavelengths of all. A long wavelength tells which wrap of a shorter one is near.
 std::vector<std::size_t> others_by_wavelength(const std::vector<double>& wavelengths_m);
 
+/// The frequency, counted from 0, whose wrap counts are found first: those of the others, and of
+/// their ranges, follow. A phase tells the wraps of a wavelength up to twice as short; it cannot
+/// tell those of much shorter ones. Of two frequencies it is the first one, unless its wavelength
+/// is more than twice the other's; of more, in any order, the one with the longest wavelength that
+/// is at most twice the shortest, since longer ones need fewer wrap counts.
+std::size_t counted_frequency(const std::vector<double>& wavelengths_m);
+
 /// The shortest and the longest wavelength.
 double shortest_wavelength_m(const Modulation& modulation);
 double longest_wavelength_m(const Modulation& modulation);
+
+/// The wavelength that relates noise of the weighted mean of all ranges to phase noise, if all
+/// phases have the same noise s in cycles: the mean has a standard deviation of s times this
+/// wavelength, (Σ 1 / λ²)^−½.
+double mean_wavelength_m(const Modulation& modulation);
 
 /// Throws InputError if there is no frequency or more than most_frequencies, if a frequency is not
 /// a positive number, if it is implausible (below 10 kHz or above 100 GHz, which suggests a wrong

@@ -54,4 +54,8 @@ std::optional<std::string> offset_warning(const ResidualSurvey& residual,
 /// says. Throws UsageError as unwrap_limits() does.
 std::optional<std::string> frequency_warning(const SensorModel& sensor, double max_range_m = 0);
 
+/// A warning if the first frequency, relative to which errors are estimated, has a wavelength more
+/// than twice the shortest. Otherwise empty.
+std::optional<std::string> order_warning(const Modulation& modulation);
+
 }  // namespace tofmap

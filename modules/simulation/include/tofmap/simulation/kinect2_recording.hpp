@@ -44,9 +44,9 @@ kinect2::Measurements kinect2_measurements(const SimulatedFrame& simulated,
 /// 0.125 ms.
 ///
 /// The P0 tables are synthetic_p0_tables(errors_seed). `keep_going(done, total)` is called before
-/// each frame. If it returns false, or if the simulator is stopped, the frames so far remain as a
-/// complete recording. Returns the number of frames written. Throws UsageError as
-/// check_fits_packets() does, and InputError if a file cannot be written.
+/// each frame. If it returns false, or if the simulator is stopped, the frames so far remain as an
+/// interrupted recording, which is imported with a warning. Returns the number of frames written.
+/// Throws UsageError as check_fits_packets() does, and InputError if a file cannot be written.
 int simulate_kinect2(const Simulator& simulator, int errors_seed,
                      const std::filesystem::path& folder,
                      const std::function<bool(int done, int total)>& keep_going = {});

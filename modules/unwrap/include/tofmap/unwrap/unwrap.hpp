@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <vector>
 
 #include <tofmap/core/frame.hpp>
 #include <tofmap/unwrap/common/compared_pair.hpp>
@@ -36,8 +38,7 @@ namespace tofmap {
 ///   no_return   no return at one of the frequencies. These pixels take no part in any method, so
 ///               that the methods can be compared.
 ///   saturated   the amplitude at one of the frequencies reaches the sensor's saturation_amplitude.
-///   These pixels
-///               are otherwise treated like those without a return.
+///               These pixels are otherwise treated like those without a return.
 ///   ambiguous   of `joint` alone: the runner-up is at least a tenth as probable as the chosen wrap
 ///               count, and the frequencies cannot tell the two apart.
 ///
@@ -71,10 +72,12 @@ class Unwrapper {
  private:
   UnwrapResult unwrap_pair(const MeasuredFrame& measured);
   UnwrapResult unwrap_relative(const MeasuredFrame& measured);
+  UnwrapResult unwrap_counted(const MeasuredFrame& measured);
 
   UnwrapOptions options_;
   UnwrapMethod method_;
   UnwrapLimits limits_;
+  std::vector<std::size_t> counting_order_;
   ComparedPair pair_;
   PairLimits pair_limits_;  ///< of methods that find jumps
   FrameMeasurer measurer_;

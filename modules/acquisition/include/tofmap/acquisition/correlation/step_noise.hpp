@@ -25,7 +25,7 @@ struct StepNoise {
   }
 };
 
-/// Probability with which a pixel that follows the model is flagged as inconsistent. About 10
+/// Probability with which a pixel that follows the model is flagged as inconsistent. About 100
 /// pixels of a megapixel image are lost by it.
 inline constexpr double inconsistent_by_chance = 1e-4;
 

@@ -13,10 +13,10 @@
 namespace tofmap {
 
 /// The two frequencies, A and B, that `jump` and `paper` compare, counted from 0. `single` uses A
-/// alone.
+/// alone and has no B.
 struct ComparedPair {
   std::size_t a = 0;
-  std::size_t b = 1;
+  std::optional<std::size_t> b = 1;
 };
 
 /// The pair that the options name. What they leave open is chosen so that the two frequencies are

@@ -61,6 +61,7 @@ class ErrorTracker {
   /// The motion between A and B as another frequency tells it.
   struct Expected {
     ExposureMotion motion;
+    double share = 1;      ///< time between A and B by that between A and the other frequency
     bool is_late = false;  ///< whether exposures are late, so that the B of the frame before helps
   };
 
