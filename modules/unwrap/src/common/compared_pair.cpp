@@ -4,9 +4,9 @@
 #include "tofmap/unwrap/common/compared_pair.hpp"
 
 #include <algorithm>
+#include <iomanip>
+#include <sstream>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/text.hpp>
@@ -24,8 +24,9 @@ double combined_range_m(const ComparedPair& pair, const Modulation& modulation) 
 /// Throws UsageError unless an option that names a frequency, counted from 1, names one of these.
 void check(int named, const char* option, const Modulation& modulation) {
   if (named <= static_cast<int>(modulation.count())) return;
-  throw UsageError(fmt::format("unwrap.{} is {}, but the recording has {}", option, named,
-                               counted(modulation.count(), "frequency", "frequencies")));
+  throw UsageError(std::string("unwrap.") + option + " is " + std::to_string(named) +
+                   ", but the recording has " +
+                   counted(modulation.count(), "frequency", "frequencies"));
 }
 
 }  // namespace
@@ -39,10 +40,8 @@ ComparedPair compared_pair(const UnwrapOptions& options, const Modulation& modul
     return {a, {}};
   }
   if (modulation.count() == 1) {
-    throw UsageError(fmt::format(
-        "unwrap.method: {} compares two frequencies, but the recording has one; use joint or "
-        "single",
-        name_of(options.method)));
+    throw UsageError("unwrap.method: " + std::string(name_of(options.method)) +
+                     " compares two frequencies, but the recording has one; use joint or single");
   }
   check(second, "pair_second", modulation);
   if (first > 0 && first == second) {
@@ -84,11 +83,13 @@ std::optional<std::string> pair_warning(const UnwrapOptions& options, const Sens
   const ComparedPair pair = compared_pair(options, modulation);
   const double pair_m = pair_limits(pair, modulation, limits).max_range_m;
   if (pair_m >= limits.max_range_m) return std::nullopt;
-  return fmt::format(
-      "{} compares {:.6g} and {:.6g} MHz, which are unambiguous up to {:.2f} m only; surfaces "
-      "beyond appear nearer by that much; joint uses all frequencies, up to {:.2f} m",
-      name_of(options.method), 1e-6 * modulation.frequencies_hz[pair.a],
-      1e-6 * modulation.frequencies_hz[*pair.b], pair_m, limits.max_range_m);
+  std::ostringstream text;
+  text << name_of(options.method) << " compares " << 1e-6 * modulation.frequencies_hz[pair.a]
+       << " and " << 1e-6 * modulation.frequencies_hz[*pair.b]
+       << " MHz, which are unambiguous up to " << std::fixed << std::setprecision(2) << pair_m
+       << " m only; surfaces beyond appear nearer by that much; joint uses all frequencies, up to "
+       << limits.max_range_m << " m";
+  return text.str();
 }
 
 }  // namespace tofmap
