@@ -102,7 +102,7 @@ constexpr double telling_support = 0.8;
 
 /// Largest time to an exposure, relative to that in which a motion was found, for which the motion
 /// tells that of the exposure. Its uncertainty is then that of a motion that was searched for.
-constexpr double largest_share = 3;
+constexpr double farthest_share = 3;
 
 /// Replaces the images of frequency `b` by those matched to the first frequency, and fills in the
 /// estimated errors of camera and frame.
@@ -166,7 +166,7 @@ MeasuredFrame FrameMeasurer::measure(const Frame& frame) {
   for (const std::size_t b : order_) {
     ErrorTracker& tracker = trackers_[b - 1];
     std::optional<ErrorTracker::Expected> expected;
-    if (led && std::abs(relative_times_[b]) <= largest_share) {
+    if (led && std::abs(relative_times_[b]) <= farthest_share) {
       const double share = relative_times_[b];
       expected = {{share * led->motion.translation_m, share * led->motion.rotation_rad},
                   share,
