@@ -191,7 +191,7 @@ CameraFit fit_samples(const RecordingSamples& collected, CalibrationReference re
   double least_ratio = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < fit.others.size(); ++i) {
     const std::size_t b = fit.others[i];
-    const Modulation pair = frequency_pair(sensor, 0, b).modulation;
+    const Modulation pair = with_frequencies(sensor, {0, b}).modulation;
     fit.fits.push_back(naming(source.folder().string(), [&] {
       return reference == CalibrationReference::residual
                  ? fit_to_residual(collected.samples[i], pair, options)

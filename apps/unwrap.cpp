@@ -210,9 +210,9 @@ void say_what_is_missing(const UnwrappedRecording& result) {
   std::fprintf(
       stderr,
       "tofmap: %s in %s had ranges outside the 0.001 m to 65.535 m that images can store; they are "
-      "invalid (out_of_range). Surfaces near 0 m, or near the range up to which the frequencies "
-      "are "
-      "unambiguous, have such ranges; unwrap.max_range_m tells how far the scene reaches\n",
+      "invalid (out_of_range). Surfaces near 0 m, or near the range up to which the "
+      "frequencies are unambiguous, have such ranges; unwrap.max_range_m tells how far the scene "
+      "reaches\n",
       counted(static_cast<std::size_t>(result.out_of_range), "pixel").c_str(),
       counted(static_cast<std::size_t>(result.frames_out_of_range), "frame").c_str());
 }

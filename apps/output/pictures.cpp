@@ -31,8 +31,8 @@ Picture jump_stages_picture(const Frame& recorded, const SensorModel& sensor,
   const JumpMethod method = jump_method(options.method);
   const ComparedPair pair = compared_pair(options, sensor.modulation);
   // `single` has no second frequency.
-  const std::size_t b = method.has_frequency_term ? pair.b.value_or(pair.a) : pair.a;
-  const Frame frame = frequency_pair(recorded, pair.a, b);
+  const std::size_t b = pair.b.value_or(pair.a);
+  const Frame frame = with_frequencies(recorded, {pair.a, b});
   JumpEstimator estimator;
   const JumpEstimate& jumps = estimator.estimate(
       frame, PhaseSigma(frame, estimate_phase_noise(frame)),

@@ -137,7 +137,7 @@ void compare(const Place& place, bool has_errors, int frames, int pairs) {
   const int total = *simulator.frame_count();
   UnwrapOptions unwrap_options;
   Unwrapper unwrapper(simulator.sensor(), unwrap_options);
-  const SensorModel pair_sensor = frequency_pair(simulator.sensor(), 0, 1);
+  const SensorModel pair_sensor = with_frequencies(simulator.sensor(), {0, 1});
   UnwrapOptions pair_options;
   pair_options.max_range_m = combined_range_m(simulator.sensor().modulation, 0.05);
   Unwrapper pair_unwrapper(pair_sensor, pair_options);
@@ -166,7 +166,7 @@ void compare(const Place& place, bool has_errors, int frames, int pairs) {
     joint.milliseconds += timed_ms([&] { result = unwrapper.unwrap(measured[i]); });
     joint.tally.add(result.image.range_m, result.image.confidence, truth_m[i]);
     if (pairs > 0) {
-      const Frame pair = frequency_pair(measured[i], 0, 1);
+      const Frame pair = with_frequencies(measured[i], {0, 1});
       pair_ms += timed_ms([&] { pair_unwrapper.unwrap(pair); });
     }
     const peers::ThreePhases phases = three_phases(measured[i]);

@@ -103,18 +103,6 @@ INSTANTIATE_TEST_SUITE_P(Frequencies, EveryOrder,
                                          std::vector<double>{16e6, 80e6, 120e6},
                                          std::vector<double>{16e6, 120e6, 80e6}));
 
-/// The frequencies of a frame in another order.
-Frame reordered(const Frame& frame, const std::vector<std::size_t>& order) {
-  Frame out;
-  out.index = frame.index;
-  out.timestamp_s = frame.timestamp_s;
-  for (const std::size_t f : order) {
-    out.phases.push_back(frame.phases[f]);
-    out.amplitudes.push_back(frame.amplitudes[f]);
-  }
-  return out;
-}
-
 TEST(ManyFrequencies, GiveTheSameRangesInEveryOrder) {
   SimulatorOptions options = small_camera({80e6, 16e6, 120e6});
   options.range_noise_m = 0.05;
@@ -127,12 +115,8 @@ TEST(ManyFrequencies, GiveTheSameRangesInEveryOrder) {
     const RangeImage wanted = unwrap(simulated.frame, simulator.sensor(), by_noise_alone).image;
     std::vector<std::size_t> order = {0, 1, 2};
     while (std::ranges::next_permutation(order).found) {
-      SensorModel sensor = simulator.sensor();
-      for (std::size_t f = 0; f < 3; ++f) {
-        sensor.modulation.frequencies_hz[f] =
-            simulator.sensor().modulation.frequencies_hz[order[f]];
-      }
-      const Frame frame = reordered(simulated.frame, order);
+      const SensorModel sensor = with_frequencies(simulator.sensor(), order);
+      const Frame frame = with_frequencies(simulated.frame, order);
       const RangeImage found = unwrap(frame, sensor, by_noise_alone).image;
       for (Eigen::Index i = 0; i < found.range_m.size(); ++i) {
         ASSERT_EQ(found.reason.data()[i], wanted.reason.data()[i]);
@@ -191,8 +175,8 @@ TEST(ManyFrequencies, AreBetterThanTwoOfThem) {
   };
   const double of_three = wrong(simulated.frame, simulator.sensor());
   // 80 and 16 MHz alone are ambiguous beyond 9 m, 80 and 120 MHz beyond 4 m.
-  const double of_two =
-      wrong(frequency_pair(simulated.frame, 2, 1), frequency_pair(simulator.sensor(), 2, 1));
+  const double of_two = wrong(with_frequencies(simulated.frame, {2, 1}),
+                              with_frequencies(simulator.sensor(), {2, 1}));
   EXPECT_LT(of_three, of_two);
 }
 

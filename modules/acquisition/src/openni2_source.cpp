@@ -171,7 +171,11 @@ void OpenNi2Source::Impl::take_as_configured(const RawImage& image) {
                      "device.layout to stacked or alternating (docs/cameras.md)");
   }
   SensorModel sensor = untagged_sensor(uri_, device_, image, settings_);
-  const bool is_stacked = options.layout == ImageLayout::stacked;
+  const RangeScale scale{image.unit_m, options.depth == DepthKind::z};
+  if (options.layout == ImageLayout::stacked) {
+    begin(sensor, scale, ImageKey::time);
+    return;
+  }
   AlternatingJoiner::Settings joining;
   joining.period_s = options.period_s > 0 ? options.period_s : 1.0 / device_.frame_rate_hz();
   joining.wavelengths_m = wavelengths_m(sensor.modulation);
@@ -180,13 +184,13 @@ void OpenNi2Source::Impl::take_as_configured(const RawImage& image) {
         static_cast<std::size_t>(options.first) - static_cast<std::size_t>(FirstImage::a);
   }
   // Version 1 of the sequence format, which two frequencies are written in, has no exposure times.
-  if (!is_stacked && sensor.modulation.count() != 2) {
+  if (sensor.modulation.count() != 2) {
     for (std::size_t f = 0; f < sensor.modulation.count(); ++f) {
       sensor.modulation.exposure_offsets_s.push_back(static_cast<double>(f) * joining.period_s);
     }
   }
-  begin(sensor, {image.unit_m, options.depth == DepthKind::z}, ImageKey::time);
-  if (!is_stacked) alternating_.emplace(std::move(joining));
+  begin(sensor, scale, ImageKey::time);
+  alternating_.emplace(std::move(joining));
 }
 
 std::optional<RawImage> OpenNi2Source::Impl::wait_for_image() {

@@ -16,23 +16,28 @@ Frame blank_frame(std::size_t frequencies) {
   return frame;
 }
 
-Frame frequency_pair(const Frame& frame, std::size_t a, std::size_t b) {
-  Frame pair;
-  pair.index = frame.index;
-  pair.timestamp_s = frame.timestamp_s;
-  pair.phases = {frame.phases[a], frame.phases[b]};
-  if (frame.has_amplitude()) pair.amplitudes = {frame.amplitudes[a], frame.amplitudes[b]};
-  return pair;
+Frame with_frequencies(const Frame& frame, const std::vector<std::size_t>& frequencies) {
+  Frame out;
+  out.index = frame.index;
+  out.timestamp_s = frame.timestamp_s;
+  for (const std::size_t f : frequencies) {
+    out.phases.push_back(frame.phases[f]);
+    if (frame.has_amplitude()) out.amplitudes.push_back(frame.amplitudes[f]);
+  }
+  return out;
 }
 
-SensorModel frequency_pair(const SensorModel& sensor, std::size_t a, std::size_t b) {
-  SensorModel pair = sensor;
+SensorModel with_frequencies(const SensorModel& sensor,
+                             const std::vector<std::size_t>& frequencies) {
+  SensorModel out = sensor;
+  out.modulation = {};
   const Modulation& all = sensor.modulation;
-  pair.modulation.frequencies_hz = {all.frequencies_hz[a], all.frequencies_hz[b]};
-  if (!all.exposure_offsets_s.empty()) {
-    pair.modulation.exposure_offsets_s = {all.exposure_offsets_s[a], all.exposure_offsets_s[b]};
+  for (const std::size_t f : frequencies) {
+    out.modulation.frequencies_hz.push_back(all.frequencies_hz[f]);
+    if (all.exposure_offsets_s.empty()) continue;
+    out.modulation.exposure_offsets_s.push_back(all.exposure_offsets_s[f]);
   }
-  return pair;
+  return out;
 }
 
 bool is_without_return(const Frame& frame) { return missing_returns(frame).all(); }

@@ -67,10 +67,7 @@ std::vector<std::size_t> others_by_wavelength(const std::vector<double>& wavelen
 }
 
 std::size_t counted_frequency(const std::vector<double>& wavelengths_m) {
-  // At a ratio of 2, noise of 0.08 cycles, at which a phase is hardly of use, is a sixth of the
-  // shorter wavelength.
-  constexpr double largest_ratio = 2;
-  const double longest_m = largest_ratio * std::ranges::min(wavelengths_m);
+  const double longest_m = telling_wavelength_ratio * std::ranges::min(wavelengths_m);
   if (wavelengths_m.size() <= 2 && wavelengths_m.front() <= longest_m) return 0;
   std::size_t best = 0;
   double best_m = 0;

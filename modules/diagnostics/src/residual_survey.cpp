@@ -205,7 +205,7 @@ std::optional<ResidualSurvey> survey_pair(const std::vector<Frame>& frames,
                                           const SensorModel& sensor, std::size_t b) {
   const std::vector<PhasePair> pairs = phase_pairs(frames, b);
   if (pairs.size() < least_pixels) return std::nullopt;
-  const SensorModel of_pair = frequency_pair(sensor, 0, b);
+  const SensorModel of_pair = with_frequencies(sensor, {0, b});
   const Agreement as_is = agreement(pairs, of_pair);
   if (as_is.offsets_m.empty()) return std::nullopt;
   ResidualSurvey survey;
@@ -213,7 +213,7 @@ std::optional<ResidualSurvey> survey_pair(const std::vector<Frame>& frames,
   survey.offset_m = as_is.offsets_m.front();
   survey.other_offsets_m.assign(as_is.offsets_m.begin() + 1, as_is.offsets_m.end());
   survey.spread_m = as_is.spread_m;
-  survey.swapped_spread_m = agreement(pairs, frequency_pair(sensor, b, 0)).spread_m;
+  survey.swapped_spread_m = agreement(pairs, with_frequencies(sensor, {b, 0})).spread_m;
   survey.ambiguity_m = Differences(of_pair).ambiguity_m();
   return survey;
 }
@@ -227,7 +227,7 @@ double relative_spread(const std::vector<Frame>& frames, const SensorModel& sens
                        std::size_t c) {
   const std::vector<PhasePair> pairs = phase_pairs(frames, b);
   if (pairs.size() < least_pixels) return std::numeric_limits<double>::infinity();
-  const SensorModel of_pair = frequency_pair(sensor, 0, c);
+  const SensorModel of_pair = with_frequencies(sensor, {0, c});
   const Agreement found = agreement(pairs, of_pair);
   if (found.offsets_m.empty()) return std::numeric_limits<double>::infinity();
   return found.spread_m / Differences(of_pair).ambiguity_m();
@@ -336,14 +336,12 @@ std::optional<std::string> frequency_warning(const SensorModel& sensor, double m
 }
 
 std::optional<std::string> order_warning(const Modulation& modulation) {
-  constexpr double largest_ratio = 2;
   const double first_m = modulation.wavelength_m(0);
-  if (first_m <= largest_ratio * shortest_wavelength_m(modulation)) return std::nullopt;
+  if (first_m <= telling_wavelength_ratio * shortest_wavelength_m(modulation)) return std::nullopt;
   return fmt::format(
-      "the wavelength of the first frequency, {:.2f} m, is more than twice the shortest: motion "
-      "and "
-      "systematic errors are estimated relative to the first frequency, and less precisely than "
-      "with a shorter wavelength first",
+      "the wavelength of the first frequency, {:.2f} m, is more than twice the shortest: "
+      "motion and systematic errors are estimated relative to the first frequency, and less "
+      "precisely than with a shorter wavelength first",
       first_m);
 }
 

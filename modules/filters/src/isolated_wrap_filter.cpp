@@ -128,12 +128,11 @@ constexpr double sure_nats = 4.5;
 /// over its pixels of half the squared residual over its variance (docs/filters.md, equation 1).
 double residual_cost(const Region& region, int change, const RangeImage& image, const Frame& frame,
                      const Modulation& modulation) {
+  const double mean_m = mean_wavelength_m(modulation);  // range_m is the mean of all frequencies
   double sum = 0;
   for (const Pixel at : region.pixels) {
     const double a_cycles =
         frame.phases[0](at.row, at.col) + image.wrap_count(at.row, at.col) + change;
-    // range_m is the mean of the ranges of all frequencies.
-    const double mean_m = mean_wavelength_m(modulation);
     const double phase_variance = image.variance_m2(at.row, at.col) / (mean_m * mean_m);
     for (std::size_t f = 1; f < frame.frequencies(); ++f) {
       const double b_per_a = modulation.frequencies_hz[f] / modulation.frequencies_hz[0];

@@ -37,14 +37,9 @@ MeasuredFrame in_order(const MeasuredFrame& frame, const std::vector<std::size_t
   out.valid = frame.valid;
   out.saturated = frame.saturated;
   out.ambient = frame.ambient;
-  out.returns.index = frame.returns.index;
-  out.returns.timestamp_s = frame.returns.timestamp_s;
+  out.returns = with_frequencies(frame.returns, order);
   const std::size_t first = order.front();
   for (const std::size_t f : order) {
-    out.returns.phases.push_back(frame.returns.phases[f]);
-    if (frame.returns.has_amplitude()) {
-      out.returns.amplitudes.push_back(frame.returns.amplitudes[f]);
-    }
     out.noise.push_back(frame.noise[f]);
     out.sigma.cycles.push_back(frame.sigma.cycles[f]);
     out.errors.push_back(frame.errors[f]);

@@ -48,11 +48,12 @@ struct Frame {
 /// A frame of empty images (0 x 0) at this number of frequencies.
 Frame blank_frame(std::size_t frequencies);
 
-/// The images of the frequencies `a` and `b` alone, which are counted from 0.
-Frame frequency_pair(const Frame& frame, std::size_t a, std::size_t b);
+/// The images of these frequencies alone, which are counted from 0, in this order.
+Frame with_frequencies(const Frame& frame, const std::vector<std::size_t>& frequencies);
 
-/// The sensor as if it had the frequencies `a` and `b` alone.
-SensorModel frequency_pair(const SensorModel& sensor, std::size_t a, std::size_t b);
+/// The sensor as if it had these frequencies alone, in this order.
+SensorModel with_frequencies(const SensorModel& sensor,
+                             const std::vector<std::size_t>& frequencies);
 
 /// Whether no pixel has a return at all frequencies.
 bool is_without_return(const Frame& frame);

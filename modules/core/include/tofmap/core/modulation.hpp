@@ -54,11 +54,16 @@ std::vector<double> wavelengths_m(const Modulation& modulation);
 /// the wavelengths of all. A long wavelength tells which wrap of a shorter one is near.
 std::vector<std::size_t> others_by_wavelength(const std::vector<double>& wavelengths_m);
 
-/// The frequency, counted from 0, whose wrap counts are found first: those of the others, and of
-/// their ranges, follow. A phase tells the wraps of a wavelength up to twice as short; it cannot
-/// tell those of much shorter ones. Of two frequencies it is the first one, unless its wavelength
-/// is more than twice the other's; of more, in any order, the one with the longest wavelength that
-/// is at most twice the shortest, since longer ones need fewer wrap counts.
+/// Largest ratio of two wavelengths at which the phase of the longer one tells the wraps of the
+/// shorter one: noise of 0.08 cycles, at which a phase is hardly of use, is then a sixth of the
+/// shorter wavelength.
+inline constexpr double telling_wavelength_ratio = 2;
+
+/// The frequency, counted from 0, whose wrap counts are found first; those of the others follow
+/// from the ranges. Of two frequencies it is the first one, unless its wavelength exceeds the
+/// other's by more than telling_wavelength_ratio. Of more, in any order, it is the one with the
+/// longest wavelength that does not exceed the shortest by more, since longer ones need fewer wrap
+/// counts.
 std::size_t counted_frequency(const std::vector<double>& wavelengths_m);
 
 /// The shortest and the longest wavelength.
