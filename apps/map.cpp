@@ -11,6 +11,7 @@
 #include "output/coverage.hpp"
 #include "output/frame_report.hpp"
 #include "output/json_text.hpp"
+#include "output/map_file.hpp"
 #include "output/output_folder.hpp"
 #include "output/pictures.hpp"
 #include "output/result_addition.hpp"
@@ -36,7 +37,7 @@
 #include <tofmap/mapping/mesh_extraction.hpp>
 #include <tofmap/pipeline/frame_sample.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
-#include <tofmap/pipeline/run_state.hpp>
+#include <tofmap/pipeline/run_store.hpp>
 
 namespace tofmap::app {
 namespace {
@@ -45,6 +46,7 @@ struct MapArguments {
   RecordingArguments recording;
   std::filesystem::path out;
   std::string method;
+  std::filesystem::path onto;
   bool resume = false;
   bool pcd = false;
   bool view = false;
@@ -67,6 +69,15 @@ void check_result(const RoomMap& map) {
   }
 }
 
+/// Throws InputError if no frame was found in the map that is extended.
+void refuse_another_place(const RoomMap& map) {
+  if (!map.localised || *map.localised > 0) return;
+  throw InputError(
+      "the recording shows another place than the map, or places that cannot be recognised: " +
+      counted(*map.localised, "frame") + " of " + std::to_string(map.frames.size()) +
+      " could be localised in it; the map stays as it was");
+}
+
 /// What is needed to write the result of a run besides the map itself.
 struct MapOutput {
   const MapArguments& arguments;
@@ -78,7 +89,6 @@ struct MapOutput {
   std::vector<std::string> warnings = {};   ///< about the recording, then about the map
   nlohmann::ordered_json acquisition = {};  ///< report of a device; null for a recording
   std::string losses = {};                  ///< MapInput::losses()
-  std::string state = {};                   ///< to resume an interrupted run from; else empty
   Failures failures = {};                   ///< failures of optional parts
 };
 
@@ -163,8 +173,8 @@ void print_summary(const RoomMap& map, const std::filesystem::path& folder) {
   std::printf("map: %s%s\n", (folder / "map.ply").c_str(), has_mesh ? ", mesh beside it" : "");
 }
 
-/// Adds the state of an interrupted run, consistency measures, mesh and map.pcd. A failure of one
-/// of them is stored, and the others are still added.
+/// Adds consistency measures, mesh and map.pcd. A failure of one of them is stored, and the others
+/// are still added.
 void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput& output) {
   const auto add_file = [&](const char* name, const auto& write) {
     const std::filesystem::path file = out.path() / name;
@@ -173,10 +183,6 @@ void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput&
       std::filesystem::remove(file, ignored);
     }
   };
-  if (!output.state.empty()) {
-    add_file(run_state_file, [&](const auto&) { out.write_text(run_state_file, output.state); });
-    output.state = {};  // it may be large
-  }
   output.failures.attempt("consistency", [&] {
     finished.consistency = consistency_of(finished.map, output.sample, output.sensor,
                                           output.options.pipeline.unwrap.method);
@@ -190,10 +196,12 @@ void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput&
 }
 
 /// Finishes the map, writes the result and moves it into place. Sets the warnings.
-FinishedMap finish_map(MapRun& run, OutputFolder& out, MapOutput& output) {
+FinishedMap finish_map(MapRun& run, MapFile& file, OutputFolder& out, MapOutput& output) {
   FinishedMap finished{.map = run.finish(), .consistency = unknown_consistency()};
   check_result(finished.map);
+  refuse_another_place(finished.map);
   write_map_and_path(out, finished.map);
+  output.failures.attempt(map_file_name, [&] { file.complete(run, finished.map.interrupted); });
   add_what_follows(out, finished, output);
   output.warnings = all_warnings(output.survey, finished.map, finished.consistency);
   if (!output.losses.empty()) output.warnings.push_back("not mapped: " + output.losses);
@@ -279,34 +287,43 @@ std::string status_line(const MapRun& run, const MapInput& input) {
   if (run.frames().empty()) return "";
   const std::string losses = input.losses();
   return std::string(name_of(run.frames().back().tracking.status)) + ", " +
-         std::to_string(run.mapper().voxel_count()) + " voxels" +
+         std::to_string(voxel_count(run.mapper().content())) + " voxels" +
          (losses.empty() ? "" : ", " + losses);
 }
 
 /// Maps frames until the input ends or the user interrupts. Some of the frames are kept in the
-/// sample.
-void map_frames(MapRun& run, MapInput& input, FrameSample& sample, bool quiet, LiveView* view) {
-  Progress progress("mapping frame", input.frames().frame_count(), quiet);
+/// sample of the output, and the run is stored from time to time.
+void map_frames(MapRun& run, MapInput& input, MapFile& file, MapOutput& output, LiveView* view) {
+  Progress progress("mapping frame", input.frames().frame_count(), output.arguments.common.quiet);
   MapHooks hooks;
   hooks.keep_going = [&](int done) {
+    file.store_if_due(run, output.sample, input, output.options.pipeline);
     const std::string status = status_line(run, input);
     progress.show(done, status);
     if (view) view->update(run, std::to_string(done) + " frames, " + status);
     return !is_interrupted();
   };
   hooks.on_frame = [&](const Frame& frame, const PreparedFrame& prepared) {
-    sample.add(frame, prepared);
+    output.sample.add(frame, prepared);
   };
-  hooks.on_motion = [&](int index, const SurfaceCloud& still) { sample.drop_moving(index, still); };
+  hooks.on_motion = [&](int index, const SurfaceCloud& still) {
+    output.sample.drop_moving(index, still);
+  };
   run.advance(input.frames(), hooks);
 }
 
-void print_how_to_resume(const RoomMap& map, const OutputFolder& out) {
-  const bool can_be_resumed =
-      map.interrupted && std::filesystem::exists(out.final_path() / run_state_file);
-  if (can_be_resumed) {
+void print_how_to_resume(const RoomMap& map, const MapInput& input, const OutputFolder& out) {
+  if (map.interrupted && input.is_recording()) {
     std::printf("interrupted; --resume continues from %s\n", out.final_path().c_str());
   }
+}
+
+/// The file of the map: a new one or, with --resume, that of an interrupted run, if there is one,
+/// or, with --onto, a copy of a finished one.
+MapFile map_file(const MapArguments& arguments, OutputFolder& out) {
+  if (arguments.resume) return MapFile::resumed(out, arguments.out);
+  tell_of_killed_run(arguments.out);
+  return arguments.onto.empty() ? MapFile(out) : MapFile::extending(out, arguments.onto);
 }
 
 int run_map(const MapArguments& arguments) {
@@ -324,25 +341,27 @@ int run_map(const MapArguments& arguments) {
                    .options_yaml = table.to_yaml(false),
                    .sensor = input.frames().sensor(),
                    .sample = sample_for(input, options)};
-  MapRun run(output.sensor, options.pipeline);
-  if (arguments.resume) {
-    resume_run(arguments.out, run, output.sample, *input.recording(), options.pipeline);
-  }
+  MapRun run(output.sensor, options.pipeline, arguments.recording.sequence.string());
   OutputFolder out(arguments.out);
+  MapFile file = map_file(arguments, out);
+  if (const MapStore* interrupted = file.to_resume()) {
+    naming(arguments.out.string(), [&] {
+      resume_run(*interrupted, run, output.sample, *input.recording(), options.pipeline);
+    });
+  }
+  if (auto finished = file.to_extend()) run.go_on_with(*std::move(finished));
   const std::unique_ptr<LiveView> view = open_view(arguments);
   FinishedMap finished;
   accompany(view.get(), [&] {
-    map_frames(run, input, output.sample, quiet, view.get());
+    map_frames(run, input, file, output, view.get());
     output.survey = input.survey();
     input.close();
     output.losses = input.losses();
     output.acquisition = input.acquisition();
-    if (run.is_interrupted() && input.is_recording()) {
-      output.state = run_state(run, output.sample, *input.recording(), options.pipeline);
-    }
-    finished = finish_map(run, out, output);
+    file.store_last(run, output.sample, input, options.pipeline);
+    finished = finish_map(run, file, out, output);
   });
-  if (!quiet) print_how_to_resume(finished.map, out);
+  if (!quiet) print_how_to_resume(finished.map, input, out);
   const int status = add_reports(out, finished, output, input);
   if (view && status == exit_status::done) view->show_result(finished.map);
   if (!input.silence().empty()) throw InputError(input.silence());
@@ -358,6 +377,8 @@ void add_map_command(CLI::App& program, Outcome& outcome) {
   arguments->recording.add_to(*app, "folder of the recording, OpenNI2 device or .oni file");
   app->add_option("--out", arguments->out, "folder for the result")->required();
   add_method_option(*app, arguments->method);
+  app->add_option("--onto", arguments->onto,
+                  "go on with a finished map: a folder that 'map' wrote, or map.db");
   app->add_flag("--resume", arguments->resume, "continue an interrupted run with the same --out");
   app->add_flag("--view", arguments->view, "show the map in a window as it grows");
   app->add_flag("--pcd", arguments->pcd, "also write map.pcd");

@@ -109,7 +109,7 @@ void measure(const std::filesystem::path& path, const PipelineOptions& options) 
   MapRun run(sequence.sensor(), options);
   run.advance(sequence);
   const Trajectory truth = read_trajectory(path / "groundtruth.txt");
-  const auto keyframes = run.mapper().keyframes();
+  const auto keyframes = run.mapper().content().keyframes.all();
   const auto true_pose = [&](int id) {
     return pose_at(truth, keyframes[static_cast<std::size_t>(id)].timestamp_s);
   };
@@ -121,7 +121,7 @@ void measure(const std::filesystem::path& path, const PipelineOptions& options) 
   Errors single;
   Errors loops;
   std::vector<std::optional<PoseEdge>> before(keyframes.size());
-  for (const PoseEdge& edge : run.mapper().edges()) {
+  for (const PoseEdge& edge : run.mapper().content().edges) {
     add_if_known(edge, edge.may_be_wrong ? loops : single);
     auto& best = before[static_cast<std::size_t>(edge.to)];
     if (edge.may_be_wrong) continue;

@@ -34,7 +34,7 @@ see unambiguously.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libtofmap-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS libeigen3-dev)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libpcl-dev, libboost-serialization-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libpcl-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION 
 "Headers, CMake files and examples of the libraries. tofmap::unwrap and
 tofmap::filters need only Eigen; modules for clouds and maps also need the

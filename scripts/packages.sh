@@ -9,7 +9,7 @@ set -euo pipefail
 packages=(
   build-essential cmake ninja-build ccache pkg-config git file
   libeigen3-dev libyaml-cpp-dev libpng-dev libembree-dev libpcl-dev libceres-dev libvtk9-dev
-  libboost-serialization-dev libopenni2-dev libtiff-dev libzip-dev
+  libboost-dev libsqlitecpp-dev libsqlite3-dev zlib1g-dev sqlite3 libopenni2-dev libtiff-dev libzip-dev
   libjs-three libegl-dev libegl1 libgl1-mesa-dri libx11-dev
   nlohmann-json3-dev libcli11-dev libfmt-dev
 )

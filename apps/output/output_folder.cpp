@@ -158,7 +158,9 @@ bool may_be_replaced(const fs::path& folder, Replaces replaces) {
 }  // namespace
 
 OutputFolder::OutputFolder(const fs::path& folder, Replaces replaces)
-    : folder_(resolved(folder)), partial_(free_sibling(folder_, ".partial-")), replaces_(replaces) {
+    : folder_(resolved(folder)),
+      partial_(free_sibling(folder_, partial_suffix)),
+      replaces_(replaces) {
   refuse_foreign(folder_, replaces_);
   earlier_ = identity(folder_);
   std::error_code error;

@@ -29,6 +29,9 @@ enum class Completeness {
 /// a recording. If the path is a link, the folder that it points to is replaced and the link stays.
 class OutputFolder {
  public:
+  /// Follows the name of the result in that of the temporary folder, before a number.
+  static constexpr const char* partial_suffix = ".partial-";
+
   /// Creates the temporary folder. Throws InputError, with the path and a remedy, if that fails or
   /// an existing folder may not be replaced. Throws UsageError if the path is empty.
   explicit OutputFolder(const std::filesystem::path& folder, Replaces replaces = Replaces::results);

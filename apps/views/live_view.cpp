@@ -64,11 +64,11 @@ void LiveView::update(const MapRun& run, const std::string& status) {
     if (next_) return;
   }
   const RoomMapper& mapper = run.mapper();
-  const std::vector<int> maps = mapper.maps();
+  const std::vector<int> maps = maps_of(mapper.content());
   Snapshot snapshot{{}, {}, status};
   if (!maps.empty()) {
-    snapshot.surface = mapper.surface(maps.front());
-    snapshot.trajectory = mapper.trajectory(maps.front());
+    snapshot.surface = surface_of(mapper.content(), maps.front());
+    snapshot.trajectory = trajectory_of(mapper.content(), maps.front());
   }
   const Clock::time_point end = Clock::now();
   next_time_ = end + std::max<Clock::duration>(shortest_step, most_share_of_time * (end - start));

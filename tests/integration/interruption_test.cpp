@@ -147,7 +147,7 @@ TEST_F(InterruptedMap, SaysSoOnItsPage) {
 }
 
 TEST_F(Interruption, OfAnEvaluationNamesTheMethodsThatAreMissing) {
-  shorten_recording(300);  // a second or so a method
+  shorten_recording(60);  // a second or so a method
   RunningProgram program({"evaluate", sequence_.string(), "--out", out_.string(), "--set",
                           "evaluation.methods=none jump joint", "--set", "pictures.frames=0"});
   ASSERT_TRUE(comes_true([&] {
@@ -228,7 +228,6 @@ TEST_F(Interruption, ByKillWhileDrawingHindersNoOtherRun) {
 TEST_F(InterruptedMap, GoesOnToTheSameResult) {
   const Finished resumed = resume();
   EXPECT_EQ(resumed.status, 0) << resumed.err;
-  EXPECT_FALSE(fs::exists(out_ / "state.bin"));
   const fs::path at_once = folder_.path() / "at_once";
   ASSERT_EQ(run_program(map_arguments(at_once)).status, 0);
   for (const std::string name : {"map.ply", "mesh.ply", "trajectory.txt", "keyframes.txt"}) {
@@ -242,7 +241,7 @@ TEST_F(InterruptedMap, DoesNotGoOnWithOtherOptions) {
   const Finished resumed = resume({"--set", "map.voxel_m=0.05"});
   EXPECT_EQ(resumed.status, 2);
   EXPECT_THAT(resumed.err, HasSubstr("voxel_m: 0.05"));
-  EXPECT_TRUE(fs::exists(out_ / "state.bin")) << "what there was is lost";
+  EXPECT_TRUE(fs::exists(out_ / "map.db")) << "what there was is lost";
 }
 
 TEST_F(InterruptedMap, DoesNotGoOnWithAnotherLargestRange) {
@@ -254,7 +253,7 @@ TEST_F(InterruptedMap, DoesNotGoOnWithAnotherLargestRange) {
 
 TEST_F(InterruptedMap, IsKeptWithoutItsStateIfTheDiskIsFull) {
   if (TOFMAP_COVERAGE) GTEST_SKIP() << "coverage is written to files, too";
-  const std::size_t state = fs::file_size(out_ / "state.bin");
+  const std::size_t state = fs::file_size(out_ / "map.db");
   const std::size_t map = fs::file_size(out_ / "map.ply");
   ASSERT_LT(map, state / 2);
   fs::remove_all(out_);
@@ -265,10 +264,10 @@ TEST_F(InterruptedMap, IsKeptWithoutItsStateIfTheDiskIsFull) {
   program.send(SIGINT);
   const Finished finished = program.wait();
   EXPECT_EQ(finished.status, 3);
-  EXPECT_THAT(finished.err, HasSubstr("holds the map, but without state.bin: "));
+  EXPECT_THAT(finished.err, HasSubstr("holds the map, but without map.db: "));
   EXPECT_THAT(finished.out, Not(HasSubstr("--resume")));
   EXPECT_TRUE(fs::exists(out_ / "map.ply"));
-  EXPECT_FALSE(fs::exists(out_ / "state.bin"));
+  EXPECT_FALSE(fs::exists(out_ / "map.db"));
 }
 
 TEST_F(InterruptedMap, DoesNotGoOnWithAnotherRecording) {
@@ -288,9 +287,9 @@ TEST_F(InterruptedMap, DoesNotGoOnWithARecordingOfTheSameTimes) {
 }
 
 TEST_F(InterruptedMap, DoesNotGoOnFromADamagedState) {
-  const std::string state = read_text(out_ / "state.bin");
+  const std::string state = read_text(out_ / "map.db");
   for (const std::size_t size : {std::size_t{10}, state.size() / 2, state.size() - 1}) {
-    std::ofstream(out_ / "state.bin", std::ios::binary) << state.substr(0, size);
+    std::ofstream(out_ / "map.db", std::ios::binary) << state.substr(0, size);
     const Finished resumed = resume();
     EXPECT_EQ(resumed.status, 3) << size;
     EXPECT_THAT(resumed.err, HasSubstr("start anew without --resume"));
@@ -298,7 +297,7 @@ TEST_F(InterruptedMap, DoesNotGoOnFromADamagedState) {
   for (const std::size_t at : {std::size_t{3}, std::size_t{400}, state.size() / 2}) {
     std::string flipped = state;
     flipped[at] = static_cast<char>(flipped[at] ^ 1);
-    std::ofstream(out_ / "state.bin", std::ios::binary) << flipped;
+    std::ofstream(out_ / "map.db", std::ios::binary) << flipped;
     const Finished resumed = resume();
     EXPECT_EQ(resumed.status, 3) << at;
     EXPECT_THAT(resumed.err, HasSubstr("is damaged")) << at;
@@ -322,6 +321,36 @@ TEST_F(Interruption, ByKillLeavesNoResultAndAnotherRunWorks) {
   EXPECT_FALSE(fs::exists(out_)) << "a half result looks whole";
   std::ofstream(sequence_ / "frames.txt") << "0.0 phase_a/000000.png phase_b/000000.png\n";
   EXPECT_EQ(run("unwrap").status, 0);
+}
+
+TEST_F(InterruptedMap, GoesOnToTheSameResultAfterItWasKilled) {
+  fs::remove_all(out_);
+  std::ofstream(sequence_ / "frames.txt") << whole_list_;
+  shorten_recording(60);
+  const auto is_stored = [&] {
+    // The file has its tables, and the first frames beside it.
+    std::error_code error;
+    return fs::file_size(partial_folder() / "map.db-wal", error) > 1'000'000 && !error;
+  };
+  int kills = 0;
+  for (const std::string option : {"--quiet", "--resume"}) {
+    RunningProgram program(map_arguments(out_, {option}));
+    ASSERT_TRUE(comes_true([&] { return program.has_ended() || is_stored(); }));
+    if (program.has_ended()) break;
+    program.send(SIGKILL);
+    EXPECT_EQ(program.wait().status, 128 + SIGKILL);
+    EXPECT_FALSE(fs::exists(out_)) << "a half result looks whole";
+    ++kills;
+  }
+  ASSERT_GT(kills, 0);
+  const Finished resumed = resume();
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_TRUE(partial_folder().empty());
+  const fs::path at_once = folder_.path() / "at_once";
+  ASSERT_EQ(run_program(map_arguments(at_once)).status, 0);
+  for (const std::string name : {"map.ply", "mesh.ply", "trajectory.txt", "keyframes.txt"}) {
+    EXPECT_TRUE(read_text(out_ / name) == read_text(at_once / name)) << name;
+  }
 }
 
 }  // namespace

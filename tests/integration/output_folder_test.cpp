@@ -279,7 +279,9 @@ TEST_F(FullDisk, KeepsTheMapWhenItsMeshOrPageDoesNotFit) {
   EXPECT_THAT(without_mesh.err, HasSubstr("is complete, but without report.html: "));
   EXPECT_TRUE(fs::exists(out_ / "map.ply") && fs::exists(out_ / "trajectory.txt"));
   EXPECT_FALSE(fs::exists(out_ / "mesh.ply")) << "a part of it";
-  EXPECT_EQ(read_json(out_ / "report.json")["failed"].size(), 1U);
+  EXPECT_THAT(without_mesh.err, HasSubstr("holds the map, but without map.db: "));
+  EXPECT_FALSE(fs::exists(out_ / "map.db"));
+  EXPECT_EQ(read_json(out_ / "report.json")["failed"].size(), 2U);
   EXPECT_EQ(names_in(folder_.path()), (std::vector<std::string>{"out", "seq"}));
 }
 

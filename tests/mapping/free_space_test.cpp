@@ -49,7 +49,7 @@ class SeenThrough : public testing::Test {
   template <class Change>
   void change_points(const Change& change) {
     for (Keyframe& keyframe : keyframes_) {
-      SurfaceCloud cloud = *keyframe.cloud;
+      SurfaceCloud cloud = *keyframe.cloud.load();
       for (int row = 0; row < static_cast<int>(cloud.height); ++row) {
         for (int col = 0; col < static_cast<int>(cloud.width); ++col) {
           change(col, row, cloud.at(col, row));
@@ -182,9 +182,10 @@ TEST_F(SeenThrough, DistrustsRangesWithoutNormalsWhoseWrapCountsAreUncertain) {
 
 TEST_F(SeenThrough, IsNoneBetweenKeyframesOfOneRoomAndMuchWhereOneIsMisplaced) {
   const auto share = [&](const Pose& placed) {
-    return free_space_violation_share({keyframes_[2].cloud.get(), placed},
-                                      {keyframes_[0].cloud.get(), keyframes_[0].world_from_camera},
-                                      small_camera(), margin_m);
+    return free_space_violation_share(
+        {keyframes_[2].cloud.load().get(), placed},
+        {keyframes_[0].cloud.load().get(), keyframes_[0].world_from_camera}, small_camera(),
+        margin_m);
   };
   const Pose right = keyframes_[2].world_from_camera;
   EXPECT_LT(share(right), 0.01);

@@ -44,7 +44,7 @@ TEST(KeyframeEdge, HasTheCovarianceOfTheRegistrationThatItIsFrom) {
   const Pose world_from_a = test::moved_by({0.4, -1.1, 2}, {3, -2, 1});
   const Pose world_from_b = test::moved_by({0.1, -0.8, 2.2}, {3.5, -2.2, 1.3});
   const std::vector<Pose> truth{world_from_a, world_from_b};
-  const Keyframe from{0, 0, 0, world_from_a, nullptr};
+  const Keyframe from{0, 0, 0, world_from_a, {}};
   const Matrix6d covariance = lengthy_covariance();
   const Matrix6d root = covariance.llt().matrixL();
   // What all frames err by in common is added to it.

@@ -26,7 +26,7 @@ const PoseSpread small_spread = spread(0.002);
 KeyframeGraph there_and_back() {
   KeyframeGraph graph;
   for (int id = 0; id <= 20; ++id) {
-    graph.add({id, id, 0.1 * id, at(id <= 10 ? id : 20 - id), nullptr});
+    graph.add({id, id, 0.1 * id, at(id <= 10 ? id : 20 - id), {}});
     if (id > 0) graph.connect(id - 1, id, small_spread);
   }
   return graph;
@@ -53,7 +53,7 @@ TEST(KeyframeGraph, TakesTheNearestOnceTheyAreConnected) {
 /// Three keyframes before a bare wall, along which the camera was lost between the first two.
 KeyframeGraph past_a_bare_wall() {
   KeyframeGraph graph;
-  for (int id = 0; id < 3; ++id) graph.add({id, id, 0.1 * id, at(id), nullptr});
+  for (int id = 0; id < 3; ++id) graph.add({id, id, 0.1 * id, at(id), {}});
   graph.connect(0, 1, spread(0.3));
   graph.connect(1, 2, spread(0.04));
   return graph;
@@ -91,7 +91,7 @@ TEST(KeyframeGraph, KnowsThePathThatIsMostCertain) {
   graph.connect(0, 2, spread(0.01));  // a loop
   EXPECT_NEAR(graph.spreads_from(0)[2]->translation_sigma_m(), 0.01, 1e-9);
   EXPECT_NEAR(graph.spreads_from(0)[1]->translation_sigma_m(), std::hypot(0.01, 0.04), 1e-9);
-  graph.add({3, 3, 0.3, at(3), nullptr});
+  graph.add({3, 3, 0.3, at(3), {}});
   EXPECT_FALSE(graph.spreads_from(0)[3]);
 }
 
@@ -99,7 +99,7 @@ TEST(KeyframeGraph, ReconnectsKeyframesThatALoopHasConnected) {
   // A ring of eight keyframes with one loose registration, which a loop closes.
   KeyframeGraph graph;
   for (int id = 0; id < 8; ++id) {
-    graph.add({id, id, 0.1 * id, at(id), nullptr});
+    graph.add({id, id, 0.1 * id, at(id), {}});
     if (id > 0) graph.connect(id - 1, id, id == 4 ? spread(0.3) : small_spread);
   }
   const auto is_well_connected = [&] { return graph.well_connected_to(3).contains(4); };
@@ -128,9 +128,9 @@ TEST(KeyframeGraph, ForgetsWhatLoopsHaveConnected) {
 
 TEST(KeyframeGraph, MeasuresRotationsAsWell) {
   KeyframeGraph graph;
-  graph.add({0, 0, 0, at(0), nullptr});
-  graph.add({1, 1, 0.1, test::moved_by({0, 1.5, 0}, {0, 0, 0}), nullptr});
-  graph.add({2, 2, 0.2, at(1), nullptr});
+  graph.add({0, 0, 0, at(0), {}});
+  graph.add({1, 1, 0.1, test::moved_by({0, 1.5, 0}, {0, 0, 0}), {}});
+  graph.add({2, 2, 0.2, at(1), {}});
   graph.connect(0, 1, small_spread);
   graph.connect(0, 2, small_spread);
   // A metre is two steps, 1.5 radians are three turns.
@@ -139,7 +139,7 @@ TEST(KeyframeGraph, MeasuresRotationsAsWell) {
 
 TEST(KeyframeGraph, HoldsAtLeastTheKeyframeItself) {
   KeyframeGraph graph;
-  graph.add({0, 0, 0, at(3), nullptr});
+  graph.add({0, 0, 0, at(3), {}});
   EXPECT_EQ(ids(graph.around(0, at(0), 1, {1, 1})), (std::vector<int>{0}));
   graph.set_pose(0, at(4));
   EXPECT_EQ(graph[0].world_from_camera.translation().x(), 4);

@@ -203,27 +203,29 @@ class Turning : public testing::Test {
 
 /// How far the frame is off at the end, from where the path began.
 double last_error_m(const RoomMapper& mapper, const Pose& truth) {
-  return (truth.inverse() * mapper.trajectory(0).back().world_from_camera).translation().norm();
+  return (truth.inverse() * trajectory_of(mapper.content(), 0).back().world_from_camera)
+      .translation()
+      .norm();
 }
 
 double last_rotation_error_rad(const RoomMapper& mapper, const Pose& truth) {
-  return rotation_angle_rad(mapper.trajectory(0).back().world_from_camera, truth);
+  return rotation_angle_rad(trajectory_of(mapper.content(), 0).back().world_from_camera, truth);
 }
 
 TEST_F(Turning, ClosesTheLoop) {
   RoomMapper mapper(wide_camera(), {}, {}, loops_, {});
   run(mapper);
-  ASSERT_FALSE(mapper.loops().empty());
-  for (const Loop& loop : mapper.loops()) {
+  ASSERT_FALSE(mapper.content().loops.empty());
+  for (const Loop& loop : mapper.content().loops) {
     EXPECT_GE(loop.to_frame, 60);
     EXPECT_LT(loop.from_frame, 20);
     EXPECT_TRUE(loop.is_used);
   }
-  ASSERT_EQ(mapper.trajectory(0).size(), static_cast<std::size_t>(frames));
+  ASSERT_EQ(trajectory_of(mapper.content(), 0).size(), static_cast<std::size_t>(frames));
   loops_.close = false;
   RoomMapper open(wide_camera(), {}, {}, loops_, {});
   run(open);
-  EXPECT_TRUE(open.loops().empty());
+  EXPECT_TRUE(open.content().loops.empty());
   const Pose truth = camera_at(0).inverse() * camera_at(frames - 1);
   EXPECT_LT(last_error_m(mapper, truth), 0.5 * last_error_m(open, truth));
 }
@@ -233,10 +235,10 @@ TEST_F(Turning, NeedsNoNewKeyframesWhereAPlaceIsSeenAgain) {
   run(once, 100);
   RoomMapper thrice(wide_camera(), {}, {}, loops_, {});
   run(thrice, 216);
-  const std::size_t keyframes = once.keyframe_trajectory(0).size();
+  const std::size_t keyframes = keyframe_trajectory_of(once.content(), 0).size();
   EXPECT_LT(keyframes, 50U);
-  EXPECT_EQ(thrice.keyframe_trajectory(0).size(), keyframes);
-  EXPECT_EQ(thrice.trajectory(0).size(), 216U);
+  EXPECT_EQ(keyframe_trajectory_of(thrice.content(), 0).size(), keyframes);
+  EXPECT_EQ(trajectory_of(thrice.content(), 0).size(), 216U);
   // One standard deviation of the loop that connects the last keyframe with the first one.
   EXPECT_LT(last_error_m(thrice, camera_at(0).inverse() * camera_at(215)), 2.8e-3);
 }
@@ -254,7 +256,7 @@ TEST_F(Turning, IsMendedByThreeLoopsIfTheFocalLengthIsWrong) {
     const TrackingResult result = mapper.add_frame({i, i / 15.0, cloud}).tracking;
     ASSERT_TRUE(result.registered()) << i;
     if (result.is_keyframe) keyframes.push_back(i);
-    if (mapper.loops().empty()) {
+    if (mapper.content().loops.empty()) {
       before_rad = last_rotation_error_rad(mapper, camera_at(0).inverse() * camera_at(i));
     }
   }
@@ -263,12 +265,12 @@ TEST_F(Turning, IsMendedByThreeLoopsIfTheFocalLengthIsWrong) {
       last_rotation_error_rad(mapper, camera_at(0).inverse() * camera_at(frames - 1));
   EXPECT_GT(before_rad, 0.05);
   EXPECT_LT(after_rad, 0.2 * before_rad);
-  ASSERT_EQ(mapper.loops().size(), 3U);
-  for (const Loop& loop : mapper.loops()) EXPECT_TRUE(loop.is_used);
+  ASSERT_EQ(mapper.content().loops.size(), 3U);
+  for (const Loop& loop : mapper.content().loops) EXPECT_TRUE(loop.is_used);
   // The first loop waits for others, and keyframes are taken closer together.
-  const auto first = std::ranges::find(keyframes, mapper.loops()[0].to_frame);
+  const auto first = std::ranges::find(keyframes, mapper.content().loops[0].to_frame);
   ASSERT_GT(first - keyframes.begin(), 2);
-  EXPECT_LT(mapper.loops()[2].to_frame - *first, *first - *(first - 2));
+  EXPECT_LT(mapper.content().loops[2].to_frame - *first, *first - *(first - 2));
 }
 
 TEST_F(Turning, MovesPathAndMapTogether) {
@@ -277,7 +279,7 @@ TEST_F(Turning, MovesPathAndMapTogether) {
   run(mapper);
   // As if all frames had been integrated where they are believed to be in the end.
   SurfaceMap anew(every_point);
-  const Trajectory trajectory = mapper.trajectory(0);
+  const Trajectory trajectory = trajectory_of(mapper.content(), 0);
   for (int i = 0; i < frames; ++i) {
     anew.integrate(test::box_cloud(wide_camera(), box_min_, box_max_, camera_at(i)),
                    trajectory[static_cast<std::size_t>(i)].world_from_camera);
@@ -293,7 +295,7 @@ TEST_F(Turning, MovesPathAndMapTogether) {
     }
     return off / static_cast<double>(map.size());
   };
-  const MapCloud map = mapper.surface(0);
+  const MapCloud map = surface_of(mapper.content(), 0);
   EXPECT_GT(map.size(), 5000U);
   // Voxels of parts are averages: at the borders between voxels they may fall into others.
   EXPECT_LT(share_off_walls(map), share_off_walls(anew.extract()) + 0.02);

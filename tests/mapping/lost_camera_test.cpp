@@ -4,7 +4,6 @@
 #include "support/scenery.hpp"
 
 #include <memory>
-#include <sstream>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -73,8 +72,8 @@ TEST_F(LostCamera, BeginsAMapThatIsJoinedWhereItRecognisesTheFirstOne) {
   mapper_.finish();
   EXPECT_EQ(mapper_.joins(), 1);
   EXPECT_EQ(mapper_.blind_joins(), 0);
-  ASSERT_EQ(mapper_.maps(), std::vector{0});
-  const Trajectory trajectory = mapper_.trajectory(0);
+  ASSERT_EQ(maps_of(mapper_.content()), std::vector{0});
+  const Trajectory trajectory = trajectory_of(mapper_.content(), 0);
   ASSERT_EQ(trajectory.size(), frames + 40U) << "nothing that was seen is lost";
   for (int i = 0; i < 40; ++i) {
     const Pose truth = room_.pose(first).inverse() * room_.pose(there(i));
@@ -103,19 +102,21 @@ TEST_F(LostCamera, IsTakenOutOfAMapThatLaterFramesDifferFrom) {
   EXPECT_TRUE(was_joined);
   EXPECT_EQ(mapper_.joins_taken_back(), 1);
   EXPECT_EQ(mapper_.joins(), 0);
-  ASSERT_EQ(mapper_.maps(), (std::vector{0, 1}));
-  EXPECT_EQ(mapper_.trajectory(0).size(), std::size_t{frames});
-  const Trajectory apart = mapper_.trajectory(1);
+  ASSERT_EQ(maps_of(mapper_.content()), (std::vector{0, 1}));
+  EXPECT_EQ(trajectory_of(mapper_.content(), 0).size(), std::size_t{frames});
+  const Trajectory apart = trajectory_of(mapper_.content(), 1);
   ASSERT_EQ(apart.size(), 50U);
   const Pose& begin = apart.front().world_from_camera;
   EXPECT_LT(begin.translation().norm(), 0.01) << "its first camera is its origin";
   const Pose truth = room_.pose(first + 6).inverse() * room_.pose(first + 55);
   const Pose error = truth.inverse() * begin.inverse() * apart.back().world_from_camera;
   EXPECT_LT(error.translation().norm(), 0.02);
-  for (const PoseEdge& edge : mapper_.edges()) {
-    EXPECT_EQ(mapper_.keyframes()[edge.from].map, mapper_.keyframes()[edge.to].map);
+  for (const PoseEdge& edge : mapper_.content().edges) {
+    EXPECT_EQ(mapper_.content().keyframes.all()[edge.from].map,
+              mapper_.content().keyframes.all()[edge.to].map);
   }
-  EXPECT_LT(mapper_.least_certain(1).error.position_m, 0.02) << "all its keyframes are connected";
+  EXPECT_LT(least_certain_of(mapper_.content(), 1).error.position_m, 0.02)
+      << "all its keyframes are connected";
 }
 
 TEST_F(LostCamera, KeepsAnEarlierJoinWhenALaterOneIsTakenBack) {
@@ -131,9 +132,9 @@ TEST_F(LostCamera, KeepsAnEarlierJoinWhenALaterOneIsTakenBack) {
   EXPECT_TRUE(was_joined_again);
   EXPECT_EQ(mapper_.joins(), 1);
   EXPECT_EQ(mapper_.joins_taken_back(), 1);
-  ASSERT_EQ(mapper_.maps(), (std::vector{0, 2}));
-  EXPECT_EQ(mapper_.trajectory(0).size(), frames + 20U);
-  EXPECT_EQ(mapper_.trajectory(2).size(), 50U);
+  ASSERT_EQ(maps_of(mapper_.content()), (std::vector{0, 2}));
+  EXPECT_EQ(trajectory_of(mapper_.content(), 0).size(), frames + 20U);
+  EXPECT_EQ(trajectory_of(mapper_.content(), 2).size(), 50U);
 }
 
 TEST_F(LostCamera, KeepsTheMapOfAnotherBuildingApart) {
@@ -146,15 +147,15 @@ TEST_F(LostCamera, KeepsTheMapOfAnotherBuildingApart) {
     alone.add_frame({i, i / 15.0, view});
   }
   mapper_.finish();
-  ASSERT_EQ(mapper_.maps(), (std::vector{0, 1}));
-  EXPECT_EQ(mapper_.trajectory(0).size(), std::size_t{frames});
-  const Trajectory there = mapper_.trajectory(1);
-  const Trajectory expected = alone.trajectory(0);
+  ASSERT_EQ(maps_of(mapper_.content()), (std::vector{0, 1}));
+  EXPECT_EQ(trajectory_of(mapper_.content(), 0).size(), std::size_t{frames});
+  const Trajectory there = trajectory_of(mapper_.content(), 1);
+  const Trajectory expected = trajectory_of(alone.content(), 0);
   ASSERT_EQ(there.size(), std::size_t{frames_there});
   for (std::size_t i = 0; i < there.size(); ++i) {
     EXPECT_TRUE(there[i].world_from_camera.isApprox(expected[i].world_from_camera, 1e-9)) << i;
   }
-  EXPECT_EQ(mapper_.surface(1).size(), alone.surface(0).size());
+  EXPECT_EQ(surface_of(mapper_.content(), 1).size(), surface_of(alone.content(), 0).size());
 }
 
 TEST_F(LostCamera, BeginsNoMapWhileItIsCovered) {
@@ -172,7 +173,7 @@ TEST_F(LostCamera, DropsWhatPassesInFrontOfIt) {
   for (const int start : {20, 100, 180}) {
     for (int i = 0; i < 3; ++i) add(flat.view(start + 25 * i));
   }
-  EXPECT_LE(mapper_.maps().size(), 2U);
+  EXPECT_LE(maps_of(mapper_.content()).size(), 2U);
 }
 
 TEST_F(LostCamera, IsFoundAfterAnInterruptionAsWithoutOne) {
@@ -182,13 +183,11 @@ TEST_F(LostCamera, IsFoundAfterAnInterruptionAsWithoutOne) {
   std::vector<std::size_t> maps;
   for (int i = 0; i < 40; ++i) {
     if (i == 2 || i == 5 || i == 30) {
-      maps.push_back(mapper_.maps().size());
-      std::stringstream state;
-      mapper_.save(state);
+      maps.push_back(maps_of(mapper_.content()).size());
       resumed.push_back(std::make_unique<RoomMapper>(room_.camera(), OdometryOptions(),
                                                      RegistrationOptions(), LoopOptions(),
                                                      SurfaceMapOptions()));
-      resumed.back()->load(state);
+      resumed.back()->restore(mapper_.content(), mapper_.state());
     }
     const auto view = room_.view(there(i));
     for (const auto& mapper : resumed) mapper->add_frame({added_, added_ / 15.0, view});
@@ -196,11 +195,11 @@ TEST_F(LostCamera, IsFoundAfterAnInterruptionAsWithoutOne) {
   }
   ASSERT_EQ(maps, (std::vector<std::size_t>{1, 2, 1}));
   mapper_.finish();
-  const Trajectory expected = mapper_.trajectory(0);
+  const Trajectory expected = trajectory_of(mapper_.content(), 0);
   for (const auto& mapper : resumed) {
     mapper->finish();
     EXPECT_EQ(mapper->joins(), 1);
-    const Trajectory found = mapper->trajectory(0);
+    const Trajectory found = trajectory_of(mapper->content(), 0);
     ASSERT_EQ(found.size(), expected.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
       EXPECT_EQ(found[i].world_from_camera.matrix(), expected[i].world_from_camera.matrix()) << i;
@@ -218,7 +217,7 @@ TEST(CameraAfterAGap, IsFollowedOn) {
       EXPECT_TRUE(mapper.add_frame({i, i / 15.0, room.view(first + i)}).tracking.registered()) << i;
     }
     const Pose truth = room.pose(first).inverse() * room.pose(first + 59);
-    const Pose found = mapper.trajectory(0).back().world_from_camera;
+    const Pose found = trajectory_of(mapper.content(), 0).back().world_from_camera;
     EXPECT_LT((truth.inverse() * found).translation().norm(), 0.02) << gap;
   }
 }

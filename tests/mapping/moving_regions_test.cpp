@@ -128,7 +128,7 @@ TEST(MovingRegions, AreWhereSomebodyWasBefore) {
   const Motion motion = motion_between(before, now);
   EXPECT_EQ(left_in(*motion.still, now).of_room, 1);
   ASSERT_EQ(motion.keyframes.size(), 1U);
-  const Left left = left_in(*motion.keyframes[0].cloud, before);
+  const Left left = left_in(*motion.keyframes[0].cloud.load(), before);
   EXPECT_LT(left.of_person, 0.02);
   EXPECT_GT(left.of_room, 0.97);
 }
@@ -140,7 +140,7 @@ TEST(MovingRegions, FollowSomebodyWhoWalksAwayFromTheCamera) {
   const Motion motion = motion_between(before, now);
   EXPECT_LT(left_in(*motion.still, now).of_person, 0.1);
   ASSERT_EQ(motion.keyframes.size(), 1U);
-  EXPECT_LT(left_in(*motion.keyframes[0].cloud, before).of_person, 0.1);
+  EXPECT_LT(left_in(*motion.keyframes[0].cloud.load(), before).of_person, 0.1);
 }
 
 TEST(MovingRegions, ArePresumedToMoveOnForASecond) {

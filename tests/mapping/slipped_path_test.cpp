@@ -31,7 +31,7 @@ std::vector<int> path_with_a_jump(int first_after_jump) {
 /// By how much each registered frame is off; `truth` has the poses of all frames.
 std::vector<double> errors_m(const RoomMapper& mapper, const std::vector<Pose>& truth) {
   std::vector<double> errors;
-  for (const StampedPose& pose : mapper.trajectory(0)) {
+  for (const StampedPose& pose : trajectory_of(mapper.content(), 0)) {
     const auto i = static_cast<std::size_t>(std::lround(pose.timestamp_s * frame_rate_hz));
     const Eigen::Vector3d found_m = truth[0] * pose.world_from_camera.translation();
     errors.push_back((found_m - truth[i].translation()).norm());
@@ -60,15 +60,15 @@ TEST_P(SlippedPath, IsMendedByOneLoop) {
     const int place = static_cast<int>(i);
     const auto added = mapper.add_frame({place, place / frame_rate_hz, room.view(path[i])});
     ASSERT_TRUE(added.tracking.registered()) << i;
-    if (mapper.loops().empty()) at_first_m = errors_m(mapper, truth);
+    if (mapper.content().loops.empty()) at_first_m = errors_m(mapper, truth);
   }
   mapper.finish();
 
   EXPECT_LT(at_first_m[last_before_jump], 0.01);
   EXPECT_GT(*std::ranges::min_element(at_first_m.begin() + last_before_jump + 1, at_first_m.end()),
             GetParam().least_slip_m);
-  ASSERT_EQ(mapper.loops().size(), 1U);
-  EXPECT_TRUE(mapper.loops().front().is_used);
+  ASSERT_EQ(mapper.content().loops.size(), 1U);
+  EXPECT_TRUE(mapper.content().loops.front().is_used);
   const std::vector<double> mended_m = errors_m(mapper, truth);
   ASSERT_EQ(mended_m.size(), path.size());
   for (std::size_t i = 0; i < path.size(); ++i) {

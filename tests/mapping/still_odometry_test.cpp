@@ -97,7 +97,7 @@ TEST(StillOdometry, LeavesOutSomebodyWhoComesIn) {
     EXPECT_GT(count_moving(*found.still), 100);
     EXPECT_LT(error_of(found, frame), 0.002);
   }
-  EXPECT_EQ(count_moving(*camera.keyframe().cloud), 0) << "nobody was there";
+  EXPECT_EQ(count_moving(*camera.keyframe().cloud.load()), 0) << "nobody was there";
 }
 
 TEST(StillOdometry, TakesSomebodyWhoLeavesOutOfTheKeyframe) {
@@ -106,7 +106,7 @@ TEST(StillOdometry, TakesSomebodyWhoLeavesOutOfTheKeyframe) {
   const StillTracking found = camera.track(1, room_view(1, {}));
   ASSERT_TRUE(found.tracking.registered());
   EXPECT_EQ(count_moving(*found.still), 0);
-  EXPECT_GT(count_moving(*camera.keyframe().cloud), 100);
+  EXPECT_GT(count_moving(*camera.keyframe().cloud.load()), 100);
 }
 
 TEST(StillOdometry, TracksAFrameInWhichSomebodyCoversMuchOfTheRoom) {
@@ -117,7 +117,7 @@ TEST(StillOdometry, TracksAFrameInWhichSomebodyCoversMuchOfTheRoom) {
   ASSERT_TRUE(found.tracking.registered());
   EXPECT_GT(count_moving(*found.still), 1500);
   EXPECT_LT(error_of(found, 1), 0.002);
-  EXPECT_EQ(count_moving(*camera.keyframe().cloud), 0);
+  EXPECT_EQ(count_moving(*camera.keyframe().cloud.load()), 0);
   // Without the search for what moves, the person contradicts the free space of the keyframe.
   StillCamera unaware({.leave_out_moving = false});
   unaware.track(0, room_view(0, {}));

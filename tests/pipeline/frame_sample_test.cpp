@@ -3,9 +3,10 @@
 
 #include "tofmap/pipeline/frame_sample.hpp"
 
+#include "support/stored_map.hpp"
+
 #include <algorithm>
 #include <limits>
-#include <sstream>
 
 #include <gmock/gmock.h>
 
@@ -22,12 +23,15 @@ CameraModel camera_of(int width_px) {
   return camera;
 }
 
-/// Adds frames of these indices that hold nothing else.
+/// Adds frames of these indices without returns, of four rows and columns.
 void add(FrameSample& sample, const std::vector<int>& indices) {
+  PreparedFrame prepared;
+  prepared.returns = blank_frame(2);
+  prepared.unwrapped.image = prepared.filtered.image = RangeImage(4, 4);
   for (const int index : indices) {
     Frame frame = blank_frame(2);
     frame.index = index;
-    sample.add(frame, {});
+    sample.add(frame, prepared);
   }
 }
 
@@ -107,12 +111,13 @@ TEST(FrameSample, IsTheSameAfterItWasPutAside) {
   prepared.unwrapped.converged = false;
   prepared.filtered.image = prepared.unwrapped.image;
   prepared.filtered.image.reason(1, 2) = 8;
+  prepared.returns = frame;
   sample.add(frame, prepared);
-  std::stringstream aside;
-  sample.save(aside);
+  const test::StoredMap aside;
+  aside.save(sample);
 
   FrameSample resumed(camera, 3, 9);
-  resumed.load(aside, 2);
+  resumed.load(aside.store(), 2);
   add(resumed, {2, 3, 4, 5, 6, 7, 8});
   ASSERT_THAT(indices_of(resumed), ElementsAre(1, 4, 7));
   const SampledFrame& first = resumed.frames().front();
@@ -126,10 +131,10 @@ TEST(FrameSample, ThatWantsFewerFramesLoadsFewer) {
   const CameraModel camera = camera_of(4);
   FrameSample sample(camera, 20, 20);
   add(sample, up_to(10));
-  std::stringstream aside;
-  sample.save(aside);
+  const test::StoredMap aside;
+  aside.save(sample);
   FrameSample resumed(camera, 4, 20);
-  resumed.load(aside, 10);
+  resumed.load(aside.store(), 10);
   EXPECT_THAT(indices_of(resumed), ElementsAre(2, 7)) << "two of the four are to come";
 }
 

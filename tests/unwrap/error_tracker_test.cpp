@@ -8,11 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <exception>
 #include <iterator>
 #include <random>
-#include <sstream>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -20,6 +19,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <tofmap/core/bytes.hpp>
+#include <tofmap/core/error.hpp>
 #include <tofmap/core/median.hpp>
 #include <tofmap/simulation/simulator.hpp>
 #include <tofmap/unwrap/errors/error_tracker.hpp>
@@ -505,38 +506,38 @@ bool is_same(const ErrorTracker::Tracked& one, const ErrorTracker::Tracked& othe
          one.errors.motion.rotation_rad == other.errors.motion.rotation_rad;
 }
 
+std::string state_of(const ErrorTracker& tracker) {
+  ByteWriter writer;
+  tracker.save(writer);
+  return writer.take();
+}
+
 TEST(ErrorTracker, GoesOnFromASavedStateToTheSameBits) {
   const Simulator simulator(make_scene("hall"), switching_camera());
   const std::vector<SimulatedFrame> frames = run_of(simulator, 20, 5);
   ErrorTracker kept = tracker_of(simulator);
   for (int i = 0; i < 4; ++i) track(kept, returns_of(frames[static_cast<std::size_t>(i)]));
-  std::stringstream state;
-  kept.save(state);
+  const std::string state = state_of(kept);
   ErrorTracker resumed = tracker_of(simulator);
-  resumed.load(state);
+  ByteReader reader(state);
+  resumed.load(reader);
   const ErrorTracker::Tracked expected = track(kept, returns_of(frames.back()));
   EXPECT_TRUE(expected.errors.used_last_b) << "so that the last frame is part of the state";
   EXPECT_TRUE(is_same(track(resumed, returns_of(frames.back())), expected));
   ErrorTracker fresh = tracker_of(simulator);
   EXPECT_FALSE(is_same(track(fresh, returns_of(frames.back())), expected))
       << "what is saved matters";
-  std::stringstream after;
-  std::stringstream after_resumed;
-  kept.save(after);
-  resumed.save(after_resumed);
-  EXPECT_EQ(after.str(), after_resumed.str());
+  EXPECT_EQ(state_of(kept), state_of(resumed));
 }
 
 TEST(ErrorTracker, RefusesADamagedState) {
   const Corner corner;
-  std::stringstream state;
-  acquainted(corner).save(state);
-  const std::string whole = state.str();
+  const std::string whole = state_of(acquainted(corner));
   for (const std::size_t size :
        {std::size_t{0}, std::size_t{10}, whole.size() / 2, whole.size() - 1}) {
-    std::stringstream cut(whole.substr(0, size));
+    ByteReader cut(std::string_view(whole).substr(0, size));
     ErrorTracker tracker(corner.limits, corner.camera);
-    EXPECT_THROW(tracker.load(cut), std::exception) << size;
+    EXPECT_THROW(tracker.load(cut), InputError) << size;
   }
 }
 

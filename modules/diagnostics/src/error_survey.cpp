@@ -4,9 +4,12 @@
 #include "tofmap/diagnostics/error_survey.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include <fmt/format.h>
 
+#include <tofmap/core/bytes.hpp>
 #include <tofmap/core/median.hpp>
 #include <tofmap/core/text.hpp>
 
@@ -50,6 +53,34 @@ void ErrorTally::add(const MeasuredFrame& frame) {
     ambient_pixels_ += 1;
     ambient_factors_ += frame.ambient.data()[i];
   }
+}
+
+void ErrorTally::save(ByteWriter& out) const {
+  out.number(static_cast<std::uint32_t>(cameras_.size()));
+  for (const CameraErrors& camera : cameras_) tofmap::save(camera, out);
+  out.number(frames_);
+  out.number(static_cast<std::uint32_t>(flows_px_.size()));
+  for (const float flow_px : flows_px_) out.number(flow_px);
+  out.number(pixels_);
+  out.number(ambient_pixels_);
+  out.number(ambient_factors_);
+  out.number<std::uint8_t>(has_amplitudes_ ? 1 : 0);
+}
+
+void ErrorTally::load(ByteReader& in) {
+  constexpr std::uint32_t most_cameras = most_frequencies;
+  constexpr int most_frames = std::numeric_limits<int>::max();
+  cameras_.clear();
+  const auto cameras = in.number<std::uint32_t>(0, most_cameras);
+  for (std::uint32_t i = 0; i < cameras; ++i) cameras_.push_back(camera_errors_in(in));
+  frames_ = in.number(0, most_frames);
+  flows_px_.clear();
+  const auto flows = in.number<std::uint32_t>(0, static_cast<std::uint32_t>(frames_));
+  for (std::uint32_t i = 0; i < flows; ++i) flows_px_.push_back(in.number<float>());
+  pixels_ = in.number<double>();
+  ambient_pixels_ = in.number<double>();
+  ambient_factors_ = in.number<double>();
+  has_amplitudes_ = in.number<std::uint8_t>(0, 1) != 0;
 }
 
 ErrorSurvey ErrorTally::survey() const {

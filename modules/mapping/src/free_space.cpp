@@ -14,23 +14,26 @@ namespace {
 /// to be gone. One or two may be deceived.
 constexpr int views_until_gone = 3;
 
-/// `views` are in the order of time.
-bool violates_free_space(const MapPoint& point, const std::vector<KeyframeView>& views) {
-  int free_space_violation = 0;
+/// What the keyframes so far have seen at a point of the map.
+struct Sightings {
+  int violating = 0;
   int agreeing = 0;
-  int seen_through_since = 0;
-  for (const KeyframeView& view : views) {
-    const Observation observation = view.judge(point.getVector3fMap().cast<double>());
+  int violating_since = 0;  ///< since the last one that agrees
+
+  void add(Observation observation) {
     if (observation == Observation::sees_through) {
-      ++free_space_violation;
-      ++seen_through_since;
+      ++violating;
+      ++violating_since;
     } else if (observation == Observation::agrees) {
       ++agreeing;
-      seen_through_since = 0;
+      violating_since = 0;
     }
   }
-  return free_space_violation > agreeing || seen_through_since >= views_until_gone;
-}
+
+  bool violates_free_space() const {
+    return violating > agreeing || violating_since >= views_until_gone;
+  }
+};
 
 /// How many points of a cloud a view agrees with, and how many it sees through.
 struct Agreement {
@@ -69,28 +72,28 @@ double free_space_violation_share(const RegistrationTarget& one, const Registrat
 }
 
 bool contradicts_free_space(const RegistrationTarget& placed, const RegistrationTarget& target,
-                            const CameraModel& camera) {
-  constexpr double most_violations = 0.05;
+                            const CameraModel& camera, double most_share) {
   constexpr double pose_error_m = 0.03;
-  return free_space_violation_share(placed, target, camera, pose_error_m) >= most_violations;
+  return free_space_violation_share(placed, target, camera, pose_error_m) >= most_share;
 }
 
 MapCloud without_free_space_violations(const MapCloud& map, std::span<const Keyframe> keyframes,
                                        const CameraModel& camera, double margin_m) {
-  std::vector<KeyframeView> views;
-  for (const Keyframe& keyframe : keyframes) {
-    views.emplace_back(target_of(keyframe), camera, margin_m);
-  }
-  std::vector<char> goes(map.size());
+  std::vector<Sightings> sightings(map.size());
   const auto count = static_cast<std::ptrdiff_t>(map.size());
-#pragma omp parallel for schedule(dynamic, 256)
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    goes[static_cast<std::size_t>(i)] =
-        violates_free_space(map[static_cast<std::size_t>(i)], views) ? 1 : 0;
+  // One keyframe after the other, since they may not be in memory together.
+  for (const Keyframe& keyframe : keyframes) {
+    const RegistrationTarget target = target_of(keyframe);
+    const KeyframeView view(target, camera, margin_m);
+#pragma omp parallel for schedule(static)
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      sightings[at].add(view.judge(map[at].getVector3fMap().cast<double>()));
+    }
   }
   MapCloud kept;
   for (std::size_t i = 0; i < map.size(); ++i) {
-    if (goes[i] == 0) kept.push_back(map[i]);
+    if (!sightings[i].violates_free_space()) kept.push_back(map[i]);
   }
   return kept;
 }

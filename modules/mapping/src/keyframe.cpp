@@ -4,8 +4,15 @@
 #include "tofmap/mapping/keyframe.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace tofmap {
+
+RegistrationTarget target_of(const Keyframe& keyframe) {
+  auto cloud = keyframe.cloud.load();
+  const SurfaceCloud* seen = cloud.get();
+  return {seen, keyframe.world_from_camera, std::move(cloud)};
+}
 
 std::vector<RegistrationTarget> targets_around(const Keyframe& keyframe,
                                                std::span<const Keyframe> keyframes) {

@@ -22,14 +22,25 @@ double KeyframeSpacing::between(const Pose& a, const Pose& b) const {
                   rotation_angle_rad(a, b) / rotation_rad);
 }
 
+/// The cloud as the graph keeps it.
+KeyframeCloud KeyframeGraph::kept(const KeyframeCloud& cloud) {
+  return shelf_ && !cloud.is_on_shelf() ? shelf_->add(*cloud.load()) : cloud;
+}
+
 void KeyframeGraph::add(Keyframe keyframe) {
+  keyframe.cloud = kept(keyframe.cloud);
   keyframes_.push_back(std::move(keyframe));
-  neighbours_.emplace_back();
+  links_.emplace_back();
+}
+
+void KeyframeGraph::add(Keyframe keyframe, std::function<CompactCloud()> read_cloud) {
+  keyframe.cloud = shelf_->add(std::move(read_cloud));
+  add(std::move(keyframe));
 }
 
 void KeyframeGraph::connect(int a, int b, const PoseSpread& spread) {
   for (const auto& [one, other] : {std::pair(a, b), std::pair(b, a)}) {
-    Neighbour& known = neighbour(one, other);
+    KeyframeLink& known = link(one, other);
     known.spread = smaller(known.spread, spread);
     known.registered = known.registered ? smaller(*known.registered, spread) : spread;
   }
@@ -37,36 +48,39 @@ void KeyframeGraph::connect(int a, int b, const PoseSpread& spread) {
 
 void KeyframeGraph::connect_by_loop(int a, int b, const PoseSpread& spread) {
   for (const auto& [one, other] : {std::pair(a, b), std::pair(b, a)}) {
-    Neighbour& known = neighbour(one, other);
+    KeyframeLink& known = link(one, other);
     known.spread = smaller(known.spread, spread);
   }
 }
 
 void KeyframeGraph::forget_loops() {
-  for (std::vector<Neighbour>& connected : neighbours_) {
-    std::erase_if(connected, [](const Neighbour& neighbour) { return !neighbour.registered; });
-    for (Neighbour& neighbour : connected) neighbour.spread = *neighbour.registered;
+  for (std::vector<KeyframeLink>& links : links_) {
+    std::erase_if(links, [](const KeyframeLink& link) { return !link.registered; });
+    for (KeyframeLink& link : links) link.spread = *link.registered;
   }
 }
 
-/// The entry of a keyframe among the neighbours of another one. If it is new, its spread is without
-/// limit.
-KeyframeGraph::Neighbour& KeyframeGraph::neighbour(int of, int id) {
-  std::vector<Neighbour>& connected = neighbours_[static_cast<std::size_t>(of)];
-  const auto known = std::ranges::find(connected, id, &Neighbour::id);
-  if (known != connected.end()) return *known;
+/// The connection from a keyframe to another one. If it is new, its spread is without limit.
+KeyframeLink& KeyframeGraph::link(int of, int to) {
+  std::vector<KeyframeLink>& links = links_[static_cast<std::size_t>(of)];
+  const auto known = std::ranges::find(links, to, &KeyframeLink::to);
+  if (known != links.end()) return *known;
   constexpr double without_limit = std::numeric_limits<double>::infinity();
-  return connected.emplace_back(Neighbour{id, {without_limit, without_limit}, std::nullopt});
+  return links.emplace_back(KeyframeLink{to, {without_limit, without_limit}, std::nullopt});
+}
+
+void KeyframeGraph::set_links(int id, std::vector<KeyframeLink> links) {
+  links_[static_cast<std::size_t>(id)] = std::move(links);
 }
 
 void KeyframeGraph::set_pose(int id, const Pose& world_from_camera) {
   keyframes_[static_cast<std::size_t>(id)].world_from_camera = world_from_camera;
 }
 
-void KeyframeGraph::set_cloud(int id, std::shared_ptr<const SurfaceCloud> cloud) {
+void KeyframeGraph::set_cloud(int id, const KeyframeCloud& cloud) {
   Keyframe& keyframe = keyframes_[static_cast<std::size_t>(id)];
-  keyframe.place = PlaceDescriptor(*cloud);
-  keyframe.cloud = std::move(cloud);
+  keyframe.place = PlaceDescriptor(*cloud.load());
+  keyframe.cloud = kept(cloud);
 }
 
 void KeyframeGraph::join(int map, int into, const Pose& into_from_map) {
@@ -82,14 +96,18 @@ void KeyframeGraph::assign_maps(std::span<const int> map_of) {
     keyframe.map = map_of[static_cast<std::size_t>(keyframe.taken_in)];
   }
   for (const Keyframe& keyframe : keyframes_) {
-    std::erase_if(neighbours_[static_cast<std::size_t>(keyframe.id)],
-                  [&](const Neighbour& other) { return (*this)[other.id].map != keyframe.map; });
+    std::erase_if(links_[static_cast<std::size_t>(keyframe.id)],
+                  [&](const KeyframeLink& link) { return (*this)[link.to].map != keyframe.map; });
   }
+}
+
+void KeyframeGraph::settle_maps() {
+  for (Keyframe& keyframe : keyframes_) keyframe.taken_in = keyframe.map;
 }
 
 void KeyframeGraph::shrink(int size) {
   keyframes_.resize(static_cast<std::size_t>(size));
-  neighbours_.resize(static_cast<std::size_t>(size));
+  links_.resize(static_cast<std::size_t>(size));
 }
 
 std::vector<const Keyframe*> KeyframeGraph::around(int id, const Pose& pose, int count,
@@ -118,13 +136,13 @@ std::map<int, PoseSpread> KeyframeGraph::well_connected_to(int id) const {
   for (int hops = 0; hops < max_hops; ++hops) {
     std::map<int, PoseSpread> next;
     for (const auto& [from, spread] : border) {
-      for (const Neighbour& neighbour : neighbours_[static_cast<std::size_t>(from)]) {
-        const PoseSpread sum = spread + neighbour.spread;
+      for (const KeyframeLink& link : links(from)) {
+        const PoseSpread sum = spread + link.spread;
         if (sum.translation_m2 > well_connected_sigma_m * well_connected_sigma_m) continue;
-        const auto [known, is_new] = reached.try_emplace(neighbour.id, sum);
+        const auto [known, is_new] = reached.try_emplace(link.to, sum);
         if (!is_new && known->second.translation_m2 <= sum.translation_m2) continue;
         known->second = sum;
-        next[neighbour.id] = sum;
+        next[link.to] = sum;
       }
     }
     border = std::move(next);
@@ -148,9 +166,9 @@ std::vector<std::optional<PoseSpread>> KeyframeGraph::spreads_from(int id,
     std::optional<PoseSpread>& known = spreads[static_cast<std::size_t>(nearest)];
     if (known) continue;
     known = spread;
-    for (const Neighbour& next : neighbours_[static_cast<std::size_t>(nearest)]) {
-      if (!spreads[static_cast<std::size_t>(next.id)]) {
-        open.emplace(next.id, spread + next.spread);
+    for (const KeyframeLink& next : links(nearest)) {
+      if (!spreads[static_cast<std::size_t>(next.to)]) {
+        open.emplace(next.to, spread + next.spread);
       }
     }
   }
@@ -159,16 +177,16 @@ std::vector<std::optional<PoseSpread>> KeyframeGraph::spreads_from(int id,
 
 void KeyframeGraph::reconnect() {
   constexpr double well_connected_m2 = well_connected_sigma_m * well_connected_sigma_m;
-  const auto is_loose = [](const Neighbour& neighbour) {
-    return neighbour.spread.translation_m2 > well_connected_m2;
+  const auto is_loose = [](const KeyframeLink& link) {
+    return link.spread.translation_m2 > well_connected_m2;
   };
   for (int id = 0; id < size(); ++id) {
-    const std::vector<Neighbour> neighbours = neighbours_[static_cast<std::size_t>(id)];
-    if (std::ranges::none_of(neighbours, is_loose)) continue;
+    const std::vector<KeyframeLink> before = links_[static_cast<std::size_t>(id)];
+    if (std::ranges::none_of(before, is_loose)) continue;
     const auto spreads = spreads_from(id, well_connected_sigma_m);
-    for (const Neighbour& neighbour : neighbours) {
-      const std::optional<PoseSpread>& spread = spreads[static_cast<std::size_t>(neighbour.id)];
-      if (spread) connect_by_loop(id, neighbour.id, *spread);
+    for (const KeyframeLink& link : before) {
+      const std::optional<PoseSpread>& spread = spreads[static_cast<std::size_t>(link.to)];
+      if (spread) connect_by_loop(id, link.to, *spread);
     }
   }
 }

@@ -104,9 +104,10 @@ std::vector<const Keyframe*> best_overlaps(const Keyframe& keyframe,
   };
   constexpr std::size_t most = 3;
   std::vector<Overlap> overlaps;
+  const auto cloud = keyframe.cloud.load();
   for (const Keyframe* other : earlier) {
-    const double share = overlap_share(*keyframe.cloud, keyframe.world_from_camera,
-                                       target_of(*other), camera, registration);
+    const double share =
+        overlap_share(*cloud, keyframe.world_from_camera, target_of(*other), camera, registration);
     if (share >= options.min_overlap) overlaps.push_back({other, share});
   }
   std::ranges::stable_sort(overlaps, std::ranges::greater(), &Overlap::share);
@@ -128,8 +129,8 @@ LoopCandidate find_where_believed(const LoopSearch& search,
   candidate.from = overlapping.front()->id;
   std::vector<RegistrationTarget> targets;
   for (const Keyframe* other : overlapping) targets.push_back(target_of(*other));
-  candidate.registration = register_from_afar(*search.keyframe.cloud, targets, search.camera, drift,
-                                              search.registration);
+  candidate.registration = register_from_afar(*search.keyframe.cloud.load(), targets, search.camera,
+                                              drift, search.registration);
   return candidate;
 }
 
@@ -177,8 +178,10 @@ LoopCandidate find_loop(const Keyframe& keyframe, std::span<const Keyframe> keyf
   const auto earlier = search.candidates();
   LoopCandidate candidate = find_where_believed(search, earlier);
   if (candidate.from < 0 ||
-      !confirms_place(keyframes[static_cast<std::size_t>(candidate.from)], *keyframe.cloud,
-                      candidate.registration, camera, options)) {
+      !confirms_place(
+          keyframes[static_cast<std::size_t>(candidate.from)], *keyframe.cloud.load(),
+          candidate.registration, camera, options,
+          keyframes[static_cast<std::size_t>(candidate.from)].recording == keyframe.recording)) {
     const auto alike = find_where_alike(search, earlier);
     if (!alike) return candidate;
     candidate = *alike;

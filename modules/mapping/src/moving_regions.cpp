@@ -49,10 +49,6 @@ struct Comparison {
   Comparison() = default;
 
   Comparison(const CellGrid& frame, const RegistrationTarget& view,
-             const ComparedKeyframe& compared, const CameraModel& camera)
-      : Comparison(frame, view, target_of(*compared.keyframe), compared.spread, camera) {}
-
-  Comparison(const CellGrid& frame, const RegistrationTarget& view,
              const RegistrationTarget& keyframe, const PoseSpread& spread,
              const CameraModel& camera)
       : grid(*keyframe.cloud, camera),
@@ -127,7 +123,8 @@ std::optional<CleanedKeyframe> clean(const Keyframe& keyframe, const Comparison&
   }
   const Cells<int> regions = grow_regions(comparison.grid, seeds, is_still);
   if (std::ranges::count(regions, growing) == 0) return std::nullopt;
-  return CleanedKeyframe{keyframe.id, without_regions(*keyframe.cloud, comparison.grid, regions)};
+  return CleanedKeyframe{keyframe.id,
+                         without_regions(*keyframe.cloud.load(), comparison.grid, regions)};
 }
 
 /// For each cell of a frame, for how many frames what is there has shown no motion; `no_region` for
@@ -173,11 +170,15 @@ Motion MovingRegions::find(const CloudPointer& cloud, const Pose& world_from_cam
   const CellGrid grid(*cloud, camera_);
   const RegistrationTarget view{cloud.get(), world_from_camera};
   std::vector<Comparison> comparisons(keyframes.size());
+  std::vector<RegistrationTarget> targets;  // before the parallel loop, since loading may throw
+  for (const ComparedKeyframe& compared : keyframes) {
+    targets.push_back(target_of(*compared.keyframe));
+  }
   const int count = static_cast<int>(keyframes.size());
 #pragma omp parallel for schedule(dynamic, 1)
   for (int i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    comparisons[at] = Comparison(grid, view, keyframes[at], camera_);
+    comparisons[at] = Comparison(grid, view, targets[at], keyframes[at].spread, camera_);
   }
   Evidence evidence = gather(grid, comparisons);
   const Cells<int> known = known_cells(known_, grid, world_from_camera, camera_);

@@ -286,9 +286,13 @@ bool Odometry::fits_as_usual(const RegistrationResult& result) const {
 /// Whether a successful registration contradicts the free space of the keyframe that it overlaps
 /// most.
 bool Odometry::contradicts_targets(const Attempt& attempt, const SurfaceCloud& cloud) const {
-  return !attempt.targets.empty() &&
-         contradicts_free_space({&cloud, attempt.registration.world_from_camera},
-                                target_of(*attempt.targets.front()), camera_);
+  if (attempt.targets.empty()) return false;
+  const Keyframe& best = *attempt.targets.front();
+  const bool is_of_earlier_recording = std::ranges::any_of(
+      attempt.targets, [&](const Keyframe* other) { return other->recording > best.recording; });
+  return contradicts_free_space({&cloud, attempt.registration.world_from_camera}, target_of(best),
+                                camera_,
+                                is_of_earlier_recording ? most_violations_since : most_violations);
 }
 
 TrackingStatus Odometry::judge(const Attempt& attempt, double timestamp_s) const {

@@ -4,9 +4,11 @@
 #include "tofmap/mapping/place_descriptor.hpp"
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <vector>
 
+#include <tofmap/core/error.hpp>
 #include <tofmap/core/median.hpp>
 
 namespace tofmap {
@@ -44,6 +46,19 @@ double PlaceDescriptor::difference(const PlaceDescriptor& other) const {
   }
   if (2 * shared < log_range_.size()) return std::numeric_limits<double>::infinity();
   return sum / static_cast<double>(shared);
+}
+
+std::string PlaceDescriptor::to_bytes() const {
+  return {reinterpret_cast<const char*>(log_range_.data()), sizeof log_range_};
+}
+
+PlaceDescriptor place_from_bytes(std::string_view bytes) {
+  PlaceDescriptor place;
+  if (bytes.size() != sizeof place.log_range_) {
+    throw InputError("the descriptor of a place has another size");
+  }
+  std::memcpy(place.log_range_.data(), bytes.data(), bytes.size());
+  return place;
 }
 
 }  // namespace tofmap

@@ -47,12 +47,14 @@ std::vector<Recognition> find_places(const Keyframe& keyframe,
                                      const LoopOptions& options,
                                      const RegistrationOptions& registration) {
   std::vector<Recognition> found;
+  const auto cloud = keyframe.cloud.load();
   for (const Keyframe* candidate :
        most_alike(keyframe.place, std::move(candidates), most_candidates)) {
     const RegistrationResult result =
-        register_near(*candidate, *keyframe.cloud, keyframes, camera, registration);
+        register_near(*candidate, *cloud, keyframes, camera, registration);
     if (is_possible(*candidate, result.world_from_camera) &&
-        confirms_place(*candidate, *keyframe.cloud, result, camera, options)) {
+        confirms_place(*candidate, *cloud, result, camera, options,
+                       candidate->recording == keyframe.recording)) {
       found.push_back({candidate->id, result});
     }
   }

@@ -17,18 +17,18 @@ namespace tofmap {
 /// Searches for a loop of the newest keyframe and recognises its place in other maps, once per
 /// keyframe. Fits the pose graph if there are new loops and the last fit was long enough ago.
 void RoomMapper::close_loops() {
-  if (searched_ == keyframes_.size()) return;
-  searched_ = keyframes_.size();
-  if (is_joined() && differs_from_others(keyframes_[keyframes_.size() - 1]) &&
+  if (searched_ == content_.keyframes.size()) return;
+  searched_ = content_.keyframes.size();
+  if (is_joined() && differs_from_others(content_.keyframes[content_.keyframes.size() - 1]) &&
       ++differing_keyframes_ >= least_differing_keyframes) {
     take_join_back();
   }
   recognise_place();
   if (!loop_options_.close) return;
-  const Keyframe& keyframe = keyframes_[keyframes_.size() - 1];
+  const Keyframe& keyframe = content_.keyframes[content_.keyframes.size() - 1];
   const LoopCandidate candidate =
-      find_loop(keyframe, keyframes_.all(), keyframes_.spreads_from(keyframe.id), camera_,
-                loop_options_, registration_);
+      find_loop(keyframe, content_.keyframes.all(), content_.keyframes.spreads_from(keyframe.id),
+                camera_, loop_options_, registration_);
   if (candidate.edge && candidate.needs_slip) {
     if (const auto slip = slip_behind(*candidate.edge)) {
       add_loop(*candidate.edge);
@@ -47,7 +47,8 @@ void RoomMapper::close_loops() {
 /// none for some keyframes after one that found no slip.
 std::optional<Slip> RoomMapper::slip_behind(const PoseEdge& loop) {
   if (loop.to - last_slip_search_ < keyframes_between_fits) return std::nullopt;
-  auto slip = find_slip(loop, keyframes_.all(), edges_, camera_, loop_options_, registration_);
+  auto slip = find_slip(loop, content_.keyframes.all(), content_.edges, camera_, loop_options_,
+                        registration_);
   if (!slip) last_slip_search_ = loop.to;
   return slip;
 }
@@ -55,19 +56,19 @@ std::optional<Slip> RoomMapper::slip_behind(const PoseEdge& loop) {
 /// Adds a loop to those that the next fit decides on. One that would move the path waits for
 /// others.
 void RoomMapper::add_loop(const PoseEdge& edge) {
-  const Pose found = keyframes_[edge.from].world_from_camera * edge.from_from_to;
-  const Pose& believed = keyframes_[edge.to].world_from_camera;
+  const Pose found = content_.keyframes[edge.from].world_from_camera * edge.from_from_to;
+  const Pose& believed = content_.keyframes[edge.to].world_from_camera;
   const double error_m = (found.translation() - believed.translation()).norm();
-  if (would_move(edge, keyframes_.all())) waiting_loop_ = edge.to;
-  edges_.push_back(edge);
-  loops_.push_back({.from_frame = keyframes_[edge.from].frame_index,
-                    .to_frame = keyframes_[edge.to].frame_index,
-                    .error_m = error_m});
+  if (would_move(edge, content_.keyframes.all())) waiting_loop_ = edge.to;
+  content_.edges.push_back(edge);
+  content_.loops.push_back({.from_frame = content_.keyframes[edge.from].frame_index,
+                            .to_frame = content_.keyframes[edge.to].frame_index,
+                            .error_m = error_m});
   ++unfitted_loops_;
 }
 
 bool RoomMapper::loop_awaits_others() const {
-  return waiting_loop_ >= 0 && waiting_loop_ + keyframes_between_fits >= keyframes_.size();
+  return waiting_loop_ >= 0 && waiting_loop_ + keyframes_between_fits >= content_.keyframes.size();
 }
 
 void RoomMapper::finish() {
@@ -76,29 +77,30 @@ void RoomMapper::finish() {
 
 /// Moves all keyframes, and what is known of the last frame with them.
 void RoomMapper::set_poses(std::span<const Pose> poses) {
-  const Pose current_before = keyframes_[current_].world_from_camera;
-  for (int id = 0; id < keyframes_.size(); ++id) {
-    keyframes_.set_pose(id, poses[static_cast<std::size_t>(id)]);
+  const Pose current_before = content_.keyframes[current_].world_from_camera;
+  for (int id = 0; id < content_.keyframes.size(); ++id) {
+    content_.keyframes.set_pose(id, poses[static_cast<std::size_t>(id)]);
   }
-  const Pose new_from_old_world = keyframes_[current_].world_from_camera * current_before.inverse();
+  const Pose new_from_old_world =
+      content_.keyframes[current_].world_from_camera * current_before.inverse();
   odometry_.move(new_from_old_world);
 }
 
 /// Searches for slips that explain the loops since the last fit, and mends them.
 void RoomMapper::mend_slips() {
   std::vector<PoseEdge> loops;
-  std::ranges::copy_if(edges_, std::back_inserter(loops), &PoseEdge::may_be_wrong);
+  std::ranges::copy_if(content_.edges, std::back_inserter(loops), &PoseEdge::may_be_wrong);
   for (auto loop = loops.end() - unfitted_loops_; loop != loops.end(); ++loop) {
-    const auto slip =
-        find_slip(*loop, keyframes_.all(), edges_, camera_, loop_options_, registration_);
+    const auto slip = find_slip(*loop, content_.keyframes.all(), content_.edges, camera_,
+                                loop_options_, registration_);
     if (slip) mend(*slip);
   }
 }
 
 /// Replaces the edges across a slip, and moves what is behind it.
 void RoomMapper::mend(const Slip& slip) {
-  edges_ = without_slip(edges_, slip);
-  set_poses(fit_loops(keyframes_.all(), edges_, loop_options_).poses);
+  content_.edges = without_slip(content_.edges, slip);
+  set_poses(fit_loops(content_.keyframes.all(), content_.edges, loop_options_).poses);
   rebuild_submaps(slip.at);
 }
 
@@ -107,48 +109,52 @@ void RoomMapper::mend(const Slip& slip) {
 /// apart any more.
 void RoomMapper::rebuild_submaps(int at) {
   std::map<int, int> later_half;  // by the index of the submap
-  for (int id = at; id < keyframes_.size(); ++id) {
-    int& submap = submap_of_[static_cast<std::size_t>(id)];
-    if (submaps_[static_cast<std::size_t>(submap)].anchor >= at) continue;
-    const auto [half, is_new] = later_half.try_emplace(submap, static_cast<int>(submaps_.size()));
-    if (is_new) submaps_.push_back({id, SurfaceMap(surface_options_)});
+  for (int id = at; id < content_.keyframes.size(); ++id) {
+    int& submap = content_.submap_of[static_cast<std::size_t>(id)];
+    if (content_.submaps[static_cast<std::size_t>(submap)].anchor >= at) continue;
+    const auto [half, is_new] =
+        later_half.try_emplace(submap, static_cast<int>(content_.submaps.size()));
+    if (is_new) content_.submaps.push_back({id, SurfaceMap(content_.surface_options)});
     submap = half->second;
   }
   for (const auto& [earlier, later] : later_half) {
-    submaps_[static_cast<std::size_t>(earlier)].surface = SurfaceMap(surface_options_);
-    for (const Keyframe& keyframe : keyframes_.all()) {
-      const int submap = submap_of_[static_cast<std::size_t>(keyframe.id)];
+    content_.submaps[static_cast<std::size_t>(earlier)].surface =
+        SurfaceMap(content_.surface_options);
+    for (const Keyframe& keyframe : content_.keyframes.all()) {
+      const int submap = content_.submap_of[static_cast<std::size_t>(keyframe.id)];
       if (submap != earlier && submap != later) continue;
       const Pose anchor_from_world =
-          keyframes_[submaps_[static_cast<std::size_t>(submap)].anchor].world_from_camera.inverse();
-      submaps_[static_cast<std::size_t>(submap)].surface.integrate(
-          *keyframe.cloud, anchor_from_world * keyframe.world_from_camera);
+          content_.keyframes[content_.submaps[static_cast<std::size_t>(submap)].anchor]
+              .world_from_camera.inverse();
+      content_.submaps[static_cast<std::size_t>(submap)].surface.integrate(
+          *keyframe.cloud.load(), anchor_from_world * keyframe.world_from_camera);
     }
   }
 }
 
 void RoomMapper::fit() {
   mend_slips();
-  const LoopFit fitted = fit_loops(keyframes_.all(), edges_, loop_options_);
+  const LoopFit fitted = fit_loops(content_.keyframes.all(), content_.edges, loop_options_);
   set_poses(fitted.poses);
   waiting_loop_ = -1;
-  keyframes_.forget_loops();
-  auto loop = loops_.begin();
-  for (std::size_t i = 0; i < edges_.size(); ++i) {
-    if (!edges_[i].may_be_wrong) continue;
+  content_.keyframes.forget_loops();
+  auto loop = content_.loops.begin();
+  for (std::size_t i = 0; i < content_.edges.size(); ++i) {
+    if (!content_.edges[i].may_be_wrong) continue;
     loop->mahalanobis_distance = fitted.edge_mahalanobis[i];
     loop->is_used = fitted.is_used[i];
     if (loop->is_used) {
       // The relative pose of both ends is now correct, so frames may be registered with either.
-      keyframes_.connect_by_loop(edges_[i].from, edges_[i].to, spread_of(edges_[i].covariance));
+      content_.keyframes.connect_by_loop(content_.edges[i].from, content_.edges[i].to,
+                                         spread_of(content_.edges[i].covariance));
     } else {
-      waiting_loop_ = std::max(waiting_loop_, edges_[i].to);
+      waiting_loop_ = std::max(waiting_loop_, content_.edges[i].to);
     }
     ++loop;
   }
-  keyframes_.reconnect();
+  content_.keyframes.reconnect();
   unfitted_loops_ = 0;
-  last_fit_ = keyframes_.size() - 1;
+  last_fit_ = content_.keyframes.size() - 1;
 }
 
 }  // namespace tofmap

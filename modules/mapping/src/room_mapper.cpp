@@ -10,6 +10,7 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <tofmap/core/timed.hpp>
@@ -45,8 +46,41 @@ RoomMapper::RoomMapper(const CameraModel& camera, const OdometryOptions& odometr
       odometry_options_(odometry),
       registration_(registration),
       loop_options_(loops),
-      surface_options_(surface),
-      odometry_(camera, odometry, registration, loops) {}
+      odometry_(camera, odometry, registration, loops),
+      content_(camera, surface) {
+  content_.recordings.emplace_back().sensor.camera = camera;
+}
+
+void RoomMapper::describe_recording(MapRecording recording) {
+  content_.recordings.back() = std::move(recording);
+}
+
+void RoomMapper::go_on_with(MapContent finished, MapRecording recording) {
+  content_ = std::move(finished);
+  content_.recordings.push_back(std::move(recording));
+  content_.keyframes.settle_maps();
+  first_own_frame_ = content_.frames.size();
+  for (const Keyframe& keyframe : content_.keyframes.all()) map_ = std::max(map_, keyframe.map + 1);
+  begun_maps_ = map_ + 1;
+  searched_ = content_.keyframes.size();
+  last_fit_ = std::max(0, searched_ - 1);
+  last_slip_search_ = searched_ - keyframes_between_fits;
+}
+
+int RoomMapper::localised_frames() const {
+  std::set<int> earlier;
+  for (const Keyframe& keyframe : content_.keyframes.all()) {
+    if (keyframe.recording < recording()) earlier.insert(keyframe.map);
+  }
+  return static_cast<int>(std::ranges::count_if(own_frames(), [&](const RegisteredFrame& frame) {
+    return earlier.contains(content_.keyframes[frame.keyframe].map);
+  }));
+}
+
+/// The registered frames of the recording that is being mapped.
+std::span<const RegisteredFrame> RoomMapper::own_frames() const {
+  return std::span(content_.frames).subspan(first_own_frame_);
+}
 
 AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
   AddedFrame added;
@@ -70,7 +104,7 @@ AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
   }
   const int map_before = map_;
   timed(added.loop_ms, [&] { close_loops(); });
-  added.tracking.world_from_camera = pose_of(frames_.back());
+  added.tracking.world_from_camera = pose_of(content_.frames.back(), content_.keyframes);
   if (map_ != map_before && is_joined()) added.tracking.status = TrackingStatus::relocalised;
   return added;
 }
@@ -92,7 +126,7 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
   }
   odometry_.note_frame(frame.timestamp_s);
   if (!result.registered()) {
-    if (!frames_.empty()) ++lost_frames_;
+    if (!own_frames().empty()) ++lost_frames_;
     if (result.status != TrackingStatus::no_surface) held_.push_back(frame);
     return result;
   }
@@ -102,13 +136,14 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
   if (result.is_keyframe) {
     add_keyframe(frame, around, result);
   } else if (const auto target = std::ranges::find_if(
-                 result.targets, [&](int id) { return is_own(keyframes_[id]); });
+                 result.targets, [&](int id) { return is_own(content_.keyframes[id]); });
              target != result.targets.end()) {
     current_ = *target;
   }
-  frames_.push_back({frame.timestamp_s, current_,
-                     keyframes_[current_].world_from_camera.inverse() * result.world_from_camera,
-                     frame.index, result.spread.translation_sigma_m()});
+  content_.frames.push_back(
+      {frame.timestamp_s, current_,
+       content_.keyframes[current_].world_from_camera.inverse() * result.world_from_camera,
+       frame.index, result.spread.translation_sigma_m(), recording()});
   result.target_covariances.clear();
   result.registration.target_information.clear();
   return result;
@@ -118,7 +153,7 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
 /// newest map tell what moves: differences from a map that was joined are evidence about the join.
 TrackingResult RoomMapper::track_with(std::span<const Keyframe* const> around, NewFrame& frame) {
   StillTracking found =
-      odometry_.track(frame.timestamp_s, frame.cloud, around, own(around), keyframes_);
+      odometry_.track(frame.timestamp_s, frame.cloud, around, own(around), content_.keyframes);
   frame.cloud = found.still;
   return std::move(found.tracking);
 }
@@ -136,97 +171,21 @@ KeyframeSpacing RoomMapper::keyframe_spacing() const {
 }
 
 std::vector<const Keyframe*> RoomMapper::keyframes_around() const {
-  if (frames_.empty() || keyframes_[frames_.back().keyframe].map != map_) return {};
-  return keyframes_.around(frames_.back().keyframe, pose_of(frames_.back()),
-                           odometry_options_.keyframes_around, keyframe_spacing());
-}
-
-Pose RoomMapper::pose_of(const RegisteredFrame& frame) const {
-  return keyframes_[frame.keyframe].world_from_camera * frame.keyframe_from_camera;
+  if (own_frames().empty() || content_.keyframes[content_.frames.back().keyframe].map != map_)
+    return {};
+  return content_.keyframes.around(content_.frames.back().keyframe,
+                                   pose_of(content_.frames.back(), content_.keyframes),
+                                   odometry_options_.keyframes_around, keyframe_spacing());
 }
 
 /// Adds the surface of the latest registered frame to the submap of its keyframe.
 void RoomMapper::integrate(const SurfaceCloud& cloud) {
-  Submap& submap =
-      submaps_[static_cast<std::size_t>(submap_of_[static_cast<std::size_t>(current_)])];
-  const Pose anchor_from_keyframe = keyframes_[submap.anchor].world_from_camera.inverse() *
-                                    keyframes_[current_].world_from_camera;
-  submap.surface.integrate(cloud, anchor_from_keyframe * frames_.back().keyframe_from_camera);
-}
-
-Trajectory RoomMapper::trajectory(int map) const {
-  Trajectory trajectory;
-  for (const RegisteredFrame& frame : frames_) {
-    if (keyframes_[frame.keyframe].map != map) continue;
-    trajectory.push_back({frame.timestamp_s, pose_of(frame)});
-  }
-  return trajectory;
-}
-
-std::vector<int> RoomMapper::frames(int map) const {
-  std::vector<int> indices;
-  for (const RegisteredFrame& frame : frames_) {
-    if (keyframes_[frame.keyframe].map == map) indices.push_back(frame.index);
-  }
-  return indices;
-}
-
-Trajectory RoomMapper::keyframe_trajectory(int map) const {
-  Trajectory trajectory;
-  for (const Keyframe& keyframe : keyframes_.all()) {
-    if (keyframe.map != map) continue;
-    trajectory.push_back({keyframe.timestamp_s, keyframe.world_from_camera});
-  }
-  return trajectory;
-}
-
-PoseCertainty RoomMapper::least_certain(int map) const {
-  std::vector<Pose> poses;
-  std::vector<int> index_of(static_cast<std::size_t>(keyframes_.size()), -1);
-  for (const Keyframe& keyframe : keyframes_.all()) {
-    if (keyframe.map != map) continue;
-    index_of[static_cast<std::size_t>(keyframe.id)] = static_cast<int>(poses.size());
-    poses.push_back(keyframe.world_from_camera);
-  }
-  std::vector<PoseEdge> edges;
-  auto loop = loops_.begin();
-  for (const PoseEdge& edge : edges_) {
-    const bool is_used = !edge.may_be_wrong || loop++->is_used;
-    if (!is_used || keyframes_[edge.from].map != map || keyframes_[edge.to].map != map) continue;
-    edges.push_back(edge);
-    edges.back().from = index_of[static_cast<std::size_t>(edge.from)];
-    edges.back().to = index_of[static_cast<std::size_t>(edge.to)];
-  }
-  const std::vector<ExpectedError> errors = expected_errors(poses, edges);
-  PoseCertainty least{.frame = -1, .error = {}};
-  for (const RegisteredFrame& frame : frames_) {
-    if (keyframes_[frame.keyframe].map != map) continue;
-    const int index = index_of[static_cast<std::size_t>(frame.keyframe)];
-    ExpectedError error = errors[static_cast<std::size_t>(index)];
-    error.position_m = std::hypot(error.position_m, frame.sigma_m);
-    if (least.frame < 0 || error.position_m > least.error.position_m) least = {frame.index, error};
-  }
-  return least;
-}
-
-std::size_t RoomMapper::voxel_count() const {
-  std::size_t count = 0;
-  for (const Submap& submap : submaps_) count += submap.surface.size();
-  return count;
-}
-
-MapCloud RoomMapper::surface(int map) const {
-  SurfaceMap whole(surface_options_);
-  for (const Submap& submap : submaps_) {
-    const Keyframe& anchor = keyframes_[submap.anchor];
-    if (anchor.map == map) whole.add(submap.surface, anchor.world_from_camera);
-  }
-  MapCloud surface = whole.extract();
-  if (!surface_options_.drop_free_space_violations) return surface;
-  std::vector<Keyframe> seen_by;
-  std::ranges::copy_if(keyframes_.all(), std::back_inserter(seen_by),
-                       [&](const Keyframe& keyframe) { return keyframe.map == map; });
-  return without_free_space_violations(surface, seen_by, camera_, surface_options_.voxel_m);
+  Submap& submap = content_.submaps[static_cast<std::size_t>(
+      content_.submap_of[static_cast<std::size_t>(current_)])];
+  const Pose anchor_from_keyframe = content_.keyframes[submap.anchor].world_from_camera.inverse() *
+                                    content_.keyframes[current_].world_from_camera;
+  submap.surface.integrate(cloud,
+                           anchor_from_keyframe * content_.frames.back().keyframe_from_camera);
 }
 
 bool RoomMapper::wants_keyframe(const TrackingResult& result,
@@ -243,7 +202,7 @@ bool RoomMapper::wants_keyframe(const TrackingResult& result,
   // Loops of keyframes that follow soon show whether the path, or the loop, is wrong.
   const double share = loop_awaits_others() ? share_for_loops : 1;
   return std::ranges::none_of(own(around), [&](const Keyframe* keyframe) {
-    const bool is_of_earlier_visit = keyframe->id + recent_keyframes < keyframes_.size();
+    const bool is_of_earlier_visit = keyframe->id + recent_keyframes < content_.keyframes.size();
     return keyframe_spacing().between(keyframe->world_from_camera, pose) <
            share * (is_of_earlier_visit ? steps_on_earlier_visits : 1);
   });
@@ -251,25 +210,33 @@ bool RoomMapper::wants_keyframe(const TrackingResult& result,
 
 void RoomMapper::add_keyframe(const NewFrame& frame, std::span<const Keyframe* const> around,
                               const TrackingResult& result) {
-  const int id = keyframes_.size();
+  const int id = content_.keyframes.size();
   double path_m = 0;
   if (id > 0) {
-    const Keyframe& last = keyframes_[id - 1];
+    const Keyframe& last = content_.keyframes[id - 1];
     path_m = last.path_m;
     if (last.map == map_) {
       path_m +=
           (result.world_from_camera.translation() - last.world_from_camera.translation()).norm();
     }
   }
-  submap_of_.push_back(submap_for(id, result.world_from_camera, around));
-  keyframes_.add({id, frame.index, frame.timestamp_s, result.world_from_camera, frame.cloud, path_m,
-                  PlaceDescriptor(*frame.cloud), map_, newest_map()});
+  content_.submap_of.push_back(submap_for(id, result.world_from_camera, around));
+  content_.keyframes.add({.id = id,
+                          .frame_index = frame.index,
+                          .timestamp_s = frame.timestamp_s,
+                          .world_from_camera = result.world_from_camera,
+                          .cloud = frame.cloud,
+                          .path_m = path_m,
+                          .place = PlaceDescriptor(*frame.cloud),
+                          .map = map_,
+                          .taken_in = newest_map(),
+                          .recording = recording()});
   for (std::size_t i = 0; i < result.targets.size(); ++i) {
     const int target = result.targets[i];
-    edges_.push_back(
-        edge_of(keyframes_[target], id, result.world_from_camera, result.target_covariances[i]));
+    content_.edges.push_back(edge_of(content_.keyframes[target], id, result.world_from_camera,
+                                     result.target_covariances[i]));
     // Targets are well connected, and may constrain different directions.
-    keyframes_.connect(target, id, result.spread);
+    content_.keyframes.connect(target, id, result.spread);
   }
   odometry_.note_keyframe(id);
   current_ = id;
@@ -281,16 +248,17 @@ int RoomMapper::submap_for(int id, const Pose& pose, std::span<const Keyframe* c
   int nearest = -1;
   double least_steps = submap_radius_steps;
   for (const Keyframe* keyframe : own(around)) {
-    const int submap = submap_of_[static_cast<std::size_t>(keyframe->id)];
-    const int anchor = submaps_[static_cast<std::size_t>(submap)].anchor;
-    const double steps = keyframe_spacing().between(keyframes_[anchor].world_from_camera, pose);
+    const int submap = content_.submap_of[static_cast<std::size_t>(keyframe->id)];
+    const int anchor = content_.submaps[static_cast<std::size_t>(submap)].anchor;
+    const double steps =
+        keyframe_spacing().between(content_.keyframes[anchor].world_from_camera, pose);
     if (steps >= least_steps) continue;
     nearest = submap;
     least_steps = steps;
   }
   if (nearest >= 0) return nearest;
-  submaps_.push_back({id, SurfaceMap(surface_options_)});
-  return static_cast<int>(submaps_.size()) - 1;
+  content_.submaps.push_back({id, SurfaceMap(content_.surface_options)});
+  return static_cast<int>(content_.submaps.size()) - 1;
 }
 
 }  // namespace tofmap

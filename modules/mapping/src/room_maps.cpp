@@ -45,8 +45,8 @@ void move(TrackingResult& result, const Pose& new_from_old_world) {
 
 /// Whether the camera can have been carried elsewhere since the last registered frame.
 bool RoomMapper::was_blind(double timestamp_s) const {
-  return !frames_.empty() && odometry_.is_after_gap(timestamp_s) &&
-         timestamp_s - frames_.back().timestamp_s > longest_blink_s;
+  return !own_frames().empty() && odometry_.is_after_gap(timestamp_s) &&
+         timestamp_s - content_.frames.back().timestamp_s > longest_blink_s;
 }
 
 /// Begins a map with the frames that could not be registered, in order. Returns what became of
@@ -68,27 +68,27 @@ std::vector<LateFrame> RoomMapper::start_map() {
 /// what was added last.
 std::vector<LateFrame> RoomMapper::drop_fragment() {
   const auto is_of_newest = [&](const RegisteredFrame& frame) {
-    return keyframes_[frame.keyframe].map == map_;
+    return content_.keyframes[frame.keyframe].map == map_;
   };
-  const auto first = std::ranges::find_if(frames_, is_of_newest);
-  if (map_ + 1 != begun_maps_ || frames_.end() - first >= least_frames_of_map) return {};
+  const auto first = std::ranges::find_if(content_.frames, is_of_newest);
+  if (map_ + 1 != begun_maps_ || content_.frames.end() - first >= least_frames_of_map) return {};
   std::vector<LateFrame> dropped;
-  for (auto frame = first; frame != frames_.end(); ++frame) {
+  for (auto frame = first; frame != content_.frames.end(); ++frame) {
     dropped.push_back({frame->index, TrackingResult{}, nullptr});
   }
-  frames_.erase(first, frames_.end());
+  content_.frames.erase(first, content_.frames.end());
   const auto is_kept = [&](const Keyframe& keyframe) { return keyframe.map != map_; };
-  const auto kept = static_cast<int>(std::ranges::count_if(keyframes_.all(), is_kept));
+  const auto kept = static_cast<int>(std::ranges::count_if(content_.keyframes.all(), is_kept));
   const auto refers_to_dropped = [&](const PoseEdge& edge) { return edge.to >= kept; };
-  std::erase_if(edges_, refers_to_dropped);
-  const auto kept_loops = std::ranges::count_if(edges_, &PoseEdge::may_be_wrong);
-  const auto dropped_loops = static_cast<int>(std::ssize(loops_) - kept_loops);
+  std::erase_if(content_.edges, refers_to_dropped);
+  const auto kept_loops = std::ranges::count_if(content_.edges, &PoseEdge::may_be_wrong);
+  const auto dropped_loops = static_cast<int>(std::ssize(content_.loops) - kept_loops);
   unfitted_loops_ = std::max(0, unfitted_loops_ - dropped_loops);  // the newest ones
-  loops_.resize(static_cast<std::size_t>(kept_loops));
+  content_.loops.resize(static_cast<std::size_t>(kept_loops));
   std::erase_if(recognitions_, refers_to_dropped);
-  std::erase_if(submaps_, [&](const Submap& submap) { return submap.anchor >= kept; });
-  submap_of_.resize(static_cast<std::size_t>(kept));
-  keyframes_.shrink(kept);
+  std::erase_if(content_.submaps, [&](const Submap& submap) { return submap.anchor >= kept; });
+  content_.submap_of.resize(static_cast<std::size_t>(kept));
+  content_.keyframes.shrink(kept);
   searched_ = std::min(searched_, kept);
   last_slip_search_ = std::min(last_slip_search_, kept - 1);
   return dropped;
@@ -98,8 +98,8 @@ std::vector<LateFrame> RoomMapper::drop_fragment() {
 /// travelled to, and joins maps if enough keyframes agree.
 void RoomMapper::recognise_place() {
   const auto is_of_this = [&](const Keyframe& other) { return other.map == map_; };
-  if (std::ranges::all_of(keyframes_.all(), is_of_this)) return;
-  const Keyframe& keyframe = keyframes_[keyframes_.size() - 1];
+  if (std::ranges::all_of(content_.keyframes.all(), is_of_this)) return;
+  const Keyframe& keyframe = content_.keyframes[content_.keyframes.size() - 1];
   const std::vector<Stretch> travelled = stretches();
   const auto can_be_at = [&](const Keyframe& other, const Pose& pose, double tolerance_m) {
     return can_travel(travelled,
@@ -116,7 +116,7 @@ void RoomMapper::recognise_place() {
   const double near_m =
       travel_tolerance_m + recognition_reach_m + recognition_reach_rad * since_begin_m;
   std::vector<const Keyframe*> candidates;
-  for (const Keyframe& other : keyframes_.all()) {
+  for (const Keyframe& other : content_.keyframes.all()) {
     if (!is_of_this(other) && can_be_at(other, other.world_from_camera, near_m)) {
       candidates.push_back(&other);
     }
@@ -124,26 +124,27 @@ void RoomMapper::recognise_place() {
   const auto is_possible = [&](const Keyframe& other, const Pose& pose) {
     return can_be_at(other, pose, travel_tolerance_m);
   };
-  const auto found = recognise(keyframe, std::move(candidates), is_possible, keyframes_.all(),
-                               camera_, loop_options_, registration_);
+  const auto found = recognise(keyframe, std::move(candidates), is_possible,
+                               content_.keyframes.all(), camera_, loop_options_, registration_);
   if (!found) return;
-  recognitions_.push_back(loop_edge(keyframes_[found->from], keyframe.id, found->registration));
+  recognitions_.push_back(
+      loop_edge(content_.keyframes[found->from], keyframe.id, found->registration));
   join_maps(travelled);
 }
 
 /// The path of the camera through the maps.
 std::vector<Stretch> RoomMapper::stretches() const {
   std::vector<Stretch> stretches;
-  for (const RegisteredFrame& frame : frames_) {
-    add_position(stretches, keyframes_[frame.keyframe].map, frame.timestamp_s,
-                 pose_of(frame).translation());
+  for (const RegisteredFrame& frame : own_frames()) {
+    add_position(stretches, content_.keyframes[frame.keyframe].map, frame.timestamp_s,
+                 pose_of(frame, content_.keyframes).translation());
   }
   return stretches;
 }
 
 /// Joins the newest map with another one if enough recognitions agree. `travelled` are stretches().
 void RoomMapper::join_maps(std::span<const Stretch> travelled) {
-  const auto join = find_join(recognitions_, map_, keyframes_.all(), loop_options_);
+  const auto join = find_join(recognitions_, map_, content_.keyframes.all(), loop_options_);
   if (!join) return;
   const int differing = differing_keyframes(*join);
   if (differing >= least_differing_keyframes) return;
@@ -156,12 +157,12 @@ void RoomMapper::join_maps(std::span<const Stretch> travelled) {
                     .into = join->into,
                     .found_in = newest_map(),
                     .is_blind = gap != travelled.end()});
-  keyframes_.join(join->map, join->into, join->into_from_map);
+  content_.keyframes.join(join->map, join->into, join->into_from_map);
   odometry_.move(join->into_from_map);
   map_ = join->into;
   for (const PoseEdge& edge : join->edges) add_loop(edge);
   std::erase_if(recognitions_, [&](const PoseEdge& edge) {
-    return keyframes_[edge.from].map == keyframes_[edge.to].map;
+    return content_.keyframes[edge.from].map == content_.keyframes[edge.to].map;
   });
   fit();
 }
@@ -170,7 +171,7 @@ void RoomMapper::join_maps(std::span<const Stretch> travelled) {
 /// one plan differ in what was put there. Counts no further than the join needs.
 int RoomMapper::differing_keyframes(const MapJoin& join) const {
   int count = 0;
-  for (const Keyframe& keyframe : keyframes_.all()) {
+  for (const Keyframe& keyframe : content_.keyframes.all()) {
     if (keyframe.map != join.map || count == least_differing_keyframes) continue;
     Keyframe moved = keyframe;
     moved.map = join.into;
@@ -186,9 +187,17 @@ bool RoomMapper::differs_from_others(const Keyframe& keyframe) const {
   const Keyframe* other = keyframe_near(keyframe.world_from_camera, keyframe.map);
   if (other == nullptr) return false;
   const ComparedKeyframe compared{other, {}};
-  const Motion motion =
-      MovingRegions(camera_).find(keyframe.cloud, keyframe.world_from_camera, {&compared, 1});
-  return motion.contradicts_pose || !motion.is_empty();
+  const Motion motion = MovingRegions(camera_).find(keyframe.cloud.load(),
+                                                    keyframe.world_from_camera, {&compared, 1});
+  // Between recordings, furniture may have been moved.
+  return motion.contradicts_pose || (other->recording == keyframe.recording && !motion.is_empty());
+}
+
+/// Whether a frame of the newest map shows another place than a keyframe that it is near.
+bool RoomMapper::is_of_another_place(const RegistrationTarget& frame, const Keyframe& other) const {
+  return contradicts_free_space(
+      frame, target_of(other), camera_,
+      other.recording == recording() ? most_violations : most_violations_since);
 }
 
 /// Registers a frame with the keyframes of its own map alone, after that with all keyframes of the
@@ -198,11 +207,11 @@ TrackingResult RoomMapper::track_apart(NewFrame& frame, std::span<const Keyframe
   TrackingResult result = track_with(own(around), frame);
   if (!result.registered()) return result;
   const Keyframe* other = keyframe_near(result.world_from_camera, map_);
-  if (other != nullptr && contradicts_free_space({frame.cloud.get(), result.world_from_camera},
-                                                 target_of(*other), camera_)) {
-    const Pose before = keyframes_[current_].world_from_camera;
+  if (other != nullptr &&
+      is_of_another_place({frame.cloud.get(), result.world_from_camera}, *other)) {
+    const Pose before = content_.keyframes[current_].world_from_camera;
     take_join_back();
-    move(result, keyframes_[current_].world_from_camera * before.inverse());
+    move(result, content_.keyframes[current_].world_from_camera * before.inverse());
   }
   return result;
 }
@@ -216,7 +225,7 @@ void RoomMapper::take_join_back() {
   std::vector<int> map_of(static_cast<std::size_t>(begun_maps_));
   std::iota(map_of.begin(), map_of.end(), 0);
   for (const JoinedMaps& join : joins_) std::ranges::replace(map_of, join.map, join.into);
-  keyframes_.assign_maps(map_of);
+  content_.keyframes.assign_maps(map_of);
   drop_edges_between_maps();
   map_ = newest_map();
   differing_keyframes_ = 0;
@@ -228,15 +237,16 @@ void RoomMapper::take_join_back() {
 /// only over those of other maps.
 void RoomMapper::connect_own_keyframes() {
   std::set<int> connected;
-  for (const PoseEdge& edge : edges_) {
-    if (is_own(keyframes_[edge.from]) && edge.from < edge.to) connected.insert(edge.to);
+  for (const PoseEdge& edge : content_.edges) {
+    if (is_own(content_.keyframes[edge.from]) && edge.from < edge.to) connected.insert(edge.to);
   }
-  for (const Keyframe& keyframe : keyframes_.all()) {
+  for (const Keyframe& keyframe : content_.keyframes.all()) {
     if (!is_own(keyframe) || connected.contains(keyframe.id)) continue;
-    const auto spreads = keyframes_.spreads_from(keyframe.id);
+    const auto spreads = content_.keyframes.spreads_from(keyframe.id);
     const Keyframe* nearest = nullptr;
     PoseSpread least;
-    for (const Keyframe& earlier : keyframes_.all().first(static_cast<std::size_t>(keyframe.id))) {
+    for (const Keyframe& earlier :
+         content_.keyframes.all().first(static_cast<std::size_t>(keyframe.id))) {
       const auto& spread = spreads[static_cast<std::size_t>(earlier.id)];
       if (!is_own(earlier) || !spread) continue;
       if (nearest != nullptr && spread->translation_m2 >= least.translation_m2) continue;
@@ -248,38 +258,38 @@ void RoomMapper::connect_own_keyframes() {
     edge.from_from_to = nearest->world_from_camera.inverse() * keyframe.world_from_camera;
     edge.covariance.diagonal() << Eigen::Vector3d::Constant(least.rotation_rad2),
         Eigen::Vector3d::Constant(least.translation_m2);
-    edges_.push_back(edge);
-    keyframes_.connect(edge.from, edge.to, least);
+    content_.edges.push_back(edge);
+    content_.keyframes.connect(edge.from, edge.to, least);
   }
 }
 
 /// Drops the edges, and with them the loops, between keyframes of different maps.
 void RoomMapper::drop_edges_between_maps() {
   const auto is_between = [&](const PoseEdge& edge) {
-    return keyframes_[edge.from].map != keyframes_[edge.to].map;
+    return content_.keyframes[edge.from].map != content_.keyframes[edge.to].map;
   };
-  const auto fitted = static_cast<std::ptrdiff_t>(loops_.size()) - unfitted_loops_;
+  const auto fitted = static_cast<std::ptrdiff_t>(content_.loops.size()) - unfitted_loops_;
   std::vector<Loop> kept;
   std::ptrdiff_t index = 0;
   unfitted_loops_ = 0;
-  for (const PoseEdge& edge : edges_) {
+  for (const PoseEdge& edge : content_.edges) {
     if (!edge.may_be_wrong) continue;
     if (!is_between(edge)) {
-      kept.push_back(loops_[static_cast<std::size_t>(index)]);
+      kept.push_back(content_.loops[static_cast<std::size_t>(index)]);
       unfitted_loops_ += index >= fitted ? 1 : 0;
     }
     ++index;
   }
-  loops_ = std::move(kept);
-  std::erase_if(edges_, is_between);
+  content_.loops = std::move(kept);
+  std::erase_if(content_.edges, is_between);
 }
 
 /// Moves a map so that its first keyframe is the origin of its world.
 void RoomMapper::return_to_origin(int map) {
-  const auto first = std::ranges::find(keyframes_.all(), map, &Keyframe::map);
-  if (first == keyframes_.all().end()) return;
+  const auto first = std::ranges::find(content_.keyframes.all(), map, &Keyframe::map);
+  if (first == content_.keyframes.all().end() || first->recording < recording()) return;
   const Pose origin_from_world = first->world_from_camera.inverse();
-  keyframes_.join(map, map, origin_from_world);
+  content_.keyframes.join(map, map, origin_from_world);
   if (map != map_) return;
   odometry_.move(origin_from_world);
 }
@@ -289,7 +299,7 @@ void RoomMapper::return_to_origin(int map) {
 const Keyframe* RoomMapper::keyframe_near(const Pose& pose, int map) const {
   const Keyframe* nearest = nullptr;
   double least_steps = steps_of_same_view;
-  for (const Keyframe& keyframe : keyframes_.all()) {
+  for (const Keyframe& keyframe : content_.keyframes.all()) {
     if (keyframe.map != map || is_own(keyframe)) continue;
     const double steps = keyframe_spacing().between(keyframe.world_from_camera, pose);
     if (steps >= least_steps) continue;
@@ -301,15 +311,6 @@ const Keyframe* RoomMapper::keyframe_near(const Pose& pose, int map) const {
 
 int RoomMapper::blind_joins() const {
   return static_cast<int>(std::ranges::count_if(joins_, &JoinedMaps::is_blind));
-}
-
-std::vector<int> RoomMapper::maps() const {
-  std::map<int, int> frames_of;
-  for (const RegisteredFrame& frame : frames_) ++frames_of[keyframes_[frame.keyframe].map];
-  std::vector<int> maps;
-  for (const auto& [map, frames] : frames_of) maps.push_back(map);
-  std::ranges::stable_sort(maps, std::ranges::greater(), [&](int map) { return frames_of[map]; });
-  return maps;
 }
 
 }  // namespace tofmap

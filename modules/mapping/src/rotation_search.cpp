@@ -53,7 +53,8 @@ SphericalView panorama(std::span<const Keyframe* const> keyframes, const Pose& e
   std::vector<Eigen::Vector3f> points_m;
   for (const Keyframe* keyframe : keyframes) {
     const Pose camera_from_keyframe = expected.inverse() * keyframe->world_from_camera;
-    for (const SurfacePoint& point : keyframe->cloud->points) {
+    const auto cloud = keyframe->cloud.load();
+    for (const SurfacePoint& point : cloud->points) {
       if (!point.has_normal()) continue;
       const Eigen::Vector3d place = camera_from_keyframe * point.getVector3fMap().cast<double>();
       points_m.emplace_back((panorama_from_camera * place).cast<float>());

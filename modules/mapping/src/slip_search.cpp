@@ -60,7 +60,7 @@ bool SlipSearch::are_later_ones_held(int id) const {
 RegistrationResult SlipSearch::register_at(const Pose& pose, int id, const Others& others) const {
   std::vector<RegistrationTarget> targets;
   for (const Keyframe* other : others) targets.push_back(target_of(*other));
-  return register_to_targets(*at(id).cloud, targets, camera,
+  return register_to_targets(*at(id).cloud.load(), targets, camera,
                              {.world_from_camera = pose,
                               .rotation_sigma_rad = tolerance_rad,
                               .translation_sigma_m = tolerance_m},
@@ -72,15 +72,15 @@ RegistrationResult SlipSearch::register_at(const Pose& pose, int id, const Other
 std::optional<RegistrationResult> SlipSearch::slip_at(int id, const Others& others,
                                                       const Pose& corrected) const {
   const Keyframe& keyframe = at(id);
+  const auto cloud = keyframe.cloud.load();
   const Pose& believed = keyframe.world_from_camera;
   if (!are_near(corrected, believed, farthest_slip_m, options.max_rotation_rad) ||
-      contradicts_free_space({keyframe.cloud.get(), corrected}, target_of(*others.front()),
-                             camera)) {
+      contradicts_free_space({cloud.get(), corrected}, target_of(*others.front()), camera)) {
     return std::nullopt;
   }
   RegistrationResult result = register_at(corrected, id, others);
   if (!are_near(result.world_from_camera, corrected, tolerance_m, tolerance_rad) ||
-      !confirms_place(*others.front(), *keyframe.cloud, result, camera, options)) {
+      !confirms_place(*others.front(), *cloud, result, camera, options)) {
     return std::nullopt;
   }
   const RegistrationResult again = register_at(believed, id, others);

@@ -6,7 +6,10 @@
 #include "grid_key.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+
+#include <tofmap/core/bytes.hpp>
 
 namespace tofmap {
 namespace {
@@ -41,7 +44,12 @@ std::vector<OptionField<SurfaceMapOptions>> SurfaceMapOptions::fields() {
   };
 }
 
-SurfaceMap::SurfaceMap(const SurfaceMapOptions& options) : options_(options) {}
+SurfaceMap::SurfaceMap(const SurfaceMapOptions& options) : options_(options) { note_change(); }
+
+void SurfaceMap::note_change() {
+  static std::atomic<std::uint64_t> revisions{0};
+  revision_ = ++revisions;
+}
 
 std::int64_t SurfaceMap::key(const Eigen::Vector3d& point_m) const {
   // Clamping keeps coordinates within int, but outside the grid, so that grid_key() refuses them.
@@ -52,7 +60,16 @@ std::int64_t SurfaceMap::key(const Eigen::Vector3d& point_m) const {
   return grid_key(place.cast<int>().matrix(), options_.voxel_m);
 }
 
+Eigen::Vector3d SurfaceMap::centre_m(std::int64_t key) const {
+  return options_.voxel_m * (grid_place(key).cast<double>().array() + 0.5).matrix();
+}
+
+Eigen::Vector3d SurfaceMap::mean_m(std::int64_t key, const Voxel& voxel) const {
+  return centre_m(key) + (voxel.weighted_offset_m / voxel.weight).cast<double>();
+}
+
 void SurfaceMap::integrate(const SurfaceCloud& cloud, const Pose& world_from_camera) {
+  note_change();
   for (const SurfacePoint& point : cloud.points) {
     if (!point.has_normal()) continue;
     const Eigen::Vector3d in_camera = point.getVector3fMap().cast<double>();
@@ -61,24 +78,27 @@ void SurfaceMap::integrate(const SurfaceCloud& cloud, const Pose& world_from_cam
     if (!(sigma <= options_.max_sigma_m)) continue;
     const Eigen::Vector3d in_world = world_from_camera * in_camera;
     const double weight = point.confidence / std::max(sigma * sigma, min_sigma_m * min_sigma_m);
-    Voxel& voxel = voxels_[key(in_world)];
-    voxel.weighted_point_m += weight * in_world;
-    voxel.weighted_normal += weight * (world_from_camera.linear() * normal);
-    voxel.weight += weight;
+    const std::int64_t place = key(in_world);
+    Voxel& voxel = voxels_[place];
+    voxel.weighted_offset_m += (weight * (in_world - centre_m(place))).cast<float>();
+    voxel.weighted_normal += (weight * (world_from_camera.linear() * normal)).cast<float>();
+    voxel.weight += static_cast<float>(weight);
     voxel.confidence += point.confidence;
     ++voxel.observations;
   }
 }
 
 void SurfaceMap::add(const SurfaceMap& submap, const Pose& world_from_submap) {
+  note_change();
   // In the order of the grid, since the order of the hash table depends on the order of insertion.
   for (const std::int64_t place : sorted_keys(submap.voxels_)) {
     const Voxel& voxel = submap.voxels_.at(place);
     if (!(voxel.weight > 0)) continue;
-    const Eigen::Vector3d in_world = world_from_submap * (voxel.weighted_point_m / voxel.weight);
-    Voxel& own = voxels_[key(in_world)];
-    own.weighted_point_m += voxel.weight * in_world;
-    own.weighted_normal += world_from_submap.linear() * voxel.weighted_normal;
+    const Eigen::Vector3d in_world = world_from_submap * submap.mean_m(place, voxel);
+    const std::int64_t own_place = key(in_world);
+    Voxel& own = voxels_[own_place];
+    own.weighted_offset_m += voxel.weight * (in_world - centre_m(own_place)).cast<float>();
+    own.weighted_normal += world_from_submap.linear().cast<float>() * voxel.weighted_normal;
     own.weight += voxel.weight;
     own.confidence += voxel.confidence;
     own.observations += voxel.observations;
@@ -93,15 +113,55 @@ MapCloud SurfaceMap::extract() const {
     const bool is_seen = static_cast<int>(voxel.observations) >= options_.min_observations;
     if (!has_direction || !is_seen) continue;
     MapPoint point;
-    point.getVector3fMap() = (voxel.weighted_point_m / voxel.weight).cast<float>();
+    point.getVector3fMap() = mean_m(place, voxel).cast<float>();
     point.data[3] = 1;
-    point.getNormalVector3fMap() = voxel.weighted_normal.normalized().cast<float>();
+    point.getNormalVector3fMap() = voxel.weighted_normal.normalized();
     point.data_n[3] = 0;
-    point.confidence = static_cast<float>(voxel.confidence / voxel.observations);
+    point.confidence = voxel.confidence / static_cast<float>(voxel.observations);
     point.observations = voxel.observations;
     map.push_back(point);
   }
   return map;
+}
+
+std::string SurfaceMap::to_bytes() const {
+  ByteWriter out;
+  for (const std::int64_t place : sorted_keys(voxels_)) {
+    const Voxel& voxel = voxels_.at(place);
+    out.number(place);
+    for (const float number : voxel.weighted_offset_m) out.number(number);
+    for (const float number : voxel.weighted_normal) out.number(number);
+    out.number(voxel.weight);
+    out.number(voxel.confidence);
+    out.number(voxel.observations);
+  }
+  return out.take();
+}
+
+SurfaceMap surface_from_bytes(std::string_view bytes, const SurfaceMapOptions& options) {
+  constexpr std::size_t voxel_bytes =
+      sizeof(std::int64_t) + 8 * sizeof(float) + sizeof(std::uint32_t);
+  constexpr float rounding = 1e-3F;
+  SurfaceMap surface(options);
+  ByteReader in(bytes);
+  for (std::size_t left = bytes.size(); left > 0; left -= std::min(left, voxel_bytes)) {
+    const auto place = in.number<std::int64_t>();
+    SurfaceMap::Voxel voxel;
+    for (float& number : voxel.weighted_offset_m) number = in.number<float>();
+    for (float& number : voxel.weighted_normal) number = in.number<float>();
+    voxel.weight = in.number<float>();
+    voxel.confidence = in.number<float>();
+    voxel.observations = in.number<std::uint32_t>();
+    // The mean of points may be beyond the border of their voxel by rounding.
+    const float reach_m = static_cast<float>(options.voxel_m) * (0.5F + rounding);
+    if (voxel.weight > 0 &&
+        !(voxel.weighted_offset_m.lpNorm<Eigen::Infinity>() <= voxel.weight * reach_m)) {
+      throw InputError("the points of a voxel are not in it");
+    }
+    if (voxel.weight < 0 || voxel.observations == 0) throw InputError("a voxel has no observation");
+    if (!surface.voxels_.try_emplace(place, voxel).second) throw InputError("a voxel occurs twice");
+  }
+  return surface;
 }
 
 }  // namespace tofmap

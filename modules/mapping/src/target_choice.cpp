@@ -26,10 +26,12 @@ std::vector<Candidate> candidates_of(const SurfaceCloud& cloud, const MotionPrio
                                      const RegistrationOptions& registration) {
   std::vector<Candidate> candidates(around.size());
   const int count = static_cast<int>(around.size());
+  std::vector<RegistrationTarget> targets;  // before the parallel loop, since loading may throw
+  for (const Keyframe* keyframe : around) targets.push_back(target_of(*keyframe));
 #pragma omp parallel for schedule(dynamic, 1)
   for (int i = 0; i < count; ++i) {
-    candidates[i] = {around[i], preview_target(cloud, prior.world_from_camera,
-                                               target_of(*around[i]), camera, registration)};
+    candidates[i] = {around[i], preview_target(cloud, prior.world_from_camera, targets[i], camera,
+                                               registration)};
   }
   std::erase_if(candidates, [&](const Candidate& candidate) {
     return candidate.preview.overlap < min_overlap && candidate.keyframe != around.back();

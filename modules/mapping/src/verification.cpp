@@ -37,9 +37,10 @@ bool is_verified(const RegistrationResult& result, const LoopOptions& options) {
 
 bool confirms_place(const Keyframe& keyframe, const SurfaceCloud& cloud,
                     const RegistrationResult& result, const CameraModel& camera,
-                    const LoopOptions& options) {
+                    const LoopOptions& options, bool is_of_one_recording) {
   return is_verified(result, options) &&
-         !contradicts_free_space({&cloud, result.world_from_camera}, target_of(keyframe), camera);
+         !contradicts_free_space({&cloud, result.world_from_camera}, target_of(keyframe), camera,
+                                 is_of_one_recording ? most_violations : most_violations_since);
 }
 
 }  // namespace tofmap

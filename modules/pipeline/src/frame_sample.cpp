@@ -14,7 +14,7 @@ namespace {
 
 /// How many of the `wanted` frames fit into memory; at least one.
 std::size_t fitting_frames(const CameraModel& camera, std::size_t wanted) {
-  constexpr std::size_t most_bytes = std::size_t{384} << 20;
+  constexpr std::size_t most_bytes = std::size_t{128} << 20;
   constexpr std::size_t bytes_per_pixel = 52;  // size of a SampledFrame over its pixels
   const auto pixels = static_cast<std::size_t>(camera.width_px * camera.height_px);
   const std::size_t fitting = most_bytes / std::max<std::size_t>(1, bytes_per_pixel * pixels);
@@ -48,7 +48,7 @@ std::vector<int> spread_indices(int total, int wanted) {
 }
 
 FrameSample::FrameSample(const CameraModel& camera, int wanted, std::optional<int> total)
-    : has_known_length_(total.has_value()) {
+    : has_known_length_(total.has_value()), camera_(camera) {
   const auto most = static_cast<std::size_t>(std::max(1, wanted));
   if (total) {
     most_ = fitting_frames(camera, most);
@@ -64,6 +64,7 @@ void FrameSample::add(const Frame& recorded, const PreparedFrame& prepared) {
   SampledFrame& kept = frames_.back();
   kept.returns.amplitudes.clear();
   kept.unwrapped.errors = {};
+  unsaved_.insert(recorded.index);
   if (!has_known_length_ && frames_.size() >= most_) drop_every_second();
 }
 
@@ -71,6 +72,7 @@ void FrameSample::drop_moving(int index, const SurfaceCloud& still) {
   const auto sampled = std::ranges::find(
       frames_, index, [](const SampledFrame& frame) { return frame.recorded.index; });
   if (sampled == frames_.end()) return;
+  unsaved_.insert(index);
   RangeImage& image = sampled->filtered;
   for (Eigen::Index row = 0; row < image.range_m.rows(); ++row) {
     for (Eigen::Index col = 0; col < image.range_m.cols(); ++col) {

@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <iterator>
 #include <optional>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <omp.h>
 
@@ -98,6 +100,19 @@ FrameRecord prepared_record(const PreparedFrame& frame) {
   return record;
 }
 
+/// What a record keeps of the tracking of a frame.
+TrackingResult told(const TrackingResult& tracking) {
+  TrackingResult kept;
+  kept.status = tracking.status;
+  kept.is_keyframe = tracking.is_keyframe;
+  kept.registration = tracking.registration;
+  kept.registration.world_from_camera = Pose::Identity();
+  kept.registration.covariance.setZero();
+  kept.registration.direction_shares.setZero();
+  kept.registration.target_information = {};
+  return kept;
+}
+
 /// Tells the mapper about a frame that repeats the frame before it, and returns its record.
 FrameRecord repeated(const SourcedFrame& frame, RoomMapper& mapper) {
   FrameRecord record = plain_record(frame);
@@ -109,6 +124,39 @@ FrameRecord repeated(const SourcedFrame& frame, RoomMapper& mapper) {
                                     .repeats = true})
                         .tracking;
   return record;
+}
+
+/// What a map tells of its recording.
+MapRecording described(const std::string& source, const SensorModel& sensor,
+                       PipelineOptions options) {
+  OptionTable table;
+  bind_options(table, options);
+  return {.source = source,
+          .added = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))),
+          .version = TOFMAP_VERSION,
+          .options = table.to_yaml(false),
+          .sensor = sensor};
+}
+
+/// Throws UsageError unless the cameras of a map and of a recording are the same, up to a
+/// thousandth.
+void check_same_camera(const CameraModel& of_map, const CameraModel& camera) {
+  const auto differ = [](double one, double other) {
+    constexpr double tolerance = 0.001;
+    return std::abs(one - other) > tolerance * std::max(std::abs(one), 1.0);
+  };
+  bool is_other = of_map.width_px != camera.width_px || of_map.height_px != camera.height_px ||
+                  differ(of_map.fx_px, camera.fx_px) || differ(of_map.fy_px, camera.fy_px) ||
+                  differ(of_map.cx_px, camera.cx_px) || differ(of_map.cy_px, camera.cy_px);
+  for (std::size_t i = 0; i < camera.distortion.size(); ++i) {
+    is_other = is_other || differ(of_map.distortion[i], camera.distortion[i]);
+  }
+  if (!is_other) return;
+  throw UsageError(fmt::format(
+      "the map was made with another camera: {} x {} px, focal length {:.1f} px, and the recording "
+      "has {} x {} px, {:.1f} px; record with the same camera",
+      of_map.width_px, of_map.height_px, of_map.fx_px, camera.width_px, camera.height_px,
+      camera.fx_px));
 }
 
 const SensorModel& checked(const SensorModel& sensor, const UnwrapOptions& options) {
@@ -175,14 +223,22 @@ PreparedFrame prepare_frame(TimedMeasurement measured, Unwrapper& unwrapper,
   return out;
 }
 
-MapRun::MapRun(const SensorModel& sensor, const PipelineOptions& options)
+MapRun::MapRun(const SensorModel& sensor, const PipelineOptions& options, const std::string& source)
     : sensor_(checked(sensor, options.unwrap)),
       options_(options),
       rays_(pixel_rays(sensor.camera)),
       mapper_(sensor.camera, odometry_of(options), options.registration, options.loops,
               options.map),
       measurer_(sensor, options.unwrap),
-      unwrappers_(one_a_thread(Unwrapper(sensor, options.unwrap))) {}
+      unwrappers_(one_a_thread(Unwrapper(sensor, options.unwrap))) {
+  mapper_.describe_recording(described(source, sensor, options));
+}
+
+void MapRun::go_on_with(MapContent finished) {
+  check_same_camera(finished.camera, sensor_.camera);
+  MapRecording recording = mapper_.content().recordings.back();
+  mapper_.go_on_with(std::move(finished), std::move(recording));
+}
 
 void MapRun::advance(FrameSource& source, const MapHooks& hooks) {
   const auto may_go_on = [&] {
@@ -223,10 +279,12 @@ void MapRun::add(const PreparedFrame& frame, const MapHooks& hooks) {
     tell_motion(late.index, late.still);
     const auto record =
         std::ranges::find(frames_.rbegin(), frames_.rend(), late.index, &FrameRecord::index);
-    record->tracking = std::move(late.tracking);
+    record->tracking = told(late.tracking);
+    const auto place = static_cast<std::size_t>(frames_.rend() - record) - 1;
+    first_unsaved_ = std::min(first_unsaved_, place);
   }
   FrameRecord& record = frames_.emplace_back(prepared_record(frame));
-  record.tracking = std::move(added.tracking);
+  record.tracking = told(added.tracking);
   record.times.register_ms = added.register_ms;
   record.times.map_ms = added.integrate_ms;
   record.times.loop_ms = added.loop_ms;
@@ -258,18 +316,19 @@ RoomMap MapRun::finish() {
   mapper_.finish();
   RoomMap map;
   int number_of_map = 0;
-  for (const int number : mapper_.maps()) {
+  for (const int number : maps_of(mapper_.content())) {
     ++number_of_map;
-    for (const int index : mapper_.frames(number)) {
+    for (const int index : frames_of(mapper_.content(), number)) {
       std::ranges::lower_bound(frames_, index, {}, &FrameRecord::index)->map = number_of_map;
     }
-    SeparateMap one{mapper_.trajectory(number), mapper_.keyframe_trajectory(number),
-                    mapper_.surface(number)};
+    SeparateMap one{trajectory_of(mapper_.content(), number),
+                    keyframe_trajectory_of(mapper_.content(), number),
+                    surface_of(mapper_.content(), number)};
     if (map.trajectory.empty()) {
       map.trajectory = std::move(one.trajectory);
       map.keyframes = std::move(one.keyframes);
       map.surface = std::move(one.surface);
-      map.least_certain = mapper_.least_certain(number);
+      map.least_certain = least_certain_of(mapper_.content(), number);
     } else {
       map.separate_maps.push_back(std::move(one));
     }
@@ -279,7 +338,8 @@ RoomMap MapRun::finish() {
         return record.tracking.registered() &&
                converged_slowly(record.tracking.registration, options_.registration);
       }));
-  map.loops = mapper_.loops();
+  map.loops = mapper_.content().loops;
+  if (mapper_.content().recordings.size() > 1) map.localised = mapper_.localised_frames();
   map.joins = mapper_.joins();
   map.blind_joins = mapper_.blind_joins();
   map.joins_taken_back = mapper_.joins_taken_back();

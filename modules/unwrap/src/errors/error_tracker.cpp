@@ -12,13 +12,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <istream>
 #include <optional>
-#include <ostream>
-#include <stdexcept>
 #include <vector>
 
 #include <Eigen/Cholesky>
+
+#include <tofmap/core/bytes.hpp>
 
 namespace tofmap {
 namespace {
@@ -129,39 +128,6 @@ double median_amplitude(const ImageF& amplitude) {
     if (a > 0) lit.push_back(a);
   }
   return lit.empty() ? 1 : double{median_of_positive(lit)};
-}
-
-template <class Number>
-void write_number(std::ostream& out, const Number& number) {
-  out.write(reinterpret_cast<const char*>(&number), sizeof(number));
-}
-
-template <class Number>
-void read_number(std::istream& in, Number& number) {
-  in.read(reinterpret_cast<char*>(&number), sizeof(number));
-  if (!in) throw std::runtime_error("the state of the error tracker ends early");
-}
-
-void write_image(std::ostream& out, const ImageF& image) {
-  write_number(out, image.rows());
-  write_number(out, image.cols());
-  out.write(reinterpret_cast<const char*>(image.data()),
-            static_cast<std::streamsize>(sizeof(float)) * image.size());
-}
-
-void read_image(std::istream& in, ImageF& image) {
-  Eigen::Index rows = 0;
-  Eigen::Index cols = 0;
-  read_number(in, rows);
-  read_number(in, cols);
-  constexpr Eigen::Index most = 1 << 16;
-  if (rows < 0 || cols < 0 || rows > most || cols > most) {
-    throw std::runtime_error("the state of the error tracker has an image of impossible size");
-  }
-  image.resize(rows, cols);
-  in.read(reinterpret_cast<char*>(image.data()),
-          static_cast<std::streamsize>(sizeof(float)) * image.size());
-  if (!in) throw std::runtime_error("the state of the error tracker ends early");
 }
 
 }  // namespace
@@ -348,26 +314,26 @@ void ErrorTracker::match_moved(const SurfaceSamples& samples, const ExposurePair
   }
 }
 
-void ErrorTracker::save(std::ostream& out) const {
-  write_number(out, camera_errors_);
-  out.write(reinterpret_cast<const char*>(information_.data()), sizeof(double) * terms * terms);
-  out.write(reinterpret_cast<const char*>(gradient_.data()), sizeof(double) * terms);
+void ErrorTracker::save(ByteWriter& out) const {
+  tofmap::save(camera_errors_, out);
+  out.numbers({information_.data(), terms * terms});
+  out.numbers({gradient_.data(), terms});
   for (const ImageF* image : {&last_.phase, &last_.amplitude, &last_.sigma_cycles}) {
-    write_image(out, *image);
+    out.image(*image);
   }
-  for (const double number : last_.motion.translation_m) write_number(out, number);
-  for (const double number : last_.motion.rotation_rad) write_number(out, number);
+  out.numbers({last_.motion.translation_m.data(), 3});
+  out.numbers({last_.motion.rotation_rad.data(), 3});
 }
 
-void ErrorTracker::load(std::istream& in) {
-  read_number(in, camera_errors_);
-  in.read(reinterpret_cast<char*>(information_.data()), sizeof(double) * terms * terms);
-  in.read(reinterpret_cast<char*>(gradient_.data()), sizeof(double) * terms);
+void ErrorTracker::load(ByteReader& in) {
+  camera_errors_ = camera_errors_in(in);
+  in.numbers({information_.data(), terms * terms});
+  in.numbers({gradient_.data(), terms});
   for (ImageF* image : {&last_.phase, &last_.amplitude, &last_.sigma_cycles}) {
-    read_image(in, *image);
+    *image = in.image<float>(camera_.height_px, camera_.width_px);
   }
-  for (double& number : last_.motion.translation_m) read_number(in, number);
-  for (double& number : last_.motion.rotation_rad) read_number(in, number);
+  in.numbers({last_.motion.translation_m.data(), 3});
+  in.numbers({last_.motion.rotation_rad.data(), 3});
 }
 
 }  // namespace tofmap

@@ -182,11 +182,11 @@ MeasuredFrame FrameMeasurer::measure(const Frame& frame) {
   return measured;
 }
 
-void FrameMeasurer::save(std::ostream& out) const {
+void FrameMeasurer::save(ByteWriter& out) const {
   for (const ErrorTracker& tracker : trackers_) tracker.save(out);
 }
 
-void FrameMeasurer::load(std::istream& in) {
+void FrameMeasurer::load(ByteReader& in) {
   for (ErrorTracker& tracker : trackers_) tracker.load(in);
 }
 

@@ -8,11 +8,10 @@
 
 #include <tofmap/unwrap/errors/measured_frame.hpp>
 
-namespace boost::serialization {
-class access;
-}
-
 namespace tofmap {
+
+class ByteReader;
+class ByteWriter;
 
 /// The errors of a camera, as the frames of a recording show them.
 struct ErrorSurvey {
@@ -49,11 +48,12 @@ class ErrorTally {
   /// The survey of the frames added so far.
   ErrorSurvey survey() const;
 
- private:
-  friend class boost::serialization::access;
-  template <class Archive>
-  void serialize(Archive& archive, unsigned version);  // tofmap/pipeline saves runs
+  /// Writes what was collected. A tally that loads it goes on to the same survey, to the bit.
+  /// load() throws InputError if the bytes are damaged.
+  void save(ByteWriter& out) const;
+  void load(ByteReader& in);
 
+ private:
   std::vector<CameraErrors> cameras_;  ///< of the last frame, as in ErrorSurvey
   int frames_ = 0;                     ///< number of frames whose errors could be estimated
   std::vector<float> flows_px_;        ///< of those frames whose images belong together

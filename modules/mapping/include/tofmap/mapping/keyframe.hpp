@@ -3,12 +3,11 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <span>
 #include <vector>
 
-#include <tofmap/cloud/surface_cloud.hpp>
 #include <tofmap/core/trajectory.hpp>
+#include <tofmap/mapping/keyframe_cloud.hpp>
 #include <tofmap/mapping/place_descriptor.hpp>
 #include <tofmap/registration/projective_icp.hpp>
 
@@ -20,20 +19,20 @@ struct Keyframe {
   int frame_index = 0;  ///< index of the frame in the recording
   double timestamp_s = 0;
   Pose world_from_camera = Pose::Identity();
-  std::shared_ptr<const SurfaceCloud> cloud = {};  ///< in the camera's frame; not null
+  KeyframeCloud cloud = {};    ///< in the camera's frame; not empty
   double path_m = 0;           ///< length of the path through all keyframes up to this one
   PlaceDescriptor place = {};  ///< of the cloud
   int map = 0;                 ///< the map that the pose refers to; see RoomMapper
   int taken_in = 0;            ///< the map it was taken in, before any join
+  int recording = 0;           ///< index of the recording in MapContent::recordings
 };
 
-/// A keyframe as a target of registration. The keyframe must outlive the target.
-inline RegistrationTarget target_of(const Keyframe& keyframe) {
-  return {keyframe.cloud.get(), keyframe.world_from_camera};
-}
+/// A keyframe as a target of registration, which keeps its cloud in memory. Throws InputError as
+/// KeyframeCloud::load() does.
+RegistrationTarget target_of(const Keyframe& keyframe);
 
 /// A keyframe and the ones directly before and after it, if they are of the same map, as targets.
-/// `keyframes` are in the order of their ids, from 0, and must outlive the targets.
+/// `keyframes` are in the order of their ids, from 0.
 std::vector<RegistrationTarget> targets_around(const Keyframe& keyframe,
                                                std::span<const Keyframe> keyframes);
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -10,10 +11,6 @@
 
 #include <tofmap/mapping/keyframe.hpp>
 #include <tofmap/mapping/pose_spread.hpp>
-
-namespace boost::serialization {
-class access;
-}
 
 namespace tofmap {
 
@@ -27,14 +24,30 @@ struct KeyframeSpacing {
   double between(const Pose& a, const Pose& b) const;
 };
 
+/// The connection of a keyframe with another one.
+struct KeyframeLink {
+  int to = 0;
+  PoseSpread spread;
+  std::optional<PoseSpread> registered;  ///< `spread` without loops; empty if only by a loop
+
+  bool operator==(const KeyframeLink&) const = default;
+};
+
 /// The keyframes of a run, and which of them were registered with each other. Keyframes that were
 /// registered with each other have correct relative poses, up to the spread of that registration,
 /// however far the path drifted between them. The spread is large where both saw little but a bare
 /// wall.
 class KeyframeGraph {
  public:
+  KeyframeGraph() = default;  ///< keeps the clouds of keyframes as they are
+  /// Keeps the clouds of keyframes, which this camera took, on a CloudShelf.
+  explicit KeyframeGraph(const CameraModel& camera) : shelf_(CloudShelf(camera)) {}
+
   /// Adds a keyframe, whose id must be size().
   void add(Keyframe keyframe);
+
+  /// Adds a keyframe whose cloud is read when it is needed. The graph must have a camera.
+  void add(Keyframe keyframe, std::function<CompactCloud()> read_cloud);
 
   /// Records that two keyframes were registered with each other with this spread of their relative
   /// pose, and that their poses agree with the result. If that is not the first time, the smaller
@@ -51,11 +64,17 @@ class KeyframeGraph {
   const Keyframe& operator[](int id) const { return keyframes_[static_cast<std::size_t>(id)]; }
   std::span<const Keyframe> all() const { return keyframes_; }
 
+  /// The connections of a keyframe, in the order in which they came about.
+  std::span<const KeyframeLink> links(int id) const { return links_[static_cast<std::size_t>(id)]; }
+
+  /// Replaces the connections of a keyframe by those that links() returned.
+  void set_links(int id, std::vector<KeyframeLink> links);
+
   /// Sets the pose of a keyframe.
   void set_pose(int id, const Pose& world_from_camera);
 
   /// Replaces the cloud of a keyframe, and with it the descriptor of its place.
-  void set_cloud(int id, std::shared_ptr<const SurfaceCloud> cloud);
+  void set_cloud(int id, const KeyframeCloud& cloud);
 
   /// Moves all keyframes of a map into another one.
   void join(int map, int into, const Pose& into_from_map);
@@ -63,6 +82,9 @@ class KeyframeGraph {
   /// Assigns keyframes to maps anew, by the map that they were taken in: `map_of[taken_in]`.
   /// Keyframes of different maps are no longer connected.
   void assign_maps(std::span<const int> map_of);
+
+  /// Makes all joins of maps final: keyframes count as taken in the map that they belong to.
+  void settle_maps();
 
   /// Removes the newest keyframes, those with an id of at least `size`. None of the others may be
   /// connected with one of them.
@@ -95,24 +117,13 @@ class KeyframeGraph {
   static constexpr double well_connected_sigma_m = 0.03;
 
  private:
-  friend class boost::serialization::access;
-  template <class Archive>
-  void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
+  KeyframeCloud kept(const KeyframeCloud& cloud);
 
-  /// A keyframe that another one is connected with.
-  struct Neighbour {
-    int id = 0;
-    PoseSpread spread;
-    std::optional<PoseSpread> registered;  ///< `spread` without loops; empty if only by a loop
+  KeyframeLink& link(int of, int to);
 
-    template <class Archive>
-    void serialize(Archive& archive, unsigned version);
-  };
-
-  Neighbour& neighbour(int of, int id);
-
+  std::optional<CloudShelf> shelf_;  ///< empty: clouds are kept as they are
   std::vector<Keyframe> keyframes_;
-  std::vector<std::vector<Neighbour>> neighbours_;  ///< for each keyframe, those connected with it
+  std::vector<std::vector<KeyframeLink>> links_;  ///< for each keyframe, those to others
 };
 
 }  // namespace tofmap

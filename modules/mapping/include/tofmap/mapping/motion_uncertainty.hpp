@@ -4,10 +4,6 @@
 
 #include <Eigen/Core>
 
-namespace boost::serialization {
-class access;
-}
-
 namespace tofmap {
 
 /// Uncertainty of the pose of a camera that is assumed to move with constant velocity: the joint
@@ -59,9 +55,7 @@ class MotionUncertainty {
   void rotate(const Eigen::Matrix3d& new_from_old);
 
  private:
-  friend class boost::serialization::access;
-  template <class Archive>
-  void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
+  friend struct SavedState;  // mapper_state.cpp
 
   using Joint = Eigen::Matrix<double, 12, 12>;
 

@@ -10,10 +10,6 @@
 #include <tofmap/mapping/keyframe.hpp>
 #include <tofmap/mapping/pose_spread.hpp>
 
-namespace boost::serialization {
-class access;
-}
-
 namespace tofmap {
 
 /// A keyframe that a frame is compared with.
@@ -25,7 +21,7 @@ struct ComparedKeyframe {
 /// A keyframe in which something moved.
 struct CleanedKeyframe {
   int id = 0;
-  std::shared_ptr<const SurfaceCloud> cloud;  ///< without the points of what moved
+  KeyframeCloud cloud;  ///< without the points of what moved
 };
 
 /// A point of something that moves.
@@ -101,9 +97,7 @@ class MovingRegions {
   void move(const Pose& new_from_old_world);
 
  private:
-  friend class boost::serialization::access;
-  template <class Archive>
-  void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
+  friend struct SavedState;  // mapper_state.cpp
 
   CameraModel camera_;
   std::vector<MovingPoint> known_;

@@ -17,10 +17,6 @@
 #include <tofmap/mapping/pose_spread.hpp>
 #include <tofmap/registration/projective_icp.hpp>
 
-namespace boost::serialization {
-class access;
-}
-
 namespace tofmap {
 
 /// Options of Odometry, and of where RoomMapper takes keyframes.
@@ -156,9 +152,7 @@ class Odometry {
   void move(const Pose& new_from_old_world);
 
  private:
-  friend class boost::serialization::access;
-  template <class Archive>
-  void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
+  friend struct SavedState;  // mapper_state.cpp
 
   /// A registration of the frame with some keyframes, and where it started.
   struct Attempt {

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
+#include <string_view>
 
 #include <tofmap/cloud/surface_cloud.hpp>
 
@@ -22,10 +24,19 @@ class PlaceDescriptor {
   /// equal descriptors; symmetric. Infinite if both have a range in less than half of the parts.
   double difference(const PlaceDescriptor& other) const;
 
+  /// The ranges as bytes, from which place_from_bytes() makes an equal descriptor.
+  std::string to_bytes() const;
+
  private:
+  friend PlaceDescriptor place_from_bytes(std::string_view bytes);
+
   static constexpr std::size_t cols = 11;
   static constexpr std::size_t rows = 9;
   std::array<float, rows * cols> log_range_;  ///< by row, then column; NaN without a range
 };
+
+/// The descriptor whose bytes PlaceDescriptor::to_bytes() returned. Throws InputError if there are
+/// more or fewer bytes.
+PlaceDescriptor place_from_bytes(std::string_view bytes);
 
 }  // namespace tofmap

@@ -14,6 +14,8 @@ struct PoseSpread {
 
   double rotation_sigma_rad() const;
   double translation_sigma_m() const;
+
+  bool operator==(const PoseSpread&) const = default;
 };
 
 PoseSpread operator+(const PoseSpread& one, const PoseSpread& other);

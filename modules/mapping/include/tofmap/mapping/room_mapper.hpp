@@ -2,41 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include <tofmap/mapping/camera_travel.hpp>
-#include <tofmap/mapping/keyframe_graph.hpp>
 #include <tofmap/mapping/loop_options.hpp>
+#include <tofmap/mapping/map_content.hpp>
+#include <tofmap/mapping/mapper_state.hpp>
 #include <tofmap/mapping/still_odometry.hpp>
 #include <tofmap/mapping/surface_map.hpp>
-#include <tofmap/registration/path_uncertainty.hpp>
-
-namespace boost::serialization {
-class access;
-}
 
 namespace tofmap {
 
 struct Slip;
-
-/// A loop: a place that was recognised.
-struct Loop {
-  int from_frame = 0;               ///< index of the frame of the earlier keyframe
-  int to_frame = 0;                 ///< index of the frame of the later keyframe
-  double error_m = 0;               ///< error of the path in position when the loop was found
-  double mahalanobis_distance = 0;  ///< of the loop constraint at the poses of the last fit
-  bool is_used = false;  ///< whether the last fit accepted it; false before the first fit
-};
-
-/// How certain the pose of a frame is.
-struct PoseCertainty {
-  int frame = 0;        ///< index of the frame
-  ExpectedError error;  ///< after the best rigid alignment of all keyframes of the map
-};
 
 /// Input of RoomMapper::add_frame().
 struct NewFrame {
@@ -95,6 +75,18 @@ class RoomMapper {
              const RegistrationOptions& registration, const LoopOptions& loops,
              const SurfaceMapOptions& surface);
 
+  /// Says what the frames come from. Without this, content().recordings says nothing of it.
+  void describe_recording(MapRecording recording);
+
+  /// Goes on with a finished map: the frames that follow are those of another recording of the same
+  /// place. They begin a map of their own, which is joined with the finished one as soon as its
+  /// places are recognised. `recording` describes them. Must be called before the first frame.
+  void go_on_with(MapContent finished, MapRecording recording);
+
+  /// Number of frames of the recording that are registered in the finished map. Without
+  /// go_on_with(), 0.
+  int localised_frames() const;
+
   /// Registers a frame. If that succeeds, adds its surface to the map and, if it becomes a
   /// keyframe, searches for a loop. Frames must come in the order of time.
   ///
@@ -106,15 +98,8 @@ class RoomMapper {
   /// the last frame.
   void finish();
 
-  /// The numbers of the maps, that with the most registered frames first. Empty if no frame was
-  /// registered.
-  std::vector<int> maps() const;
-  /// Poses of all registered frames of a map, from the current poses of their keyframes.
-  Trajectory trajectory(int map) const;
-  /// Indices (NewFrame::index) of the frames registered in a map, in the order of trajectory().
-  std::vector<int> frames(int map) const;
-  /// Current poses of all keyframes of a map.
-  Trajectory keyframe_trajectory(int map) const;
+  /// The map so far. Keyframes and what refers to them may still move.
+  const MapContent& content() const { return content_; }
   /// How often maps were joined although the camera could have been carried to another place: it
   /// had not been tracked for more than two seconds.
   int blind_joins() const;
@@ -122,61 +107,21 @@ class RoomMapper {
   int joins() const { return static_cast<int>(joins_.size()); }
   /// Number of joins that were taken back.
   int joins_taken_back() const { return joins_taken_back_; }
-  /// The frame of a map whose position is least certain: that of its keyframe is as certain as the
-  /// covariances of the edges of odometry and of the loops that are used say (expected_errors()),
-  /// and that relative to the keyframe as when it was registered. The map must have a frame.
-  PoseCertainty least_certain(int map) const;
-  /// The surface of a map: all of its submaps in its world frame, without free-space violations if
-  /// the options say so.
-  MapCloud surface(int map) const;
-  /// Number of voxels in all submaps, including those with too few points for surface().
-  std::size_t voxel_count() const;
-  /// All verified loops so far, in the order in which they were found.
-  const std::vector<Loop>& loops() const { return loops_; }
-  /// All keyframes with their current poses, in the order of their ids.
-  std::span<const Keyframe> keyframes() const { return keyframes_.all(); }
-  /// The measured relative poses between keyframes, by their ids.
-  std::span<const PoseEdge> edges() const { return edges_; }
+  /// What the mapper knows besides content().
+  MapperState state() const;
 
-  /// Writes the whole state. A mapper that was constructed with the same arguments and loads the
-  /// state gives the same results to the bit. Only the build that wrote the state can read it.
-  void save(std::ostream& out) const;
-  /// Replaces the state by one that save() wrote. Throws std::exception if the data is damaged; the
-  /// state of the mapper is then unspecified.
-  void load(std::istream& in);
+  /// Replaces the state by one that state() returned together with `content`. A mapper that was
+  /// constructed with the same arguments then gives the same results to the bit. Throws InputError
+  /// if the state is damaged or does not fit the content; the mapper is then not to be used.
+  void restore(MapContent content, const MapperState& state);
 
  private:
-  friend class boost::serialization::access;
-  template <class Archive>
-  void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
-
-  struct RegisteredFrame {
-    double timestamp_s = 0;
-    int keyframe = 0;  ///< id of the keyframe that the frame belongs to
-    Pose keyframe_from_camera = Pose::Identity();
-    int index = 0;  ///< NewFrame::index
-    /// Standard deviation of the position relative to the keyframes that it was registered with.
-    double sigma_m = 0;
-
-    template <class Archive>
-    void serialize(Archive& archive, unsigned version);
-  };
-
   /// Two maps that were joined.
   struct JoinedMaps {
     int map = 0;            ///< the one whose keyframes were moved
     int into = 0;           ///< the one that they belong to since
     int found_in = 0;       ///< the map whose keyframes recognised it; Keyframe::taken_in
     bool is_blind = false;  ///< see blind_joins()
-
-    template <class Archive>
-    void serialize(Archive& archive, unsigned version);
-  };
-
-  /// A submap: the surface seen from near one keyframe, the anchor, in the frame of the anchor.
-  struct Submap {
-    int anchor = 0;
-    SurfaceMap surface;
   };
 
   /// Smallest number of keyframes between two fits, unless a loop still awaits others that agree
@@ -188,6 +133,8 @@ class RoomMapper {
   /// single one may be wrong.
   static constexpr int least_differing_keyframes = 2;
 
+  std::span<const RegisteredFrame> own_frames() const;
+  bool is_of_another_place(const RegistrationTarget& frame, const Keyframe& other) const;
   TrackingResult track(NewFrame& frame);
   bool was_blind(double timestamp_s) const;
   TrackingResult track_with(std::span<const Keyframe* const> around, NewFrame& frame);
@@ -205,6 +152,7 @@ class RoomMapper {
   void connect_own_keyframes();
   void drop_edges_between_maps();
   void return_to_origin(int map);
+  int recording() const { return static_cast<int>(content_.recordings.size()) - 1; }
   int newest_map() const { return begun_maps_ - 1; }
   bool is_joined() const { return map_ != newest_map(); }
   bool is_own(const Keyframe& keyframe) const { return keyframe.taken_in == newest_map(); }
@@ -215,7 +163,6 @@ class RoomMapper {
   void add_loop(const PoseEdge& edge);
   bool loop_awaits_others() const;
   KeyframeSpacing keyframe_spacing() const;
-  Pose pose_of(const RegisteredFrame& frame) const;
   std::vector<const Keyframe*> keyframes_around() const;
   bool wants_keyframe(const TrackingResult& result, std::span<const Keyframe* const> around) const;
   void add_keyframe(const NewFrame& frame, std::span<const Keyframe* const> around,
@@ -230,14 +177,9 @@ class RoomMapper {
   OdometryOptions odometry_options_;
   RegistrationOptions registration_;
   LoopOptions loop_options_;
-  SurfaceMapOptions surface_options_;
   StillOdometry odometry_;
-  KeyframeGraph keyframes_;
-  std::vector<Submap> submaps_;
-  std::vector<int> submap_of_;  ///< for each keyframe, the index of the submap of its frames
-  std::vector<RegisteredFrame> frames_;
-  std::vector<PoseEdge> edges_;
-  std::vector<Loop> loops_;  ///< in the order of their edges
+  MapContent content_;
+  std::size_t first_own_frame_ = 0;  ///< frames before it are of earlier recordings
   int unfitted_loops_ = 0;
   int waiting_loop_ = -1;  ///< later keyframe of the newest loop that awaits others; −1: none
   int last_fit_ = 0;       ///< id of the newest keyframe in the last fit

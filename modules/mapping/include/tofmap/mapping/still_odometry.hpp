@@ -10,10 +10,6 @@
 #include <tofmap/mapping/moving_regions.hpp>
 #include <tofmap/mapping/odometry.hpp>
 
-namespace boost::serialization {
-class access;
-}
-
 namespace tofmap {
 
 /// What became of a frame.
@@ -63,9 +59,7 @@ class StillOdometry {
   void move(const Pose& new_from_old_world);
 
  private:
-  friend class boost::serialization::access;
-  template <class Archive>
-  void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
+  friend struct SavedState;  // mapper_state.cpp
 
   bool track_background(double timestamp_s, const std::shared_ptr<const SurfaceCloud>& cloud,
                         std::span<const Keyframe* const> around, const Odometry& before,

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
@@ -10,10 +12,6 @@
 #include <tofmap/cloud/surface_cloud.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/core/trajectory.hpp>
-
-namespace boost::serialization {
-class access;
-}
 
 namespace tofmap {
 
@@ -58,26 +56,37 @@ class SurfaceMap {
   /// voxel. The confidence of a map point is the mean over its observations.
   MapCloud extract() const;
 
+  /// Tells states of surfaces apart: every change gives a number that no surface had before in this
+  /// process.
+  std::uint64_t revision() const { return revision_; }
+
+  /// All voxels, from which surface_from_bytes() makes the same surface to the bit.
+  std::string to_bytes() const;
+
  private:
-  friend class boost::serialization::access;
-  template <class Archive>
-  void serialize(Archive& archive, unsigned version);  // mapper_archive.cpp
+  friend SurfaceMap surface_from_bytes(std::string_view bytes, const SurfaceMapOptions& options);
 
   struct Voxel {
-    Eigen::Vector3d weighted_point_m = Eigen::Vector3d::Zero();
-    Eigen::Vector3d weighted_normal = Eigen::Vector3d::Zero();
-    double weight = 0;
-    double confidence = 0;
+    Eigen::Vector3f weighted_offset_m = Eigen::Vector3f::Zero();  ///< from the voxel's centre
+    Eigen::Vector3f weighted_normal = Eigen::Vector3f::Zero();
+    float weight = 0;
+    float confidence = 0;  ///< sum over the observations
     std::uint32_t observations = 0;
-
-    template <class Archive>
-    void serialize(Archive& archive, unsigned version);
   };
 
   std::int64_t key(const Eigen::Vector3d& point_m) const;
+  Eigen::Vector3d centre_m(std::int64_t key) const;
+  Eigen::Vector3d mean_m(std::int64_t key, const Voxel& voxel) const;
+
+  void note_change();
 
   SurfaceMapOptions options_;
+  std::uint64_t revision_ = 0;
   std::unordered_map<std::int64_t, Voxel> voxels_;
 };
+
+/// The surface whose bytes SurfaceMap::to_bytes() returned. The options must be the same. Throws
+/// InputError if the bytes are damaged.
+SurfaceMap surface_from_bytes(std::string_view bytes, const SurfaceMapOptions& options);
 
 }  // namespace tofmap

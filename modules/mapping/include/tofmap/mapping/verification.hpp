@@ -29,9 +29,10 @@ double support(const RegistrationResult& result);
 bool is_verified(const RegistrationResult& result, const LoopOptions& options);
 
 /// Whether a registration of a cloud near a keyframe is verified (is_verified()) and does not
-/// contradict the free space of the keyframe (contradicts_free_space()).
+/// contradict the free space of the keyframe (contradicts_free_space()). `is_of_one_recording`:
+/// with the keyframe; if not, furniture may have been moved.
 bool confirms_place(const Keyframe& keyframe, const SurfaceCloud& cloud,
                     const RegistrationResult& result, const CameraModel& camera,
-                    const LoopOptions& options);
+                    const LoopOptions& options, bool is_of_one_recording = true);
 
 }  // namespace tofmap

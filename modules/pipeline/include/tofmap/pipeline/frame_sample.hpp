@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <iosfwd>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include <tofmap/diagnostics/consistency.hpp>
+#include <tofmap/mapping/map_store.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
 
 namespace tofmap {
@@ -30,7 +31,7 @@ class FrameSample {
   /// `total` is the number of frames of the run. If it is known, the sample keeps the frames at
   /// spread_indices(*total, wanted). If it is empty (unknown), the sample keeps every n-th frame,
   /// where n grows with the run: at least `wanted` frames if the run is that long, and fewer than
-  /// twice as many. Fewer large images are kept, so that the sample fits into 384 MB, but at least
+  /// twice as many. Fewer large images are kept, so that the sample fits into 128 MB, but at least
   /// one.
   FrameSample(const CameraModel& camera, int wanted, std::optional<int> total);
 
@@ -49,14 +50,17 @@ class FrameSample {
   /// Keeps `count` of the frames, spread evenly, and frees the memory of the others.
   void thin_out(int count);
 
-  /// Saves the frames kept so far. Only the build that wrote the data can read it.
-  void save(std::ostream& out) const;
+  /// Stores the frames kept so far, but for those that note_saved() tells are stored already. The
+  /// length of the run must be known.
+  void save(MapStore::Commit& commit) const;
+  /// Must be called after the commit was finished.
+  void note_saved() { unsaved_.clear(); }
 
   /// Replaces the frames by saved ones. The sample of a resumed run, whose first `frames_done`
   /// frames are processed, is then the same as without the interruption. If it was constructed with
   /// other arguments, it has at most as many of the saved frames as it wants of these. The length
-  /// of the run must be known. Throws std::exception if the data is damaged.
-  void load(std::istream& in, int frames_done);
+  /// of the run must be known. Throws InputError if they are damaged.
+  void load(const MapStore& store, int frames_done);
 
   /// The frames kept so far, in ascending order of their indices.
   const std::vector<SampledFrame>& frames() const { return frames_; }
@@ -71,6 +75,8 @@ class FrameSample {
   std::size_t step_ = 1;    ///< keeps every step_-th frame if the length is unknown
   std::size_t passed_ = 0;  ///< frames offered to add() so far if the length is unknown
   std::vector<SampledFrame> frames_;
+  std::set<int> unsaved_;  ///< indices of frames that were added or changed since note_saved()
+  CameraModel camera_;
 };
 
 /// The consistency measures of a map, computed from at most consistency_frames() of the sampled

@@ -3,14 +3,15 @@
 #pragma once
 
 #include <functional>
-#include <iosfwd>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <tofmap/acquisition/frame_source.hpp>
 #include <tofmap/cloud/surface_cloud.hpp>
 #include <tofmap/diagnostics/error_survey.hpp>
 #include <tofmap/filters/filter_chain.hpp>
+#include <tofmap/mapping/map_store.hpp>
 #include <tofmap/mapping/room_mapper.hpp>
 #include <tofmap/pipeline/room_map.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
@@ -87,7 +88,12 @@ void check_mappable(const SensorModel& sensor, const UnwrapOptions& options);
 class MapRun {
  public:
   /// Throws UsageError if the options for unwrapping are not allowed, and as check_mappable() does.
-  MapRun(const SensorModel& sensor, const PipelineOptions& options);
+  /// `source` is the name of the recording or device, for the map's file.
+  MapRun(const SensorModel& sensor, const PipelineOptions& options, const std::string& source = "");
+
+  /// Goes on with a finished map (RoomMapper::go_on_with()). Must be called before the first frame.
+  /// Throws UsageError if the map was made with another camera.
+  void go_on_with(MapContent finished);
 
   /// Processes frames from the source until the source ends or a hook ends the run. Frames that
   /// are damaged or cannot be registered are skipped; their records say why. Frames are prepared
@@ -106,11 +112,16 @@ class MapRun {
   /// The map so far.
   const RoomMapper& mapper() const { return mapper_; }
 
-  /// Saves what is needed to resume the run. A run with the same sensor and options that loads it
-  /// continues to the same map, to the bit. Only the build that wrote the data can read it. load()
-  /// throws std::exception if the data is damaged.
-  void save(std::ostream& out) const;
-  void load(std::istream& in);
+  /// Stores the map so far and the records of the frames that have changed since note_saved().
+  void save_map(MapStore::Commit& commit) const;
+  /// Stores the map, and what is needed to resume the run. A run with the same sensor and options
+  /// that loads it continues to the same map, to the bit. `read_frame` reads a frame of the
+  /// recording by its index. load() throws InputError if what was stored is damaged; the run is
+  /// then not to be used.
+  void save(MapStore::Commit& commit) const;
+  void load(const MapStore& store, const std::function<SourcedFrame(int index)>& read_frame);
+  /// Must be called after the commit was finished.
+  void note_saved() { first_unsaved_ = frames_.size(); }
 
   /// The map of the frames processed so far. The run ends with this call: advance() and save() must
   /// not be called afterwards.
@@ -130,6 +141,7 @@ class MapRun {
   std::vector<SourcedFrame> ahead_;    ///< frames measured ahead that are still to be mapped
   std::vector<Unwrapper> unwrappers_;  ///< one per thread
   std::vector<FrameRecord> frames_;
+  std::size_t first_unsaved_ = 0;  ///< the first frame whose record has changed since note_saved()
   Frame last_;  ///< the last frame that could be read and repeats none; empty at first
   bool is_interrupted_ = false;
 };

@@ -49,7 +49,7 @@ struct FrameRecord {
   int valid_pixels = 0;           ///< valid pixels after unwrapping
   int kept_pixels = 0;            ///< valid pixels after filtering
   std::vector<FilterCount> filters;
-  TrackingResult tracking;
+  TrackingResult tracking;  ///< without poses, covariances and targets
   StageTimes times;
   /// The map that the frame is registered in: 1 is the main map, k + 2 is separate_maps[k]. 0:
   /// none, or the run is not finished.
@@ -84,9 +84,12 @@ struct RoomMap {
   int joins_taken_back = 0;                ///< RoomMapper::joins_taken_back()
   PoseCertainty least_certain;             ///< RoomMapper::least_certain(); zero without keyframes
   int registered_slowly = 0;               ///< number of frames that converged_slowly()
-  std::vector<FrameRecord> frames;         ///< all frames, in order
-  ErrorSurvey errors;                      ///< MapRun::errors at the end of the run
-  bool interrupted = false;                ///< a hook ended the run early
+  /// Number of frames that were found in the map of earlier recordings (MapRun::go_on_with()).
+  /// Empty if there were none.
+  std::optional<int> localised;
+  std::vector<FrameRecord> frames;  ///< all frames, in order
+  ErrorSurvey errors;               ///< MapRun::errors at the end of the run
+  bool interrupted = false;         ///< a hook ended the run early
 
   int damaged() const;       ///< number of frames that could not be read
   int repeated() const;      ///< number of frames that repeat the frame before them

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,10 +14,12 @@
 
 namespace tofmap {
 
-/// An organised cloud with normals whose pose is known. The cloud must outlive the target.
+/// An organised cloud with normals whose pose is known. The cloud must outlive the target, unless
+/// the target keeps it.
 struct RegistrationTarget {
   const SurfaceCloud* cloud = nullptr;  ///< in the frame of the camera that took it; not null
   Pose world_from_camera = Pose::Identity();
+  std::shared_ptr<const SurfaceCloud> kept = nullptr;  ///< `cloud`, or null
 };
 
 /// The pose that a motion model predicts, and its uncertainty, the same along all axes.

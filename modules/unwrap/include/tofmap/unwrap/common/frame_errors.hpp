@@ -9,6 +9,9 @@
 
 namespace tofmap {
 
+class ByteReader;
+class ByteWriter;
+
 /// The systematic errors of a camera as far as they differ between two of its frequencies, A and B.
 /// The model is
 ///
@@ -44,6 +47,12 @@ struct CameraErrors {
   /// e: the change of the difference per decade of amplitude.
   double per_decade_m() const { return coefficient_m.back(); }
 };
+
+/// Writes the errors of a camera, exact to the bit.
+void save(const CameraErrors& camera, ByteWriter& out);
+
+/// Reads what save() wrote. Throws InputError if the bytes are damaged.
+CameraErrors camera_errors_in(ByteReader& in);
 
 /// Standard deviation of the systematic error of one range, metres. It follows from systematic_m,
 /// that of the difference between two ranges, on the assumption that the errors at A and B are

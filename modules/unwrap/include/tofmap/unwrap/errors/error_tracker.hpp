@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <iosfwd>
 #include <optional>
 
 #include <Eigen/Core>
@@ -14,6 +13,9 @@
 #include <tofmap/unwrap/common/residual_cost.hpp>
 
 namespace tofmap {
+
+class ByteReader;
+class ByteWriter;
 
 class ResidualFit;
 struct ExposurePair;
@@ -85,11 +87,11 @@ class ErrorTracker {
 
   /// Writes the complete state in binary form: after load(), later frames give the same bits as
   /// without saving.
-  void save(std::ostream& out) const;
+  void save(ByteWriter& out) const;
 
-  /// Reads a state that save() wrote for the same limits and camera. Throws an std::exception if
-  /// the data is damaged.
-  void load(std::istream& in);
+  /// Reads a state that save() wrote for the same limits and camera. Throws InputError if the
+  /// bytes are damaged.
+  void load(ByteReader& in);
 
   static constexpr int terms = CameraErrors::coefficients;
   using Terms = Eigen::Matrix<double, terms, 1>;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <iosfwd>
 #include <span>
 #include <vector>
 
@@ -15,6 +14,9 @@
 #include <tofmap/unwrap/errors/error_tracker.hpp>
 
 namespace tofmap {
+
+class ByteReader;
+class ByteWriter;
 
 /// A frame and its estimated errors: the input of every method of unwrapping. All images have the
 /// size of the frame.
@@ -65,11 +67,11 @@ class FrameMeasurer {
 
   /// Writes the complete state in binary form: after load(), later frames give the same bits as
   /// without saving.
-  void save(std::ostream& out) const;
+  void save(ByteWriter& out) const;
 
-  /// Reads a state that save() wrote for the same sensor and options. Throws an std::exception if
-  /// the data is damaged.
-  void load(std::istream& in);
+  /// Reads a state that save() wrote for the same sensor and options. Throws InputError if the
+  /// bytes are damaged.
+  void load(ByteReader& in);
 
  private:
   UnwrapLimits limits_;

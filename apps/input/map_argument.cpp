@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "input/map_argument.hpp"
+
+#include <string>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/mapping/map_store.hpp>
+
+namespace tofmap::app {
+
+std::filesystem::path map_file_in(const std::filesystem::path& argument) {
+  std::error_code error;
+  if (!std::filesystem::exists(argument, error)) {
+    throw InputError(argument.string() + ": does not exist; give a folder that 'tofmap map' wrote");
+  }
+  if (!std::filesystem::is_directory(argument, error)) return argument;
+  std::filesystem::path file = argument / map_file_name;
+  if (!std::filesystem::exists(file, error)) {
+    throw InputError(argument.string() + ": holds no " + map_file_name +
+                     "; give a folder that 'tofmap map' wrote");
+  }
+  return file;
+}
+
+}  // namespace tofmap::app

@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+namespace tofmap::app {
+
+/// The map file that an argument names: the file itself, or map.db in a folder. Throws InputError
+/// if there is none.
+std::filesystem::path map_file_in(const std::filesystem::path& argument);
+
+}  // namespace tofmap::app

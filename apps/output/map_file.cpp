@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "output/map_file.hpp"
+
+#include "input/map_argument.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tofmap/core/error.hpp>
+#include <tofmap/pipeline/run_store.hpp>
+
+namespace tofmap::app {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::chrono::milliseconds shortest_interval(500);
+constexpr int intervals_of_its_duration = 20;
+
+/// The temporary folders of a result that hold the map of a killed or running program, the newest
+/// first.
+std::vector<fs::path> left_folders(const fs::path& folder) {
+  std::error_code error;
+  const fs::path absolute = fs::weakly_canonical(fs::absolute(folder), error);
+  if (error) return {};
+  const std::string beginning = absolute.filename().string() + OutputFolder::partial_suffix;
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::directory_iterator(absolute.parent_path(), error)) {
+    if (entry.path().filename().string().starts_with(beginning) &&
+        fs::is_regular_file(entry.path() / map_file_name, error)) {
+      left.push_back(entry.path());
+    }
+  }
+  std::ranges::sort(left, std::ranges::greater(), [&](const fs::path& path) {
+    return fs::last_write_time(path / map_file_name, error);
+  });
+  return left;
+}
+
+/// The folder that a killed run has left. Empty if there is none.
+std::optional<fs::path> killed_run(const fs::path& folder, const OutputFolder& own) {
+  for (const fs::path& left : left_folders(folder)) {
+    if (left != own.path()) return left;
+  }
+  return std::nullopt;
+}
+
+/// The map file of an interrupted or killed run.
+fs::path interrupted_file(const fs::path& folder, const std::optional<fs::path>& killed) {
+  if (killed) return *killed / map_file_name;
+  const fs::path file = folder / map_file_name;
+  if (!fs::is_regular_file(file)) {
+    throw InputError(
+        folder.string() +
+        ": holds no interrupted run that could be resumed; start anew without --resume");
+  }
+  return file;
+}
+
+fs::path copied(const fs::path& file, const fs::path& copy) {
+  std::error_code error;
+  fs::copy_file(file, copy, error);
+  if (error) {
+    throw InputError(copy.string() + ": cannot be written (" + error.message() + ")");
+  }
+  fs::permissions(copy, fs::perms::owner_write, fs::perm_options::add, error);
+  return copy;
+}
+
+/// Merges what a killed program has left beside its file, and checks that it does not run any more.
+std::optional<fs::path> settled(std::optional<fs::path> killed) {
+  if (killed) MapStore::open(*killed / map_file_name, MapStore::Access::extend).settle();
+  return killed;
+}
+
+}  // namespace
+
+MapFile::MapFile(OutputFolder& out, std::optional<MapStore> store, std::optional<fs::path> killed,
+                 Origin origin)
+    : out_(&out),
+      killed_(std::move(killed)),
+      store_(std::move(store)),
+      origin_(origin),
+      is_stored_(origin == Origin::interrupted),
+      due_(Clock::now() + shortest_interval) {}
+
+MapFile::MapFile(OutputFolder& out) : MapFile(out, std::nullopt, std::nullopt, Origin::fresh) {
+  try {
+    store_ = MapStore::create(out.path() / map_file_name);
+  } catch (const InputError&) {
+    give_up();
+  }
+}
+
+MapFile MapFile::resumed(OutputFolder& out, const fs::path& folder) {
+  auto killed = settled(killed_run(folder, out));
+  if (!killed && !fs::exists(folder)) return MapFile(out);
+  const fs::path copy = copied(interrupted_file(folder, killed), out.path() / map_file_name);
+  try {
+    return {out, MapStore::open(copy, MapStore::Access::extend), std::move(killed),
+            Origin::interrupted};
+  } catch (const InputError& error) {
+    throw InputError(std::string(error.what()) + "; start anew without --resume");
+  }
+}
+
+MapFile MapFile::extending(OutputFolder& out, const fs::path& map) {
+  const fs::path file = map_file_in(map);
+  MapStore::open(file);  // with messages that name it, not its copy
+  const fs::path copy = copied(file, out.path() / map_file_name);
+  return {out, MapStore::open(copy, MapStore::Access::extend), std::nullopt, Origin::finished};
+}
+
+std::optional<MapContent> MapFile::to_extend() const {
+  return origin_ == Origin::finished ? std::optional(store_->content()) : std::nullopt;
+}
+
+void MapFile::store(MapRun& run, FrameSample& sample, MapInput& input,
+                    const PipelineOptions& options) {
+  if (input.is_recording()) {
+    store_run(*store_, run, sample, *input.recording(), options);
+  } else {
+    store_map(*store_, run);
+  }
+  is_stored_ = true;
+  std::error_code ignored;
+  if (killed_) fs::remove_all(*killed_, ignored);
+  killed_.reset();
+}
+
+void MapFile::store_if_due(MapRun& run, FrameSample& sample, MapInput& input,
+                           const PipelineOptions& options) {
+  const Clock::time_point start = Clock::now();
+  if (!store_ || start < due_ || run.frames().empty()) return;
+  try {
+    store(run, sample, input, options);
+  } catch (const InputError& error) {
+    if (!input.is_recording() || !is_stored_) {
+      give_up();
+      return;
+    }
+    out_->keep();
+    throw InputError(std::string(error.what()) +
+                     "; what was mapped before is kept there, and --resume continues from it");
+  }
+  const Clock::time_point end = Clock::now();
+  due_ =
+      end + std::max<Clock::duration>(shortest_interval, intervals_of_its_duration * (end - start));
+}
+
+void MapFile::store_last(MapRun& run, FrameSample& sample, MapInput& input,
+                         const PipelineOptions& options) {
+  if (!store_) return;
+  try {
+    store(run, sample, input, options);
+  } catch (const InputError&) {
+    give_up();
+  }
+}
+
+void MapFile::complete(MapRun& run, bool is_interrupted) {
+  if (!store_) std::rethrow_exception(failure_);
+  try {
+    if (!is_interrupted) complete_map(*store_, run);
+    store_->settle();
+  } catch (const std::exception&) {
+    give_up();
+    throw;
+  }
+}
+
+/// Goes on without the file, because of the exception that is being handled.
+void MapFile::give_up() {
+  failure_ = std::current_exception();
+  store_.reset();
+  std::error_code ignored;
+  for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {
+    fs::remove(out_->path() / (std::string(map_file_name) + suffix), ignored);
+  }
+}
+
+void tell_of_killed_run(const fs::path& folder) {
+  const std::vector<fs::path> left = left_folders(folder);
+  if (left.empty()) return;
+  std::fprintf(stderr,
+               "tofmap: %s holds the map of a run that was killed or is still going on; --resume "
+               "continues a killed one\n",
+               left.front().c_str());
+}
+
+}  // namespace tofmap::app

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "input/map_input.hpp"
+#include "output/output_folder.hpp"
+
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <optional>
+
+#include <tofmap/mapping/map_store.hpp>
+#include <tofmap/pipeline/frame_sample.hpp>
+#include <tofmap/pipeline/pipeline.hpp>
+
+namespace tofmap::app {
+
+/// The file map.db of a result while the map is made. The run is stored every few seconds, so that
+/// little is lost if the program is killed.
+class MapFile {
+ public:
+  /// Makes the file of a new map in the temporary folder of a result. If that fails, the map is
+  /// made without it, and complete() throws the exception.
+  explicit MapFile(OutputFolder& out);
+
+  /// Continues the file of the interrupted or killed run whose result was to be `folder`: a copy of
+  /// it in the temporary folder of the new result. A new file if there is no such folder. Throws
+  /// InputError if the folder holds no map, or if the run is still going on.
+  static MapFile resumed(OutputFolder& out, const std::filesystem::path& folder);
+
+  /// The file of a map that goes on with a finished one: a copy of `map`, a map file or the folder
+  /// that holds it. Throws InputError if that cannot be read.
+  static MapFile extending(OutputFolder& out, const std::filesystem::path& map);
+
+  /// The finished map to go on with. Empty if the file is new, or that of an interrupted run.
+  std::optional<MapContent> to_extend() const;
+
+  /// The file of an interrupted or killed run, which resume_run() continues. Null if the file is
+  /// new.
+  const MapStore* to_resume() const { return origin_ == Origin::interrupted ? &*store_ : nullptr; }
+
+  /// Stores a run if enough time has passed: at least half a second, and twenty times what storing
+  /// took. If that fails, and the run can be resumed from what was stored before, throws
+  /// InputError, which says where that is kept. Otherwise the map is made without the file.
+  void store_if_due(MapRun& run, FrameSample& sample, MapInput& input,
+                    const PipelineOptions& options);
+
+  /// Stores a run that has read its last frame, so that a recording can be resumed from it. If that
+  /// fails, the map is made without the file.
+  void store_last(MapRun& run, FrameSample& sample, MapInput& input,
+                  const PipelineOptions& options);
+
+  /// Ends the file: stores the map of a run that was finished, unless it may be resumed
+  /// (`is_interrupted`), and merges what SQLite keeps beside the file into it. If that fails,
+  /// or something failed before, removes the file and throws the exception.
+  void complete(MapRun& run, bool is_interrupted);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// What the file was at the beginning.
+  enum class Origin { fresh, interrupted, finished };
+
+  MapFile(OutputFolder& out, std::optional<MapStore> store,
+          std::optional<std::filesystem::path> killed, Origin origin);
+
+  void store(MapRun& run, FrameSample& sample, MapInput& input, const PipelineOptions& options);
+  void give_up();
+
+  OutputFolder* out_;
+  /// Folder that a killed run left, until its map is stored in the new file.
+  std::optional<std::filesystem::path> killed_;
+  std::optional<MapStore> store_;  ///< empty if it could not be written
+  std::exception_ptr failure_;     ///< why
+  Origin origin_;
+  bool is_stored_;  ///< whether there was a commit
+  Clock::time_point due_;
+};
+
+/// Prints a note if a killed run has left its map beside a result.
+void tell_of_killed_run(const std::filesystem::path& folder);
+
+}  // namespace tofmap::app

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <tofmap/core/frame.hpp>
+#include <tofmap/core/trajectory.hpp>
+#include <tofmap/mapping/keyframe_graph.hpp>
+#include <tofmap/mapping/surface_map.hpp>
+#include <tofmap/registration/path_uncertainty.hpp>
+#include <tofmap/registration/pose_graph.hpp>
+
+namespace tofmap {
+
+/// A loop: a place that was recognised.
+struct Loop {
+  int from_frame = 0;               ///< index of the frame of the earlier keyframe
+  int to_frame = 0;                 ///< index of the frame of the later keyframe
+  double error_m = 0;               ///< error of the path in position when the loop was found
+  double mahalanobis_distance = 0;  ///< of the loop constraint at the poses of the last fit
+  bool is_used = false;  ///< whether the last fit accepted it; false before the first fit
+};
+
+/// How certain the pose of a frame is.
+struct PoseCertainty {
+  int frame = 0;        ///< index of the frame
+  ExpectedError error;  ///< after the best rigid alignment of all keyframes of the map
+};
+
+/// A frame whose pose in a map is known.
+struct RegisteredFrame {
+  double timestamp_s = 0;
+  int keyframe = 0;  ///< id of the keyframe that the frame belongs to
+  Pose keyframe_from_camera = Pose::Identity();
+  int index = 0;  ///< of the frame in its recording
+  /// Standard deviation of the position relative to the keyframes that it was registered with.
+  double sigma_m = 0;
+  int recording = 0;  ///< index in MapContent::recordings
+};
+
+/// A submap: the surface seen from near one keyframe, the anchor, in the frame of the anchor.
+struct Submap {
+  int anchor = 0;  ///< id of a keyframe
+  SurfaceMap surface;
+};
+
+/// A recording that a map was made from.
+struct MapRecording {
+  std::string source;   ///< what was mapped, as it was given to the program
+  std::string added;    ///< when mapping it began: UTC, ISO 8601, for instance 2026-11-29T08:30:00Z
+  std::string version;  ///< of the program
+  std::string options;  ///< of all stages, as YAML
+  SensorModel sensor;
+};
+
+/// What a map consists of: all that registration, loop closure and the surface need. Keyframes of
+/// different `Keyframe::map` are in different world frames.
+struct MapContent {
+  MapContent(const CameraModel& camera, const SurfaceMapOptions& options);
+
+  CameraModel camera;  ///< of all recordings
+  SurfaceMapOptions surface_options;
+  std::vector<MapRecording> recordings;  ///< in the order of time
+  KeyframeGraph keyframes;
+  std::vector<Submap> submaps;
+  std::vector<int> submap_of;  ///< for each keyframe, the index of the submap of its frames
+  std::vector<RegisteredFrame> frames;
+  std::vector<PoseEdge> edges;  ///< of odometry and of loops, between keyframes by their ids
+  std::vector<Loop> loops;      ///< in the order of their edges
+};
+
+/// The pose of a frame in the world of its map.
+Pose pose_of(const RegisteredFrame& frame, const KeyframeGraph& keyframes);
+
+/// The numbers of the maps in which frames of the last recording are registered: first those of
+/// earlier recordings that they extend, then the others, each time that with the most of these
+/// frames first. Empty if there are none.
+std::vector<int> maps_of(const MapContent& content);
+
+/// Poses of the frames of the last recording that are registered in a map, from the current poses
+/// of their keyframes.
+Trajectory trajectory_of(const MapContent& content, int map);
+
+/// Indices (RegisteredFrame::index) of the frames of the last recording that are registered in a
+/// map, in the order of trajectory_of().
+std::vector<int> frames_of(const MapContent& content, int map);
+
+/// Current poses of the keyframes of the last recording that belong to a map.
+Trajectory keyframe_trajectory_of(const MapContent& content, int map);
+
+/// The frame of the last recording in a map whose position is least certain: that of its keyframe
+/// is as certain as the covariances of the edges of odometry and of the loops that are used say
+/// (expected_errors()), and that relative to the keyframe as when it was registered. The map must
+/// have such a frame.
+PoseCertainty least_certain_of(const MapContent& content, int map);
+
+/// The surface of a map: all of its submaps in its world frame, without free-space violations if
+/// the options say so.
+MapCloud surface_of(const MapContent& content, int map);
+
+/// Number of voxels in all submaps, including those with too few points for surface_of().
+std::size_t voxel_count(const MapContent& content);
+
+}  // namespace tofmap

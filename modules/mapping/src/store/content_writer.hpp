@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "database.hpp"
+
+#include <cstdint>
+#include <vector>
+
+#include <tofmap/mapping/map_content.hpp>
+
+namespace tofmap {
+
+/// What the row of a keyframe holds, as far as it may change.
+struct WrittenKeyframe {
+  Pose world_from_camera;
+  int recording = 0;
+  int frame_index = 0;
+  int map = 0;
+  int taken_in = 0;
+  int submap = 0;
+  std::uint64_t cloud = 0;  ///< KeyframeCloud::number()
+};
+
+/// What the tables of a file hold of a map, as far as is needed to find out what has changed since.
+struct WrittenContent {
+  std::vector<WrittenKeyframe> keyframes;
+  std::vector<std::vector<KeyframeLink>> links;
+  std::vector<int> submap_anchors;
+  std::vector<std::uint64_t> submap_revisions;
+  std::vector<RegisteredFrame> frames;
+};
+
+/// The same of a map that was just read from the file or written to it.
+WrittenContent written(const MapContent& content);
+
+/// Brings the tables up to date with a map, given what they hold. Returns the keyframes whose
+/// clouds were written. Must be called in a transaction.
+std::vector<int> write_content(const MapContent& content, const WrittenContent& before,
+                               SQLite::Database& database);
+
+}  // namespace tofmap

@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "database.hpp"
+
+#include "schema.hpp"
+
+#include <array>
+#include <fstream>
+
+#include <sqlite3.h>
+#include <zlib.h>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int wait_for_lock_ms = 2000;
+
+/// Whether a database was left by a process that was to write it: changes may then be in a second
+/// file, the write-ahead log, and reading merges them. Byte 18 of the file says so.
+bool has_write_ahead_log(const fs::path& file) {
+  constexpr std::size_t place = 18;
+  constexpr char with_log = 2;
+  std::array<char, place + 1> header{};
+  std::ifstream(file, std::ios::binary).read(header.data(), header.size());
+  return header[place] == with_log;
+}
+
+void lock(SQLite::Database& database) {
+  database.exec("PRAGMA locking_mode = EXCLUSIVE");
+  database.exec("PRAGMA journal_mode = WAL");
+  database.exec("PRAGMA synchronous = NORMAL");
+  database.exec("BEGIN IMMEDIATE; COMMIT");
+}
+
+int number_of(SQLite::Database& database, const char* pragma) {
+  return database.execAndGet(pragma).getInt();
+}
+
+void check_version(SQLite::Database& database) {
+  if (number_of(database, "PRAGMA application_id") != map_application_id) {
+    throw InputError("is an SQLite database, but not a map of tofmap");
+  }
+  const int version = number_of(database, "PRAGMA user_version");
+  if (version < 1 || version > map_format_version) {
+    throw InputError("is a map of version " + std::to_string(version) +
+                     ", and this program reads versions up to " +
+                     std::to_string(map_format_version) + "; install a newer version of tofmap");
+  }
+}
+
+/// Throws InputError if a page of the file, or a reference between tables, is damaged.
+void check_integrity(SQLite::Database& database) {
+  SQLite::Statement pages(database, "PRAGMA quick_check(1)");
+  if (!pages.executeStep() || pages.getColumn(0).getString() != "ok") {
+    throw InputError("is damaged; map the recordings again, or use a copy of the file");
+  }
+  SQLite::Statement references(database, "PRAGMA foreign_key_check");
+  if (references.executeStep()) {
+    throw InputError("is damaged: table '" + references.getColumn(0).getString() +
+                     "' refers to rows of '" + references.getColumn(2).getString() +
+                     "' that do not exist");
+  }
+}
+
+constexpr const char* checksum_name = "checksum";
+
+/// A checksum of all rows of the tables but that of the checksum itself.
+std::string checksum_of(SQLite::Database& database) {
+  uLong checksum = crc32(0, nullptr, 0);
+  const auto add = [&](std::string_view bytes) {
+    checksum = crc32(checksum, reinterpret_cast<const Bytef*>(bytes.data()),
+                     static_cast<uInt>(bytes.size()));
+  };
+  SQLite::Statement tables(
+      database, "SELECT name, sql FROM sqlite_schema WHERE type = 'table' ORDER BY name");
+  while (tables.executeStep()) {
+    const std::string table = tables.getColumn(0).getString();
+    add(tables.getColumn(1).getString());
+    SQLite::Statement row(database, table == "clouds"
+                                        ? "SELECT keyframe, width_px, height_px FROM clouds"
+                                        : "SELECT * FROM " + table);
+    while (row.executeStep()) {
+      if (table == "properties" && row.getColumn(0).getString() == checksum_name) continue;
+      for (int i = 0; i < row.getColumnCount(); ++i) {
+        const SQLite::Column column = row.getColumn(i);
+        const double number = column.isFloat() ? column.getDouble() : 0;
+        add(column.isFloat()
+                ? std::string_view(reinterpret_cast<const char*>(&number), sizeof number)
+                : bytes_in(column));
+      }
+    }
+  }
+  return std::to_string(checksum);
+}
+
+/// Throws InputError if the file has a checksum that is not that of its tables.
+void check_checksum(SQLite::Database& database) {
+  SQLite::Statement row(database, "SELECT value FROM properties WHERE name = ?");
+  row.bind(1, checksum_name);
+  if (row.executeStep() && row.getColumn(0).getString() != checksum_of(database)) {
+    throw InputError(
+        "is damaged, or was changed by another program; map the recordings again, or use a copy of "
+        "the file");
+  }
+}
+
+}  // namespace
+
+void seal(SQLite::Database& database) {
+  unseal(database);
+  SQLite::Statement row(database, "INSERT INTO properties VALUES (?, ?)");
+  row.bind(1, checksum_name);
+  row.bind(2, checksum_of(database));
+  row.exec();
+}
+
+void unseal(SQLite::Database& database) {
+  SQLite::Statement row(database, "DELETE FROM properties WHERE name = ?");
+  row.bind(1, checksum_name);
+  row.exec();
+}
+
+std::string told(const SQLite::Exception& error) {
+  switch (error.getErrorCode()) {
+    case SQLITE_NOTADB:
+      return "is not a map of tofmap; give map.db, or the folder that holds it";
+    case SQLITE_CORRUPT:
+      return "is damaged; map the recordings again, or use a copy of the file";
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return "is in use by another program that writes it; wait until that ends";
+    case SQLITE_FULL:
+      return "cannot be written: the disk is full";
+    case SQLITE_READONLY:
+    case SQLITE_PERM:
+    case SQLITE_AUTH:
+      return "cannot be written; make the file and its folder writable";
+    case SQLITE_CANTOPEN:
+      return "cannot be opened; check the path and the permissions";
+    default:
+      return std::string("cannot be read or written (SQLite: ") + error.what() + ")";
+  }
+}
+
+SQLite::Database create_database(const fs::path& file) {
+  if (fs::exists(file)) throw InputError("exists already; choose another name");
+  SQLite::Database database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE,
+                            wait_for_lock_ms);
+  database.exec("PRAGMA page_size = 16384");
+  lock(database);
+  database.exec(map_schema());
+  return database;
+}
+
+SQLite::Database open_database(const fs::path& file, bool is_locked) {
+  if (!fs::exists(file)) throw InputError("does not exist; 'tofmap map' makes one");
+  if (fs::is_directory(file)) throw InputError("is a folder; give the file map.db in it");
+  const bool may_write = is_locked || has_write_ahead_log(file);
+  SQLite::Database database(
+      file.string(), may_write ? SQLite::OPEN_READWRITE : SQLite::OPEN_READONLY, wait_for_lock_ms);
+  if (may_write) database.exec("PRAGMA locking_mode = EXCLUSIVE");
+  check_version(database);
+  check_integrity(database);
+  check_checksum(database);
+  if (is_locked) lock(database);
+  return database;
+}
+
+void bind_bytes(SQLite::Statement& statement, int index, std::string_view bytes) {
+  statement.bindNoCopy(index, bytes.data(), static_cast<int>(bytes.size()));
+}
+
+std::string_view bytes_in(const SQLite::Column& column) {
+  const void* data = column.getBlob();
+  return {static_cast<const char*>(data), static_cast<std::size_t>(column.getBytes())};
+}
+
+}  // namespace tofmap

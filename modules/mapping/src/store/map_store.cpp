@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/mapping/map_store.hpp"
+
+#include "content_reader.hpp"
+#include "content_writer.hpp"
+#include "database.hpp"
+#include "rows.hpp"
+
+#include <limits>
+#include <utility>
+
+namespace tofmap {
+namespace fs = std::filesystem;
+
+struct MapStore::File {
+  File(fs::path of, SQLite::Database opened) : path(std::move(of)), database(std::move(opened)) {}
+
+  CompactCloud read_cloud(int keyframe) const;
+
+  fs::path path;
+  mutable SQLite::Database database;
+  WrittenContent written;  ///< what the tables of the map hold
+};
+
+CompactCloud MapStore::File::read_cloud(int keyframe) const {
+  return naming_file(path, [&] {
+    SQLite::Statement row(database,
+                          "SELECT width_px, height_px, points FROM clouds WHERE keyframe = ?");
+    row.bind(1, keyframe);
+    if (!row.executeStep()) {
+      throw InputError("has no cloud of keyframe " + std::to_string(keyframe));
+    }
+    constexpr int most_pixels = 1 << 14;
+    CompactCloud cloud{.width_px = integer_in(row, 0, 1, most_pixels),
+                       .height_px = integer_in(row, 1, 1, most_pixels),
+                       .bytes = {},
+                       .origin = path.string() + ", keyframe " + std::to_string(keyframe)};
+    const SQLite::Column points = row.getColumn(2);
+    const std::string_view bytes = bytes_in(points);
+    cloud.bytes.assign(bytes.begin(), bytes.end());
+    return cloud;
+  });
+}
+
+MapStore::MapStore(std::shared_ptr<File> file) : file_(std::move(file)) {}
+MapStore::MapStore(MapStore&&) noexcept = default;
+MapStore& MapStore::operator=(MapStore&&) noexcept = default;
+MapStore::~MapStore() = default;
+
+MapStore MapStore::create(const fs::path& file) {
+  return naming_file(file,
+                     [&] { return MapStore(std::make_shared<File>(file, create_database(file))); });
+}
+
+MapStore MapStore::open(const fs::path& file, Access access) {
+  return naming_file(file, [&] {
+    return MapStore(std::make_shared<File>(file, open_database(file, access == Access::extend)));
+  });
+}
+
+MapContent MapStore::content() const {
+  return naming_file(file_->path, [&] {
+    // Keyframes keep the file open as long as their clouds may have to be read.
+    MapContent content = read_content(
+        file_->database, [file = file_](int keyframe) { return file->read_cloud(keyframe); });
+    file_->written = written(content);
+    return content;
+  });
+}
+
+std::optional<std::string> MapStore::entry(const std::string& name) const {
+  return naming_file(file_->path, [&]() -> std::optional<std::string> {
+    SQLite::Statement row(file_->database, "SELECT bytes FROM entries WHERE name = ?");
+    row.bind(1, name);
+    if (!row.executeStep()) return std::nullopt;
+    const SQLite::Column bytes = row.getColumn(0);
+    return std::string(bytes_in(bytes));
+  });
+}
+
+std::vector<std::string> MapStore::entries(const std::string& beginning) const {
+  return naming_file(file_->path, [&] {
+    std::vector<std::string> names;
+    SQLite::Statement row(
+        file_->database,
+        "SELECT name FROM entries WHERE substr(name, 1, length(?1)) = ?1 ORDER BY name");
+    row.bind(1, beginning);
+    while (row.executeStep()) names.push_back(row.getColumn(0).getString());
+    return names;
+  });
+}
+
+std::vector<FrameRow> MapStore::frame_rows(int recording) const {
+  return naming_file(file_->path, [&] {
+    std::vector<FrameRow> rows;
+    SQLite::Statement row(file_->database,
+                          "SELECT * FROM tracking WHERE recording = ? ORDER BY frame");
+    row.bind(1, recording);
+    while (row.executeStep()) {
+      rows.push_back({recording, integer_in(row, 1, 0, std::numeric_limits<int>::max()),
+                      number_in(row, 2), row.getColumn(3).getString(),
+                      row.getColumn(4).getString()});
+    }
+    return rows;
+  });
+}
+
+struct MapStore::Commit::Open {
+  explicit Open(SQLite::Database& database) : transaction(database) {}
+
+  SQLite::Transaction transaction;
+  std::optional<WrittenContent> written;
+  std::vector<std::pair<int, KeyframeCloud>>
+      clouds;  ///< written ones, by the ids of their keyframes
+};
+
+MapStore::Commit::Commit(MapStore& store) : store_(store) {
+  naming_file(store_.file_->path, [&] {
+    open_ = std::make_unique<Open>(store_.file_->database);
+    unseal(store_.file_->database);
+  });
+}
+
+MapStore::Commit::~Commit() = default;
+
+void MapStore::Commit::write(const MapContent& content) {
+  naming_file(store_.file_->path, [&] {
+    File& file = *store_.file_;
+    for (const int id : write_content(content, file.written, file.database)) {
+      open_->clouds.emplace_back(id, content.keyframes[id].cloud);
+    }
+    open_->written = written(content);
+  });
+}
+
+void MapStore::Commit::put(const std::string& name, std::string_view bytes) {
+  naming_file(store_.file_->path, [&] {
+    SQLite::Statement row(store_.file_->database, "INSERT OR REPLACE INTO entries VALUES (?, ?)");
+    row.bind(1, name);
+    bind_bytes(row, 2, bytes);
+    row.exec();
+  });
+}
+
+void MapStore::Commit::remove(const std::string& beginning) {
+  naming_file(store_.file_->path, [&] {
+    SQLite::Statement row(store_.file_->database,
+                          "DELETE FROM entries WHERE substr(name, 1, length(?1)) = ?1");
+    row.bind(1, beginning);
+    row.exec();
+  });
+}
+
+void MapStore::Commit::put(std::span<const FrameRow> rows) {
+  naming_file(store_.file_->path, [&] {
+    SQLite::Statement row(store_.file_->database,
+                          "INSERT OR REPLACE INTO tracking VALUES (?, ?, ?, ?, ?)");
+    for (const FrameRow& frame : rows) {
+      row.bind(1, frame.recording);
+      row.bind(2, frame.frame);
+      row.bind(3, frame.timestamp_s);
+      row.bind(4, frame.status);
+      row.bind(5, frame.details);
+      row.exec();
+      row.reset();
+    }
+  });
+}
+
+void MapStore::Commit::finish() {
+  naming_file(store_.file_->path, [&] { open_->transaction.commit(); });
+  if (open_->written) store_.file_->written = std::move(*open_->written);
+  for (const auto& [id, cloud] : open_->clouds) {
+    cloud.put_aside([file = store_.file_, keyframe = id] { return file->read_cloud(keyframe); });
+  }
+}
+
+void MapStore::shrink() {
+  naming_file(file_->path, [&] { file_->database.exec("VACUUM"); });
+}
+
+void MapStore::settle() {
+  naming_file(file_->path, [&] {
+    seal(file_->database);
+    file_->database.exec("PRAGMA wal_checkpoint(TRUNCATE)");
+    file_->database.exec("PRAGMA journal_mode = DELETE");
+    file_->database.exec("PRAGMA locking_mode = NORMAL");
+    file_->database.execAndGet("SELECT COUNT(*) FROM recordings");  // releases the lock
+  });
+}
+
+}  // namespace tofmap
