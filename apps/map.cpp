@@ -313,7 +313,8 @@ void map_frames(MapRun& run, MapInput& input, MapFile& file, MapOutput& output, 
 }
 
 void print_how_to_resume(const RoomMap& map, const MapInput& input, const OutputFolder& out) {
-  if (map.interrupted && input.is_recording()) {
+  if (map.interrupted && input.is_recording() &&
+      std::filesystem::exists(out.final_path() / map_file_name)) {
     std::printf("interrupted; --resume continues from %s\n", out.final_path().c_str());
   }
 }
@@ -349,7 +350,7 @@ int run_map(const MapArguments& arguments) {
       resume_run(*interrupted, run, output.sample, *input.recording(), options.pipeline);
     });
   }
-  if (auto finished = file.to_extend()) run.go_on_with(*std::move(finished));
+  if (auto finished = file.to_extend()) run.go_on_with(*std::move(finished), MapUse::extend);
   const std::unique_ptr<LiveView> view = open_view(arguments);
   FinishedMap finished;
   accompany(view.get(), [&] {

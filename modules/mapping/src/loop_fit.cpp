@@ -124,7 +124,7 @@ std::vector<const PoseEdge*> most_that_agree(const std::vector<const PoseEdge*>&
 }
 
 LoopFit fit_loops(std::span<const Keyframe> keyframes, std::span<const PoseEdge> edges,
-                  const LoopOptions& options) {
+                  const LoopOptions& options, std::size_t held) {
   std::vector<Pose> poses;
   for (const Keyframe& keyframe : keyframes) poses.push_back(keyframe.world_from_camera);
   Loops loops;
@@ -138,11 +138,11 @@ LoopFit fit_loops(std::span<const Keyframe> keyframes, std::span<const PoseEdge>
     trusted.push_back(edge);
     if (edge.may_be_wrong) supported.push_back(&edge);
   }
-  PoseGraphResult fitted = optimise_pose_graph(poses, trusted, options.kernel_width);
+  PoseGraphResult fitted = optimise_pose_graph(poses, trusted, options.kernel_width, held);
   const Loops agreeing = most_that_agree(supported, keyframes, options);
   if (tell_of_drift(agreeing, supported, fitted.poses, options)) {
     fitted = optimise_pose_graph(std::move(poses), with_drift(edges, agreeing, keyframes, options),
-                                 options.kernel_width);
+                                 options.kernel_width, held);
     supported = agreeing;
   }
   LoopFit fit{.poses = std::move(fitted.poses), .edge_mahalanobis = {}, .is_used = {}};

@@ -100,7 +100,8 @@ void RoomMapper::mend_slips() {
 /// Replaces the edges across a slip, and moves what is behind it.
 void RoomMapper::mend(const Slip& slip) {
   content_.edges = without_slip(content_.edges, slip);
-  set_poses(fit_loops(content_.keyframes.all(), content_.edges, loop_options_).poses);
+  set_poses(
+      fit_loops(content_.keyframes.all(), content_.edges, loop_options_, held_keyframes()).poses);
   rebuild_submaps(slip.at);
 }
 
@@ -134,7 +135,8 @@ void RoomMapper::rebuild_submaps(int at) {
 
 void RoomMapper::fit() {
   mend_slips();
-  const LoopFit fitted = fit_loops(content_.keyframes.all(), content_.edges, loop_options_);
+  const LoopFit fitted =
+      fit_loops(content_.keyframes.all(), content_.edges, loop_options_, held_keyframes());
   set_poses(fitted.poses);
   waiting_loop_ = -1;
   content_.keyframes.forget_loops();

@@ -55,7 +55,8 @@ void RoomMapper::describe_recording(MapRecording recording) {
   content_.recordings.back() = std::move(recording);
 }
 
-void RoomMapper::go_on_with(MapContent finished, MapRecording recording) {
+void RoomMapper::go_on_with(MapContent finished, MapRecording recording, MapUse use) {
+  use_ = use;
   content_ = std::move(finished);
   content_.recordings.push_back(std::move(recording));
   content_.keyframes.settle_maps();
@@ -75,6 +76,14 @@ int RoomMapper::localised_frames() const {
   return static_cast<int>(std::ranges::count_if(own_frames(), [&](const RegisteredFrame& frame) {
     return earlier.contains(content_.keyframes[frame.keyframe].map);
   }));
+}
+
+/// Number of keyframes, from the first one, whose poses are held.
+std::size_t RoomMapper::held_keyframes() const {
+  if (use_ != MapUse::localise) return 0;
+  return static_cast<std::size_t>(std::ranges::count_if(
+      content_.keyframes.all(),
+      [&](const Keyframe& keyframe) { return keyframe.recording < recording(); }));
 }
 
 /// The registered frames of the recording that is being mapped.
@@ -180,6 +189,7 @@ std::vector<const Keyframe*> RoomMapper::keyframes_around() const {
 
 /// Adds the surface of the latest registered frame to the submap of its keyframe.
 void RoomMapper::integrate(const SurfaceCloud& cloud) {
+  if (use_ == MapUse::localise) return;
   Submap& submap = content_.submaps[static_cast<std::size_t>(
       content_.submap_of[static_cast<std::size_t>(current_)])];
   const Pose anchor_from_keyframe = content_.keyframes[submap.anchor].world_from_camera.inverse() *

@@ -234,10 +234,10 @@ MapRun::MapRun(const SensorModel& sensor, const PipelineOptions& options, const 
   mapper_.describe_recording(described(source, sensor, options));
 }
 
-void MapRun::go_on_with(MapContent finished) {
+void MapRun::go_on_with(MapContent finished, MapUse use) {
   check_same_camera(finished.camera, sensor_.camera);
   MapRecording recording = mapper_.content().recordings.back();
-  mapper_.go_on_with(std::move(finished), std::move(recording));
+  mapper_.go_on_with(std::move(finished), std::move(recording), use);
 }
 
 void MapRun::advance(FrameSource& source, const MapHooks& hooks) {

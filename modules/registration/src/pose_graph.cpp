@@ -83,8 +83,10 @@ Node node_of(const Pose& pose) {
   return {Eigen::Quaterniond(pose.linear()).normalized(), pose.translation()};
 }
 
-/// The first pose of each set of poses that edges connect.
-std::vector<std::size_t> first_of_components(std::span<const PoseEdge> edges, std::size_t poses) {
+/// The poses that are held: the first `held` ones, and the first pose of each set of poses that
+/// edges connect.
+std::vector<std::size_t> held_poses(std::span<const PoseEdge> edges, std::size_t poses,
+                                    std::size_t held) {
   boost::disjoint_sets_with_storage<> components(poses);
   for (std::size_t pose = 0; pose < poses; ++pose) components.make_set(pose);
   for (const PoseEdge& edge : edges) {
@@ -94,7 +96,7 @@ std::vector<std::size_t> first_of_components(std::span<const PoseEdge> edges, st
   std::vector<std::size_t> firsts;
   for (std::size_t pose = 0; pose < poses; ++pose) {
     const std::size_t component = components.find_set(pose);
-    if (!is_known[component]) firsts.push_back(pose);
+    if (!is_known[component] || pose < held) firsts.push_back(pose);
     is_known[component] = true;
   }
   return firsts;
@@ -175,7 +177,7 @@ Eigen::Matrix<double, 6, 6> rotated(const Eigen::Matrix<double, 6, 6>& matrix,
 }
 
 PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const PoseEdge> edges,
-                                    double kernel_width) {
+                                    double kernel_width, std::size_t held) {
   check_edges(edges, poses.size());
   PoseGraphResult result;
   result.poses = std::move(poses);
@@ -186,16 +188,16 @@ PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const Pos
   for (const PoseEdge& edge : edges) {
     if (edge.may_be_wrong) width = std::max(width, 2 * mahalanobis_distance(edge, result.poses));
   }
-  const std::vector<std::size_t> held = first_of_components(edges, nodes.size());
+  const std::vector<std::size_t> fixed = held_poses(edges, nodes.size(), held);
   while (true) {
-    const ceres::Solver::Summary summary = solve(edges, width, held, nodes);
+    const ceres::Solver::Summary summary = solve(edges, width, fixed, nodes);
     result.iterations += static_cast<int>(summary.iterations.size());
     result.converged = summary.termination_type == ceres::CONVERGENCE;
     if (width <= kernel_width) break;
     constexpr double shrinking = 2;
     width = std::max(kernel_width, width / shrinking);
   }
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
+  for (std::size_t i = held; i < nodes.size(); ++i) {
     result.poses[i].linear() = nodes[i].rotation.normalized().toRotationMatrix();
     result.poses[i].translation() = nodes[i].translation_m;
   }

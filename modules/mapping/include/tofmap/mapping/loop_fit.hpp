@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -41,7 +42,9 @@ struct LoopFit {
 /// agree with each other, but most of these are rejected, the path is taken to be wrong. The poses
 /// are then optimised again with only these loops, and with larger covariances of the other edges,
 /// which allow for a drift of `drift_share` of the path's length and of all turns.
+///
+/// The first `held` keyframes stay where they are.
 LoopFit fit_loops(std::span<const Keyframe> keyframes, std::span<const PoseEdge> edges,
-                  const LoopOptions& options);
+                  const LoopOptions& options, std::size_t held = 0);
 
 }  // namespace tofmap

@@ -46,6 +46,12 @@ struct AddedFrame {
   double loop_ms = 0;       ///< loop search and pose graph
 };
 
+/// What a recording does with a finished map.
+enum class MapUse {
+  extend,    ///< goes on with it: adds its surface, and corrects poses by new loops
+  localise,  ///< is localised in it: the poses of its keyframes are held, and no surface is added
+};
+
 /// Tracks the camera, closes loops, and keeps trajectory and map consistent.
 ///
 /// Odometry registers each frame with the keyframes around it. At a place that is seen again,
@@ -81,7 +87,7 @@ class RoomMapper {
   /// Goes on with a finished map: the frames that follow are those of another recording of the same
   /// place. They begin a map of their own, which is joined with the finished one as soon as its
   /// places are recognised. `recording` describes them. Must be called before the first frame.
-  void go_on_with(MapContent finished, MapRecording recording);
+  void go_on_with(MapContent finished, MapRecording recording, MapUse use);
 
   /// Number of frames of the recording that are registered in the finished map. Without
   /// go_on_with(), 0.
@@ -152,6 +158,7 @@ class RoomMapper {
   void connect_own_keyframes();
   void drop_edges_between_maps();
   void return_to_origin(int map);
+  std::size_t held_keyframes() const;
   int recording() const { return static_cast<int>(content_.recordings.size()) - 1; }
   int newest_map() const { return begun_maps_ - 1; }
   bool is_joined() const { return map_ != newest_map(); }
@@ -179,6 +186,7 @@ class RoomMapper {
   LoopOptions loop_options_;
   StillOdometry odometry_;
   MapContent content_;
+  MapUse use_ = MapUse::extend;
   std::size_t first_own_frame_ = 0;  ///< frames before it are of earlier recordings
   int unfitted_loops_ = 0;
   int waiting_loop_ = -1;  ///< later keyframe of the newest loop that awaits others; −1: none

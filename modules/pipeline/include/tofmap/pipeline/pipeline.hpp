@@ -93,7 +93,7 @@ class MapRun {
 
   /// Goes on with a finished map (RoomMapper::go_on_with()). Must be called before the first frame.
   /// Throws UsageError if the map was made with another camera.
-  void go_on_with(MapContent finished);
+  void go_on_with(MapContent finished, MapUse use);
 
   /// Processes frames from the source until the source ends or a hook ends the run. Frames that
   /// are damaged or cannot be registered are skipped; their records say why. Frames are prepared

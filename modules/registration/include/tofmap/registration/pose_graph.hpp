@@ -46,8 +46,8 @@ struct PoseGraphResult {
 };
 
 /// Finds the poses that fit all edges best, by nonlinear least squares over rotations and
-/// translations (Ceres, Levenberg-Marquardt). Of poses that edges connect, the first one is held
-/// fixed.
+/// translations (Ceres, Levenberg-Marquardt). The first `held` poses are held fixed; of others that
+/// edges connect, the first one is, unless they are connected with a fixed one.
 ///
 /// Edges that may be wrong go through a Geman-McClure kernel whose width is halved from pass to
 /// pass until it is `kernel_width` standard deviations (graduated non-convexity, Yang et al., RA-L
@@ -56,7 +56,7 @@ struct PoseGraphResult {
 ///
 /// Throws UsageError as check_edges() does.
 PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const PoseEdge> edges,
-                                    double kernel_width);
+                                    double kernel_width, std::size_t held = 0);
 
 /// The Mahalanobis distance √(eᵀ Σ⁻¹ e) of an edge, where e is the error of the measured relative
 /// pose at these poses.

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "support/scenery.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include <tofmap/mapping/room_mapper.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Maps a part of the path through a scene.
+MapContent mapped(const test::Scenery& scene, int first, int end) {
+  RoomMapper mapper(scene.camera(), {}, {}, {}, {});
+  for (int i = first; i < end; ++i) mapper.add_frame({i, i / 15.0, scene.view(i), false});
+  mapper.finish();
+  return mapper.content();
+}
+
+/// A recording that goes on with a map.
+class KnownMap : public testing::Test {
+ protected:
+  static constexpr int first = 100;
+  static constexpr int end = 200;
+
+  /// Goes on with the map of the frames `first` … `end` by other frames, in which there may be one
+  /// more thing.
+  RoomMapper going_on(const test::Scenery& scene, int from, int to, MapUse use,
+                      std::optional<Eigen::AlignedBox3d> box = {}) const {
+    RoomMapper mapper(room_.camera(), {}, {}, {}, {});
+    mapper.go_on_with(map_, {}, use);
+    for (int i = from; i < to; ++i) {
+      mapper.add_frame({i - from, (i - from) / 15.0, scene.view(i, box), false});
+    }
+    mapper.finish();
+    return mapper;
+  }
+
+  /// Largest error of the poses of a recording that began at frame `from` of the scene, in the
+  /// world of the map.
+  double worst_error_m(const RoomMapper& mapper, int from) const {
+    double worst_m = 0;
+    const int map = maps_of(mapper.content()).front();
+    for (const StampedPose& pose : trajectory_of(mapper.content(), map)) {
+      const int frame = from + static_cast<int>(std::lround(15 * pose.timestamp_s));
+      const Pose truth = room_.pose(first).inverse() * room_.pose(frame);
+      worst_m =
+          std::max(worst_m, (truth.translation() - pose.world_from_camera.translation()).norm());
+    }
+    return worst_m;
+  }
+
+  test::Scenery room_{"room"};
+  MapContent map_ = mapped(room_, first, end);
+};
+
+TEST_F(KnownMap, LocalisesACameraThatBeginsAnywhere) {
+  for (const int from : {first + 5, first + 60}) {
+    const RoomMapper mapper = going_on(room_, from, from + 30, MapUse::localise);
+    EXPECT_EQ(mapper.localised_frames(), 30) << from;
+    EXPECT_LT(worst_error_m(mapper, from), 0.01) << from;
+  }
+}
+
+TEST_F(KnownMap, IsExtendedBeyondItsEnd) {
+  const RoomMapper mapper = going_on(room_, end - 30, end + 40, MapUse::extend);
+  EXPECT_EQ(mapper.localised_frames(), 70);
+  EXPECT_LT(worst_error_m(mapper, end - 30), 0.01);
+  EXPECT_GT(mapper.content().submaps.size(), map_.submaps.size());
+}
+
+TEST_F(KnownMap, StaysAsItIsForALocalisedCamera) {
+  const RoomMapper mapper = going_on(room_, first + 20, first + 60, MapUse::localise);
+  for (const Keyframe& keyframe : map_.keyframes.all()) {
+    EXPECT_EQ(mapper.content().keyframes[keyframe.id].world_from_camera.matrix(),
+              keyframe.world_from_camera.matrix())
+        << keyframe.id;
+  }
+  EXPECT_EQ(surface_of(mapper.content(), 0).size(), surface_of(map_, 0).size());
+}
+
+TEST_F(KnownMap, MayHaveSomethingNewInIt) {
+  // A box of a metre in front of the camera's path.
+  const Pose ahead = room_.pose(first + 40);
+  const Eigen::Vector3d middle = ahead * Eigen::Vector3d(0, 0, 2.5);
+  const Eigen::AlignedBox3d box(middle - Eigen::Vector3d::Constant(0.4),
+                                middle + Eigen::Vector3d::Constant(0.4));
+  const RoomMapper mapper = going_on(room_, first + 10, first + 70, MapUse::localise, box);
+  EXPECT_EQ(mapper.localised_frames(), 60);
+  EXPECT_LT(worst_error_m(mapper, first + 10), 0.01);
+}
+
+TEST_F(KnownMap, DoesNotKnowAnotherPlace) {
+  const test::Scenery other("flat");
+  const RoomMapper mapper = going_on(other, 0, 60, MapUse::localise);
+  EXPECT_EQ(mapper.localised_frames(), 0);
+  EXPECT_FALSE(maps_of(mapper.content()).empty()) << "the recording is mapped by itself";
+}
+
+}  // namespace
+}  // namespace tofmap
