@@ -59,6 +59,8 @@ void add_import_command(CLI::App& program, Outcome& outcome);
 void add_info_command(CLI::App& program, Outcome& outcome);
 void add_unwrap_command(CLI::App& program, Outcome& outcome);
 void add_map_command(CLI::App& program, Outcome& outcome);
+void add_localise_command(CLI::App& program, Outcome& outcome);
+void add_merge_command(CLI::App& program, Outcome& outcome);
 void add_register_command(CLI::App& program, Outcome& outcome);
 void add_evaluate_command(CLI::App& program, Outcome& outcome);
 void add_view_command(CLI::App& program, Outcome& outcome);

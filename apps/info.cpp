@@ -4,8 +4,10 @@
 #include "command.hpp"
 #include "console/interruption.hpp"
 #include "console/progress.hpp"
+#include "input/map_argument.hpp"
 #include "input/recording.hpp"
 #include "options/options.hpp"
+#include "output/map_information.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -118,6 +120,10 @@ int run_info(const InfoArguments& arguments) {
   ProgramOptions options;
   OptionTable table = arguments.common.resolve("info", options);
   arguments.recording.apply(table);
+  if (is_map(arguments.recording.sequence)) {
+    print_map_information(map_file_in(arguments.recording.sequence));
+    return exit_status::done;
+  }
   const SequenceReader source = open_recording(arguments.recording.sequence, options.camera);
   const RecordingSurvey survey = read_all(source, arguments.common.quiet);
   print_sensor(source.sensor());
@@ -134,9 +140,9 @@ int run_info(const InfoArguments& arguments) {
 
 void add_info_command(CLI::App& program, Outcome& outcome) {
   auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* app =
-      program.add_subcommand("info", "print what a recording contains, and what is wrong with it");
-  arguments->recording.add_to(*app);
+  CLI::App* app = program.add_subcommand(
+      "info", "print what a recording or map contains, and what is wrong with it");
+  arguments->recording.add_to(*app, "folder of the recording or of the map, or map.db");
   arguments->common.add_to(*app);
   app->callback([arguments, &outcome] { outcome.status = run_info(*arguments); });
 }

@@ -44,6 +44,8 @@ int run(int argc, char** argv) {
   add_calibrate_command(program, outcome);
   add_unwrap_command(program, outcome);
   add_map_command(program, outcome);
+  add_localise_command(program, outcome);
+  add_merge_command(program, outcome);
   add_register_command(program, outcome);
   add_evaluate_command(program, outcome);
   add_view_command(program, outcome);

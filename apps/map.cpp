@@ -7,13 +7,16 @@
 #include "console/progress.hpp"
 #include "input/map_input.hpp"
 #include "input/recording.hpp"
+#include "input/start_place.hpp"
 #include "options/options.hpp"
+#include "output/change_report.hpp"
 #include "output/coverage.hpp"
 #include "output/frame_report.hpp"
 #include "output/json_text.hpp"
 #include "output/map_file.hpp"
 #include "output/output_folder.hpp"
 #include "output/pictures.hpp"
+#include "output/refusal.hpp"
 #include "output/result_addition.hpp"
 #include "reports/consistency_report.hpp"
 #include "reports/map_page.hpp"
@@ -47,6 +50,8 @@ struct MapArguments {
   std::filesystem::path out;
   std::string method;
   std::filesystem::path onto;
+  std::string start;
+  bool even_if_worse = false;
   bool resume = false;
   bool pcd = false;
   bool view = false;
@@ -72,10 +77,7 @@ void check_result(const RoomMap& map) {
 /// Throws InputError if no frame was found in the map that is extended.
 void refuse_another_place(const RoomMap& map) {
   if (!map.localised || *map.localised > 0) return;
-  throw InputError(
-      "the recording shows another place than the map, or places that cannot be recognised: " +
-      counted(*map.localised, "frame") + " of " + std::to_string(map.frames.size()) +
-      " could be localised in it; the map stays as it was");
+  throw InputError(told_refusal(map.nearness, map.frames.size()));
 }
 
 /// What is needed to write the result of a run besides the map itself.
@@ -85,11 +87,12 @@ struct MapOutput {
   std::string options_yaml;
   SensorModel sensor;
   FrameSample sample;
-  SourceSurvey survey = {};                 ///< of the recording or device
-  std::vector<std::string> warnings = {};   ///< about the recording, then about the map
-  nlohmann::ordered_json acquisition = {};  ///< report of a device; null for a recording
-  std::string losses = {};                  ///< MapInput::losses()
-  Failures failures = {};                   ///< failures of optional parts
+  std::vector<MapRecording> recordings = {};  ///< that the map was made from
+  SourceSurvey survey = {};                   ///< of the recording or device
+  std::vector<std::string> warnings = {};     ///< about the recording, then about the map
+  nlohmann::ordered_json acquisition = {};    ///< report of a device; null for a recording
+  std::string losses = {};                    ///< MapInput::losses()
+  Failures failures = {};                     ///< failures of optional parts
 };
 
 /// A map, its consistency measures, and the verdict on it without ground truth.
@@ -97,7 +100,16 @@ struct FinishedMap {
   RoomMap map;
   Consistency consistency;
   Judgement judgement = {};
+  bool is_taken_back = false;  ///< the map that was extended stays as it was
 };
+
+/// Whether an extended map is worse than the map before, and no loop has shown that this was wrong.
+bool is_to_be_taken_back(const FinishedMap& finished, const MapFile& file,
+                         const MapArguments& arguments) {
+  const auto before = file.verdict_before();
+  return before && finished.judgement.verdict > *before && !finished.map.interrupted &&
+         !finished.map.has_moved_map && !arguments.even_if_worse;
+}
 
 /// Writes the map and the trajectories, which are kept even if a later step fails.
 void write_map_and_path(OutputFolder& out, const RoomMap& map) {
@@ -120,6 +132,7 @@ void write_report(const OutputFolder& out, const FinishedMap& finished, const Ma
   report["summary"] = summary_json(finished.map);
   report["camera_errors"] = errors_json(finished.map.errors);
   report["consistency"] = consistency_json(finished.consistency);
+  report["changes"] = changes_json(finished.map.changes, output.recordings);
   report["warnings"] = output.warnings;
   if (!output.failures.empty()) report["failed"] = output.failures.texts();
   if (!output.acquisition.is_null()) report["acquisition"] = output.acquisition;
@@ -190,6 +203,10 @@ void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput&
   const double voxel_m = output.options.pipeline.map.voxel_m;
   const MapCloud& surface = finished.map.surface;
   add_file("mesh.ply", [&](const auto& file) { write_mesh(file, extract_mesh(surface, voxel_m)); });
+  if (!finished.map.changes.empty()) {
+    add_file(changes_file_name,
+             [&](const auto& file) { write_changes(file, finished.map.changes); });
+  }
   if (output.arguments.pcd) {
     add_file("map.pcd", [&](const auto& file) { write_map(file, surface); });
   }
@@ -201,22 +218,33 @@ FinishedMap finish_map(MapRun& run, MapFile& file, OutputFolder& out, MapOutput&
   check_result(finished.map);
   refuse_another_place(finished.map);
   write_map_and_path(out, finished.map);
-  output.failures.attempt(map_file_name, [&] { file.complete(run, finished.map.interrupted); });
   add_what_follows(out, finished, output);
   output.warnings = all_warnings(output.survey, finished.map, finished.consistency);
   if (!output.losses.empty()) output.warnings.push_back("not mapped: " + output.losses);
   finished.judgement = judge(
       evidence_of(finished.map, output.options.pipeline, finished.consistency, output.warnings));
+  finished.is_taken_back = is_to_be_taken_back(finished, file, output.arguments);
+  if (finished.is_taken_back) {
+    file.discard();
+  } else {
+    run.note_verdict(finished.judgement.verdict);
+    output.failures.attempt(map_file_name, [&] { file.complete(run, finished.map.interrupted); });
+  }
   keeping_map(out, [&] { write_report(out, finished, output); });
   const auto interrupted =
       output.arguments.resume ? Completeness::resumable : Completeness::interrupted;
-  out.commit(finished.map.interrupted ? interrupted : Completeness::whole);
+  out.commit(finished.map.interrupted ? interrupted
+             : finished.is_taken_back ? Completeness::interrupted
+                                      : Completeness::whole);
   for (const std::string& text : output.failures.texts()) {
     std::fprintf(stderr, "tofmap: %s holds the map, but without %s\n", out.final_path().c_str(),
                  text.c_str());
   }
   if (!output.arguments.common.quiet) {
     print_summary(finished.map, out.final_path());
+    for (const std::string& line : told_changes(finished.map.changes, output.recordings)) {
+      std::printf("%s\n", line.c_str());
+    }
     print_warnings(output.warnings);
     const Judgement& judgement = finished.judgement;
     std::printf("verdict: %s%s\n", std::string(sentence_of(judgement.verdict)).c_str(),
@@ -232,9 +260,9 @@ void add_page(const OutputFolder& out, const FinishedMap& finished, const MapOut
   std::optional<RecordedTruth> truth;
   if (recording) truth.emplace(*recording);
   write_map_page(out.final_path(),
-                 {input.name(), finished.map, output.sensor, output.sample.frames(), recording,
-                  truth ? &*truth : nullptr, output.warnings, finished.consistency, output.options,
-                  output.options_yaml},
+                 {input.name(), finished.map, output.recordings, output.sensor,
+                  output.sample.frames(), recording, truth ? &*truth : nullptr, output.warnings,
+                  finished.consistency, output.options, output.options_yaml},
                  output.arguments.common.quiet);
   if (truth) print_remarks(*truth);
   if (!output.arguments.common.quiet) {
@@ -350,7 +378,10 @@ int run_map(const MapArguments& arguments) {
       resume_run(*interrupted, run, output.sample, *input.recording(), options.pipeline);
     });
   }
-  if (auto finished = file.to_extend()) run.go_on_with(*std::move(finished), MapUse::extend);
+  if (auto finished = file.to_extend()) {
+    const auto start = start_place(arguments.start, *finished);
+    run.go_on_with(*std::move(finished), MapUse::extend, start);
+  }
   const std::unique_ptr<LiveView> view = open_view(arguments);
   FinishedMap finished;
   accompany(view.get(), [&] {
@@ -360,10 +391,18 @@ int run_map(const MapArguments& arguments) {
     output.losses = input.losses();
     output.acquisition = input.acquisition();
     file.store_last(run, output.sample, input, options.pipeline);
+    output.recordings = run.mapper().content().recordings;
     finished = finish_map(run, file, out, output);
   });
   if (!quiet) print_how_to_resume(finished.map, input, out);
   const int status = add_reports(out, finished, output, input);
+  if (finished.is_taken_back) {
+    throw InputError(arguments.onto.string() +
+                     ": stays as it was, since the map would be worse with "
+                     "the recording (see the verdict); " +
+                     out.final_path().string() + " shows how, but has no " + map_file_name +
+                     ". --even-if-worse keeps the extended map");
+  }
   if (view && status == exit_status::done) view->show_result(finished.map);
   if (!input.silence().empty()) throw InputError(input.silence());
   return status;
@@ -380,6 +419,9 @@ void add_map_command(CLI::App& program, Outcome& outcome) {
   add_method_option(*app, arguments->method);
   app->add_option("--onto", arguments->onto,
                   "go on with a finished map: a folder that 'map' wrote, or map.db");
+  add_start_option(*app, arguments->start);
+  app->add_flag("--even-if-worse", arguments->even_if_worse,
+                "keep the map that --onto extends even if its verdict is worse than before");
   app->add_flag("--resume", arguments->resume, "continue an interrupted run with the same --out");
   app->add_flag("--view", arguments->view, "show the map in a window as it grows");
   app->add_flag("--pcd", arguments->pcd, "also write map.pcd");

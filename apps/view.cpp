@@ -149,9 +149,10 @@ void add_view_command(CLI::App& program, Outcome& outcome) {
   ViewRequest& request = arguments->request;
   CLI::App* app = program.add_subcommand(
       "view", "show a map, cloud, mesh or recording, or the maps of an evaluation");
-  app->add_option(
-         "PATH", request.path,
-         "result folder of map, register or evaluate, a PLY, PCD, VTK or OBJ file, or a recording")
+  app->add_option("PATH", request.path,
+                  "result folder of map, merge, register or evaluate, a map.db, PLY, PCD, VTK or "
+                  "OBJ file, or "
+                  "a recording")
       ->required();
   app->add_option("--screenshot", arguments->screenshot,
                   "write a PNG picture instead of opening a window; needs no display");
@@ -164,6 +165,9 @@ void add_view_command(CLI::App& program, Outcome& outcome) {
       ->type_name("{" + joined(all_color_names(), ",") + "}");
   app->add_flag("--cameras", request.cameras,
                 "show the field of view of the camera at the keyframes");
+  app->add_option("--keyframe", request.keyframe,
+                  "id of the keyframe of a map to show, counted from 0; keys n and b step on")
+      ->check(CLI::Range(0, 1000000));
   app->add_flag("--wrapped", request.wrapped,
                 "show the ranges of a frame as measured, without unwrapping");
   add_method_option(*app, request.method,

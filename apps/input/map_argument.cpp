@@ -24,4 +24,11 @@ std::filesystem::path map_file_in(const std::filesystem::path& argument) {
   return file;
 }
 
+bool is_map(const std::filesystem::path& argument) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(argument, error)) return argument.extension() == ".db";
+  return std::filesystem::exists(argument / map_file_name, error) &&
+         !std::filesystem::exists(argument / "sequence.yaml", error);
+}
+
 }  // namespace tofmap::app

@@ -10,4 +10,8 @@ namespace tofmap::app {
 /// if there is none.
 std::filesystem::path map_file_in(const std::filesystem::path& argument);
 
+/// Whether an argument names a map: a file that ends in .db, or a folder with a map file that is no
+/// recording.
+bool is_map(const std::filesystem::path& argument);
+
 }  // namespace tofmap::app

@@ -18,9 +18,9 @@ std::vector<OptionField<RunOptions>> RunOptions::fields() {
 }
 
 const std::vector<std::string>& commands_with_options() {
-  static const std::vector<std::string> commands = {"simulate",  "record", "import", "info",
-                                                    "calibrate", "unwrap", "map",    "register",
-                                                    "evaluate",  "view"};
+  static const std::vector<std::string> commands = {"simulate",  "record",   "import",   "info",
+                                                    "calibrate", "unwrap",   "map",      "localise",
+                                                    "merge",     "register", "evaluate", "view"};
   return commands;
 }
 
@@ -40,16 +40,19 @@ OptionTable option_table(const std::string& command, ProgramOptions& options) {
     table.bind("simulator", options.simulator);
     table.bind("tum", options.tum);
   }
-  if (is_any_of({"record", "info", "unwrap", "map", "evaluate", "view"})) {
+  if (is_any_of({"record", "info", "unwrap", "map", "localise", "evaluate", "view"})) {
     table.bind("camera", options.camera);
   }
-  if (is_any_of({"record", "map"})) {
+  if (is_any_of({"record", "map", "localise"})) {
     table.bind("device", options.device);
     table.bind("live", options.live);
   }
   if (is_any_of({"calibrate"})) table.bind("calibration", options.calibration);
-  if (is_any_of({"map", "evaluate"})) {
+  if (is_any_of({"map", "localise", "evaluate"})) {
     bind_options(table, options.pipeline);
+  } else if (is_any_of({"merge"})) {
+    table.bind("registration", options.pipeline.registration);
+    table.bind("loops", options.pipeline.loops);
   } else if (is_any_of({"calibrate"})) {
     table.bind("unwrap", options.pipeline.unwrap);
   } else if (is_any_of({"unwrap", "view"})) {

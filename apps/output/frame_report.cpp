@@ -17,8 +17,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json times_json(const StageTimes& times) {
-  return {{"unwrap", times.unwrap_ms},     {"filter", times.filter_ms}, {"cloud", times.cloud_ms},
-          {"register", times.register_ms}, {"map", times.map_ms},       {"loops", times.loop_ms}};
+  Json json;
+  for (const auto& [stage, time_ms] : stage_times) json[stage] = times.*time_ms;
+  return json;
 }
 
 Json tracking_json(const TrackingResult& tracking) {
@@ -110,12 +111,10 @@ Json frame_json(const FrameRecord& record) {
 
 StageTimes mean_times(const RoomMap& map) {
   StageTimes mean;
-  mean.unwrap_ms = mean_of(map, [](const FrameRecord& r) { return r.times.unwrap_ms; });
-  mean.filter_ms = mean_of(map, [](const FrameRecord& r) { return r.times.filter_ms; });
-  mean.cloud_ms = mean_of(map, [](const FrameRecord& r) { return r.times.cloud_ms; });
-  mean.register_ms = mean_of(map, [](const FrameRecord& r) { return r.times.register_ms; });
-  mean.map_ms = mean_of(map, [](const FrameRecord& r) { return r.times.map_ms; });
-  mean.loop_ms = mean_of(map, [](const FrameRecord& r) { return r.times.loop_ms; });
+  for (const auto& stage : stage_times) {
+    const auto time_ms = stage.second;
+    mean.*time_ms = mean_of(map, [&](const FrameRecord& record) { return record.times.*time_ms; });
+  }
   return mean;
 }
 

@@ -77,6 +77,13 @@ std::optional<fs::path> settled(std::optional<fs::path> killed) {
   return killed;
 }
 
+std::optional<Verdict> verdict_named(const std::string& name) {
+  for (const Verdict verdict : {Verdict::good, Verdict::check, Verdict::bad}) {
+    if (name_of(verdict) == name) return verdict;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 MapFile::MapFile(OutputFolder& out, std::optional<MapStore> store, std::optional<fs::path> killed,
@@ -115,8 +122,11 @@ MapFile MapFile::extending(OutputFolder& out, const fs::path& map) {
   return {out, MapStore::open(copy, MapStore::Access::extend), std::nullopt, Origin::finished};
 }
 
-std::optional<MapContent> MapFile::to_extend() const {
-  return origin_ == Origin::finished ? std::optional(store_->content()) : std::nullopt;
+std::optional<MapContent> MapFile::to_extend() {
+  if (origin_ != Origin::finished) return std::nullopt;
+  MapContent content = store_->content();
+  verdict_before_ = verdict_named(content.recordings.back().verdict);
+  return content;
 }
 
 void MapFile::store(MapRun& run, FrameSample& sample, MapInput& input,
@@ -176,6 +186,10 @@ void MapFile::complete(MapRun& run, bool is_interrupted) {
 /// Goes on without the file, because of the exception that is being handled.
 void MapFile::give_up() {
   failure_ = std::current_exception();
+  discard();
+}
+
+void MapFile::discard() {
   store_.reset();
   std::error_code ignored;
   for (const char* suffix : {"", "-wal", "-shm", "-journal"}) {

@@ -34,7 +34,10 @@ class MapFile {
   static MapFile extending(OutputFolder& out, const std::filesystem::path& map);
 
   /// The finished map to go on with. Empty if the file is new, or that of an interrupted run.
-  std::optional<MapContent> to_extend() const;
+  std::optional<MapContent> to_extend();
+
+  /// The verdict on the finished map that the file goes on with. Empty if there is none.
+  std::optional<Verdict> verdict_before() const { return verdict_before_; }
 
   /// The file of an interrupted or killed run, which resume_run() continues. Null if the file is
   /// new.
@@ -56,6 +59,9 @@ class MapFile {
   /// or something failed before, removes the file and throws the exception.
   void complete(MapRun& run, bool is_interrupted);
 
+  /// Removes the file: the result gets none.
+  void discard();
+
  private:
   using Clock = std::chrono::steady_clock;
 
@@ -73,6 +79,7 @@ class MapFile {
   std::optional<std::filesystem::path> killed_;
   std::optional<MapStore> store_;  ///< empty if it could not be written
   std::exception_ptr failure_;     ///< why
+  std::optional<Verdict> verdict_before_;
   Origin origin_;
   bool is_stored_;  ///< whether there was a commit
   Clock::time_point due_;

@@ -6,6 +6,7 @@
 #include "console/interruption.hpp"
 #include "console/progress.hpp"
 #include "output/coverage.hpp"
+#include "reports/change_section.hpp"
 #include "reports/coverage_section.hpp"
 #include "reports/error_curves.hpp"
 #include "reports/map_section.hpp"
@@ -235,6 +236,7 @@ void write_map_page(const std::filesystem::path& result, const MapPageSubject& s
   page.add_warnings(warnings_of(subject));
   add_maps(page, shown_maps(subject, truth, scores, wrapped.map), truth.poses,
            subject.options.report);
+  add_changes(page, map.surface, map.trajectory, map.changes, subject.recordings);
   add_coverage(page, map);
   add_errors(page, subject, truth, scores, sample, wrapped);
   add_frames(

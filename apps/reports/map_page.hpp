@@ -18,6 +18,7 @@ namespace tofmap::app {
 struct MapPageSubject {
   std::string source;  ///< folder of the recording, or URI of the device
   const RoomMap& map;
+  const std::vector<MapRecording>& recordings;  ///< that the map was made from
   const SensorModel& sensor;
   const std::vector<SampledFrame>& sample;  ///< some of the frames of the map
   const SequenceReader* recording;          ///< null for a device

@@ -98,13 +98,8 @@ void add_stage_times(ReportPage& page, const std::vector<std::string>& names,
     for (const StageTimes& mean : means) row.push_back(fmt::format("{:.1f}", time_of(mean)));
     table.rows.push_back(std::move(row));
   };
-  add_row("unwrap", [](const StageTimes& times) { return times.unwrap_ms; });
-  add_row("filter", [](const StageTimes& times) { return times.filter_ms; });
-  add_row("cloud", [](const StageTimes& times) { return times.cloud_ms; });
-  add_row("register", [](const StageTimes& times) { return times.register_ms; });
-  add_row("map", [](const StageTimes& times) { return times.map_ms; });
-  add_row("loops", [](const StageTimes& times) { return times.loop_ms; });
-  add_row("total", [](const StageTimes& times) { return times.total_ms(); });
+  for (const auto& [stage, time_ms] : stage_times) add_row(stage, std::mem_fn(time_ms));
+  add_row("total", std::mem_fn(&StageTimes::total_ms));
   page.add_heading("Time");
   page.add_table(table);
 }

@@ -10,6 +10,7 @@
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/input_file.hpp>
 #include <tofmap/core/text.hpp>
+#include <tofmap/mapping/map_store.hpp>
 #include <tofmap/simulation/triangle_mesh.hpp>
 #include <tofmap/visualization/map_pictures.hpp>
 
@@ -87,13 +88,13 @@ std::unique_ptr<Viewed> view_map_or_mesh(const ViewRequest& request, const fs::p
                      " is neither");
   }
   if (!fs::is_directory(request.path) && is_mesh(file)) return std::make_unique<ViewedMesh>(file);
-  return view_maps({{file, ""}}, request.cameras);
+  return view_maps({{file, ""}}, request);
 }
 
 /// The maps of the methods in the result folder of an evaluation, the most accurate method first.
 /// Empty if there are none.
-std::vector<MapFile> maps_of_methods(const fs::path& folder) {
-  std::vector<MapFile> files;
+std::vector<ViewedFile> maps_of_methods(const fs::path& folder) {
+  std::vector<ViewedFile> files;
   for (const auto& [method, value] : named_values(UnwrapMethod{})) {
     const fs::path file = folder / method / "map.ply";
     if (fs::exists(file)) files.push_back({file, std::string(method)});
@@ -102,19 +103,19 @@ std::vector<MapFile> maps_of_methods(const fs::path& folder) {
 }
 
 /// Opens the maps of an evaluation, beginning with the requested method.
-std::unique_ptr<Viewed> view_evaluation(const ViewRequest& request, std::vector<MapFile> files) {
+std::unique_ptr<Viewed> view_evaluation(const ViewRequest& request, std::vector<ViewedFile> files) {
   refuse_what_is_of_recordings(request);
   if (!request.method.empty()) {
-    const auto first = std::ranges::find(files, request.method, &MapFile::method);
+    const auto first = std::ranges::find(files, request.method, &ViewedFile::method);
     if (first == files.end()) {
       std::vector<std::string> methods;
-      for (const MapFile& file : files) methods.push_back(file.method);
+      for (const ViewedFile& file : files) methods.push_back(file.method);
       throw UsageError("--method " + request.method + ": " + request.path.string() +
                        " holds the maps of " + joined(methods, ", "));
     }
     std::rotate(files.begin(), first, files.end());
   }
-  return view_maps(files, request.cameras);
+  return view_maps(files, request);
 }
 
 }  // namespace
@@ -160,6 +161,7 @@ std::unique_ptr<Viewed> open_viewed(const ViewRequest& request, const ProgramOpt
   if (const auto files = maps_of_methods(path); !files.empty()) {
     return view_evaluation(request, files);
   }
+  if (fs::exists(path / map_file_name)) return view_map_or_mesh(request, path / map_file_name);
   throw InputError(
       path.string() +
       ": contains no map.ply, merged.ply, sequence.yaml or METHOD/map.ply; nothing to view");

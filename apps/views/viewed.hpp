@@ -24,6 +24,8 @@ struct ViewRequest {
   std::string color;
   /// Maps only: draws the field of view of the camera at the keyframes, as pyramids.
   bool cameras = false;
+  /// Maps with a map file only: id of the keyframe that is shown first; empty: none.
+  std::optional<int> keyframe;
   /// Recordings only: shows ranges as measured, without unwrapping.
   bool wrapped = false;
   /// Recordings: the unwrapping method; empty: that of the options. Evaluations: the method whose
@@ -93,8 +95,9 @@ class Viewed {
 /// apply.
 std::unique_ptr<Viewed> open_viewed(const ViewRequest& request, const ProgramOptions& options);
 
-/// A map or cloud file. trajectory.txt and keyframes.txt beside it are read as well if they exist.
-struct MapFile {
+/// A map or cloud file, or a map file (.db). trajectory.txt, keyframes.txt and map.db beside
+/// map.ply are read as well if they exist.
+struct ViewedFile {
   std::filesystem::path file;
   std::string method;  ///< that made the map; empty if there is only one map
 };
@@ -102,7 +105,7 @@ struct MapFile {
 /// Shows one of several maps at a time, all in the gravity-aligned frame of the first. Throws
 /// InputError if the first cannot be read or has no points; others of which that is true are left
 /// out.
-std::unique_ptr<Viewed> view_maps(const std::vector<MapFile>& files, bool with_cameras);
+std::unique_ptr<Viewed> view_maps(const std::vector<ViewedFile>& files, const ViewRequest& request);
 
 /// Shows one frame of a recording at a time, unwrapped and filtered with the options.
 std::unique_ptr<Viewed> view_recording(const ViewRequest& request, const ProgramOptions& options);

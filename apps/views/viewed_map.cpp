@@ -1,14 +1,18 @@
 // SPDX-FileCopyrightText: 2026 the tofmap authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include "views/map_details.hpp"
 #include "views/viewed.hpp"
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
+#include <optional>
 
 #include <tofmap/cloud/cloud_file.hpp>
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/text.hpp>
+#include <tofmap/mapping/map_store.hpp>
 #include <tofmap/visualization/map_pictures.hpp>
 
 namespace tofmap::app {
@@ -38,25 +42,59 @@ float most_observations(const MapCloud& map) {
   return static_cast<float>(std::max<std::uint32_t>(1, *place));
 }
 
+/// The details of a map file. Empty if it is not there, or cannot be read, which is told on stderr.
+std::optional<MapDetails> details_if_there(const fs::path& file) {
+  std::error_code unknown;
+  if (!fs::is_regular_file(file, unknown)) return std::nullopt;
+  try {
+    return MapDetails(MapStore::open(file).content());
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "tofmap: without keyframes: %s\n", error.what());
+    return std::nullopt;
+  }
+}
+
+/// The poses of all keyframes of a map.
+Trajectory keyframes_of(const MapDetails& details) {
+  Trajectory poses;
+  for (const Keyframe& keyframe : details.content().keyframes.all()) {
+    if (keyframe.map != details.map()) continue;
+    poses.push_back({keyframe.timestamp_s, keyframe.world_from_camera});
+  }
+  return poses;
+}
+
 /// A map with its trajectory and keyframes.
 struct PathedMap {
-  explicit PathedMap(const MapFile& from)
-      : method(from.method),
-        map(read_map(from.file)),
-        trajectory(read_if_there(from.file.parent_path() / "trajectory.txt")),
-        keyframes(read_if_there(from.file.parent_path() / "keyframes.txt")) {}
+  explicit PathedMap(const ViewedFile& from) : method(from.method) {
+    if (from.file.extension() == ".db") {
+      details.emplace(MapStore::open(from.file).content());
+      map = surface_of(details->content(), details->map());
+      keyframes = keyframes_of(*details);
+      trajectory = keyframes;
+      return;
+    }
+    map = read_map(from.file);
+    trajectory = read_if_there(from.file.parent_path() / "trajectory.txt");
+    keyframes = read_if_there(from.file.parent_path() / "keyframes.txt");
+    if (from.file.filename() == "map.ply") {
+      details = details_if_there(from.file.parent_path() / map_file_name);
+    }
+  }
 
   std::string method;
   MapCloud map;
   Trajectory trajectory;
   Trajectory keyframes;
+  std::optional<MapDetails> details;  ///< empty without a map file
 };
 
 class ViewedMaps final : public Viewed {
  public:
-  ViewedMaps(const std::vector<MapFile>& files, bool with_cameras)
-      : Viewed(color_names::map), with_cameras_(with_cameras) {
-    for (const MapFile& file : files) add(file);
+  ViewedMaps(const std::vector<ViewedFile>& files, const ViewRequest& request)
+      : Viewed(color_names::map), with_cameras_(request.cameras) {
+    for (const ViewedFile& file : files) add(file);
+    if (request.keyframe) show_keyframe(*request.keyframe);
     frame_ = gravity_aligned_frame(shown().map, shown().trajectory);
   }
 
@@ -67,6 +105,10 @@ class ViewedMaps final : public Viewed {
     }
     if (!with_path_) drawing.lines.clear();
     if (with_cameras_) add_cameras(drawing);
+    if (shown().details) {
+      if (with_changes_) shown().details->add_changes(drawing, Pose(frame_.aligned_from_map));
+      shown().details->add_keyframe(drawing, Pose(frame_.aligned_from_map));
+    }
     return drawing;
   }
 
@@ -87,21 +129,37 @@ class ViewedMaps final : public Viewed {
     text += counted(shown().map.size(), "point") + ", coloured by " + color();
     if (!shown().trajectory.empty()) text += "; " + counted(shown().trajectory.size(), "pose");
     if (!shown().keyframes.empty()) text += ", " + counted(shown().keyframes.size(), "keyframe");
+    if (shown().details) {
+      const std::string of_keyframe = shown().details->status();
+      if (!of_keyframe.empty()) text += "\n" + of_keyframe;
+    }
     return text + without_points_;
   }
 
   std::string help() const override {
-    std::string help = maps_.size() > 1 ? "m: map of the next method" : "";
+    std::vector<std::string> keys;
+    if (maps_.size() > 1) keys.emplace_back("m: map of the next method");
     if (!shown().trajectory.empty()) {
-      help += (help.empty() ? "" : ", ");
-      help += "p: path of the camera, f: its field of view at keyframes";
+      keys.emplace_back("p: path of the camera, f: its field of view at keyframes");
     }
-    return help;
+    if (shown().details) {
+      keys.emplace_back("n, b: next keyframe and the one before");
+      if (shown().details->has_changes()) keys.emplace_back("g: what has changed");
+    }
+    return joined(keys, ", ");
   }
 
   bool take_key(const std::string& key) override {
     if (key == "m" && maps_.size() > 1) {
       shown_ = (shown_ + 1) % maps_.size();
+      return true;
+    }
+    if (shown().details && (key == "n" || key == "b")) {
+      maps_[shown_].details->step(key == "n" ? 1 : -1);
+      return true;
+    }
+    if (shown().details && key == "g") {
+      with_changes_ = !with_changes_;
       return true;
     }
     if (shown().trajectory.empty() || (key != "p" && key != "f")) return false;
@@ -117,7 +175,7 @@ class ViewedMaps final : public Viewed {
 
   /// Reads a map. Throws InputError if it is the first and cannot be read or has no points; others
   /// of which that is true are left out, and named on stderr or in the status.
-  void add(const MapFile& file) {
+  void add(const ViewedFile& file) {
     try {
       PathedMap read(file);
       if (!read.map.empty()) {
@@ -132,6 +190,13 @@ class ViewedMaps final : public Viewed {
       if (maps_.empty()) throw;
       std::fprintf(stderr, "tofmap: left out: %s\n", error.what());
     }
+  }
+
+  void show_keyframe(int id) {
+    if (!shown().details) {
+      throw UsageError("--keyframe needs a map file, map.db, which 'tofmap map' writes");
+    }
+    maps_[shown_].details->show(id);
   }
 
   MapColoring coloring() const {
@@ -170,13 +235,15 @@ class ViewedMaps final : public Viewed {
   float most_observations_ = 0;  ///< upper end of the colour scale of observations, for all maps
   GravityAlignedFrame frame_;    ///< of the first map, used for all
   bool with_path_ = true;
+  bool with_changes_ = true;
   bool with_cameras_;
 };
 
 }  // namespace
 
-std::unique_ptr<Viewed> view_maps(const std::vector<MapFile>& files, bool with_cameras) {
-  return std::make_unique<ViewedMaps>(files, with_cameras);
+std::unique_ptr<Viewed> view_maps(const std::vector<ViewedFile>& files,
+                                  const ViewRequest& request) {
+  return std::make_unique<ViewedMaps>(files, request);
 }
 
 }  // namespace tofmap::app

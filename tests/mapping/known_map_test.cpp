@@ -82,7 +82,9 @@ TEST_F(KnownMap, StaysAsItIsForALocalisedCamera) {
               keyframe.world_from_camera.matrix())
         << keyframe.id;
   }
-  EXPECT_EQ(surface_of(mapper.content(), 0).size(), surface_of(map_, 0).size());
+  for (std::size_t i = 0; i < map_.submaps.size(); ++i) {
+    EXPECT_EQ(mapper.content().submaps[i].surface.to_bytes(), map_.submaps[i].surface.to_bytes());
+  }
 }
 
 TEST_F(KnownMap, MayHaveSomethingNewInIt) {
@@ -96,10 +98,41 @@ TEST_F(KnownMap, MayHaveSomethingNewInIt) {
   EXPECT_LT(worst_error_m(mapper, first + 10), 0.01);
 }
 
+TEST_F(KnownMap, TellsHowCertainPosesAre) {
+  const RoomMapper mapper = going_on(room_, first + 5, first + 60, MapUse::localise);
+  const auto covariances = covariances_of(mapper.content(), 0);
+  ASSERT_EQ(covariances.size(), trajectory_of(mapper.content(), 0).size());
+  for (const auto& covariance : covariances) {
+    const double sigma_m = spread_of(covariance).translation_sigma_m();
+    EXPECT_GT(sigma_m, 1e-5);
+    EXPECT_LT(sigma_m, 0.02);
+  }
+}
+
+TEST_F(KnownMap, IsEnteredWhereTheStartIs) {
+  const auto localised_from = [&](const Pose& start) {
+    RoomMapper mapper(room_.camera(), {}, {}, {}, {});
+    mapper.go_on_with(map_, {}, MapUse::localise, MapPlace{0, start});
+    for (int i = 0; i < 30; ++i) mapper.add_frame({i, i / 15.0, room_.view(first + 20 + i), false});
+    mapper.finish();
+    return mapper.localised_frames();
+  };
+  Pose start = room_.pose(first).inverse() * room_.pose(first + 20);
+  EXPECT_EQ(localised_from(start), 30);
+  Pose elsewhere = start;
+  elsewhere.translation() += Eigen::Vector3d(3, 0, 0);
+  EXPECT_EQ(localised_from(elsewhere), 0) << "another position";
+  Pose turned = start;
+  turned.rotate(Eigen::AngleAxisd(2, Eigen::Vector3d::UnitY()));
+  EXPECT_EQ(localised_from(turned), 0) << "another direction";
+}
+
 TEST_F(KnownMap, DoesNotKnowAnotherPlace) {
   const test::Scenery other("flat");
   const RoomMapper mapper = going_on(other, 0, 60, MapUse::localise);
   EXPECT_EQ(mapper.localised_frames(), 0);
+  EXPECT_GT(mapper.nearness().keyframes, 0);
+  EXPECT_LT(mapper.nearness().agreeing, 3);
   EXPECT_FALSE(maps_of(mapper.content()).empty()) << "the recording is mapped by itself";
 }
 

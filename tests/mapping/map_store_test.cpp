@@ -187,6 +187,44 @@ TEST_F(StoredMap, KeepsEntriesByTheirNames) {
   EXPECT_THAT(made.entries(""), ElementsAre("running"));
 }
 
+TEST_F(StoredMap, KeepsWhatHasChanged) {
+  MapContent content = mapper_.content();
+  content.recordings.push_back(content.recordings.front());
+  const MapCloud surface = surface_of(content, 0);
+  MapChange change{.kind = ChangeKind::moved, .map = 0, .recording = 1};
+  change.before.push_back(surface[1]);
+  change.after.push_back(surface[2]);
+  change.after.push_back(surface[3]);
+  change.after_from_before.translation() << 1, 2, 3;
+  content.changes = {change};
+  {
+    MapStore made = MapStore::create(file());
+    MapStore::Commit commit(made);
+    commit.write(content);
+    commit.finish();
+    made.settle();
+  }
+  const std::vector<MapChange> found = MapStore::open(file()).content().changes;
+  ASSERT_EQ(found.size(), 1);
+  EXPECT_EQ(found[0].kind, ChangeKind::moved);
+  EXPECT_EQ(found[0].recording, 1);
+  EXPECT_EQ(found[0].after_from_before.matrix(), change.after_from_before.matrix());
+  ASSERT_EQ(found[0].before.size(), 1);
+  ASSERT_EQ(found[0].after.size(), 2);
+  EXPECT_EQ(found[0].after[1].getVector3fMap(), surface[3].getVector3fMap());
+  EXPECT_EQ(found[0].after[1].observations, surface[3].observations);
+  execute("DELETE FROM properties WHERE name = 'checksum'");
+  for (const char* damage :
+       {"UPDATE changes SET kind = 'gone'", "UPDATE changes SET recording = 2",
+        "UPDATE changes SET before = x'00'", "UPDATE changes SET after = zeroblob(36 * 2 + 1)",
+        "UPDATE changes SET motion = zeroblob(128)"}) {
+    std::filesystem::copy_file(file(), folder_.path() / "whole");
+    execute(damage);
+    EXPECT_THAT(complaint(), HasSubstr("changes")) << damage;
+    std::filesystem::rename(folder_.path() / "whole", file());
+  }
+}
+
 TEST_F(StoredMap, IsLockedWhileItIsWritten) {
   MapStore made = MapStore::create(file());
   store(made);
@@ -254,6 +292,7 @@ TEST_F(StoredMap, IsRefusedIfItsTablesContradictEachOther) {
       "UPDATE constraints SET covariance = zeroblob(288) WHERE id = 0",
       "UPDATE links SET neighbour = 1000000 WHERE keyframe = 0",
       "UPDATE frames SET keyframe = 1000000 WHERE id = 0",
+      "UPDATE frames SET covariance = x'00' WHERE id = 0",
       "UPDATE recordings SET sensor = '{}'",
       "DELETE FROM recordings",
       "UPDATE properties SET value = '{\"voxel_m\": -1}' WHERE name = 'surface'",

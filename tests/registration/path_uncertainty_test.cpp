@@ -112,6 +112,40 @@ TEST(PathUncertainty, OfOnePoseOrNoneIsNothing) {
   EXPECT_EQ(expected_errors(one, {}).front().position_m, 0);
 }
 
+TEST(PathUncertainty, BesidePosesThatAreExactIsThatOfManyPaths) {
+  const std::vector<Pose> truth = circle(12);
+  std::vector<PoseEdge> edges = chain(truth);
+  for (PoseEdge& step : edges) step.covariance.diagonal() << 4e-5, 1e-6, 9e-5, 1e-4, 1e-6, 1e-6;
+  const std::size_t last = truth.size() - 1;
+  Eigen::Matrix<double, 6, 6> found = Eigen::Matrix<double, 6, 6>::Zero();
+  constexpr int paths = 4000;
+  std::mt19937 random(2);
+  for (int i = 0; i < paths; ++i) {
+    const std::vector<Pose> path = noisy_path(edges, random);
+    Eigen::Matrix<double, 6, 1> error;
+    const Eigen::AngleAxisd turned(path[last].linear() * truth[last].linear().transpose());
+    error << turned.angle() * turned.axis(), path[last].translation() - truth[last].translation();
+    found += error * error.transpose() / paths;
+  }
+  // noisy_path() begins at the first pose, which is exact.
+  const Pose first = truth.front();
+  ASSERT_TRUE(first.isApprox(Pose::Identity()));
+  const auto covariances = covariances_beside(truth, edges, 1);
+  ASSERT_EQ(covariances.size(), truth.size() - 1);
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_NEAR(covariances.back()(i, i), found(i, i), 0.15 * found(i, i)) << i;
+  }
+}
+
+TEST(PathUncertainty, BesideTwoExactPosesIsLessThanBesideOne) {
+  const std::vector<Pose> poses{along_x(0), along_x(2), along_x(1)};
+  std::vector<PoseEdge> edges{edge(0, 2, along_x(1), 0.01)};
+  const double beside_one = covariances_beside(poses, edges, 2).front()(3, 3);
+  edges.push_back(edge(1, 2, along_x(-1), 0.01));
+  EXPECT_NEAR(covariances_beside(poses, edges, 2).front()(3, 3), beside_one / 2, 0.01 * beside_one);
+  EXPECT_TRUE(covariances_beside(poses, edges, 3).empty());
+}
+
 TEST(PathUncertainty, RefusesEdgesToPosesThatDoNotExist) {
   const std::vector<Pose> poses{along_x(0), along_x(1)};
   const std::vector<PoseEdge> edges{edge(0, 2, along_x(1))};

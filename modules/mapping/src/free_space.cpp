@@ -11,29 +11,18 @@ namespace tofmap {
 namespace {
 
 /// Number of keyframes that must see through a point after the last one that agrees with it, for it
-/// to be gone. One or two may be deceived.
+/// to be gone.
 constexpr int views_until_gone = 3;
 
-/// What the keyframes so far have seen at a point of the map.
-struct Sightings {
-  int violating = 0;
-  int agreeing = 0;
-  int violating_since = 0;  ///< since the last one that agrees
-
-  void add(Observation observation) {
-    if (observation == Observation::sees_through) {
-      ++violating;
-      ++violating_since;
-    } else if (observation == Observation::agrees) {
-      ++agreeing;
-      violating_since = 0;
-    }
+void add(Observation observation, Sightings& sightings) {
+  if (observation == Observation::sees_through) {
+    ++sightings.violating;
+    ++sightings.violating_since;
+  } else if (observation == Observation::agrees) {
+    ++sightings.agreeing;
+    sightings.violating_since = 0;
   }
-
-  bool violates_free_space() const {
-    return violating > agreeing || violating_since >= views_until_gone;
-  }
-};
+}
 
 /// How many points of a cloud a view agrees with, and how many it sees through.
 struct Agreement {
@@ -63,6 +52,10 @@ Agreement compare(const RegistrationTarget& one, const RegistrationTarget& other
 
 }  // namespace
 
+bool Sightings::violates_free_space() const {
+  return violating > agreeing || violating_since >= views_until_gone;
+}
+
 double free_space_violation_share(const RegistrationTarget& one, const RegistrationTarget& other,
                                   const CameraModel& camera, double margin_m) {
   const Agreement sum =
@@ -77,20 +70,28 @@ bool contradicts_free_space(const RegistrationTarget& placed, const Registration
   return free_space_violation_share(placed, target, camera, pose_error_m) >= most_share;
 }
 
-MapCloud without_free_space_violations(const MapCloud& map, std::span<const Keyframe> keyframes,
-                                       const CameraModel& camera, double margin_m) {
+std::vector<Sightings> sightings_of(const MapCloud& map, std::span<const Keyframe> keyframes,
+                                    const CameraModel& camera, double margin_m) {
   std::vector<Sightings> sightings(map.size());
   const auto count = static_cast<std::ptrdiff_t>(map.size());
   // One keyframe after the other, since they may not be in memory together.
   for (const Keyframe& keyframe : keyframes) {
     const RegistrationTarget target = target_of(keyframe);
     const KeyframeView view(target, camera, margin_m);
+    const auto recording = static_cast<std::uint32_t>(keyframe.recording);
 #pragma omp parallel for schedule(static)
     for (std::ptrdiff_t i = 0; i < count; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      sightings[at].add(view.judge(map[at].getVector3fMap().cast<double>()));
+      if (map[at].recording > recording) continue;
+      add(view.judge(map[at].getVector3fMap().cast<double>()), sightings[at]);
     }
   }
+  return sightings;
+}
+
+MapCloud without_free_space_violations(const MapCloud& map, std::span<const Keyframe> keyframes,
+                                       const CameraModel& camera, double margin_m) {
+  const std::vector<Sightings> sightings = sightings_of(map, keyframes, camera, margin_m);
   MapCloud kept;
   for (std::size_t i = 0; i < map.size(); ++i) {
     if (!sightings[i].violates_free_space()) kept.push_back(map[i]);

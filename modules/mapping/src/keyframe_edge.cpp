@@ -24,6 +24,13 @@ Eigen::Matrix<double, 6, 6> covariance_of(const Eigen::Matrix<double, 6, 6>& inf
   return sum.inverse();
 }
 
+Eigen::Matrix<double, 6, 6> with_shared_errors(const Eigen::Matrix<double, 6, 6>& covariance) {
+  PoseEdge edge;
+  edge.covariance = covariance;
+  widen(edge, shared_sigma_rad, shared_sigma_m);
+  return edge.covariance;
+}
+
 PoseEdge edge_of(const Keyframe& from, int to, const Pose& world_from_camera,
                  const Eigen::Matrix<double, 6, 6>& covariance) {
   PoseEdge edge;
@@ -32,8 +39,8 @@ PoseEdge edge_of(const Keyframe& from, int to, const Pose& world_from_camera,
   edge.from_from_to = from.world_from_camera.inverse() * world_from_camera;
   // The covariance of a registration is along the world's axes, that of an edge along those of
   // `from`.
-  edge.covariance = rotated(covariance, from.world_from_camera.linear().transpose());
-  widen(edge, shared_sigma_rad, shared_sigma_m);
+  edge.covariance =
+      with_shared_errors(rotated(covariance, from.world_from_camera.linear().transpose()));
   return edge;
 }
 

@@ -105,6 +105,12 @@ void KeyframeGraph::settle_maps() {
   for (Keyframe& keyframe : keyframes_) keyframe.taken_in = keyframe.map;
 }
 
+void KeyframeGraph::renumber_recordings(std::span<const int> number_of) {
+  for (Keyframe& keyframe : keyframes_) {
+    keyframe.recording = number_of[static_cast<std::size_t>(keyframe.recording)];
+  }
+}
+
 void KeyframeGraph::shrink(int size) {
   keyframes_.resize(static_cast<std::size_t>(size));
   links_.resize(static_cast<std::size_t>(size));

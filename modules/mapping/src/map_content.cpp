@@ -16,28 +16,94 @@
 namespace tofmap {
 namespace {
 
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
 /// Whether a frame or keyframe is one of the last recording.
 template <class Recorded>
 bool is_of_last(const Recorded& recorded, const MapContent& content) {
   return recorded.recording + 1 == static_cast<int>(content.recordings.size());
 }
 
+/// The numbers of the maps that have keyframes of earlier recordings.
+std::set<int> earlier_maps(const MapContent& content) {
+  std::set<int> maps;
+  for (const Keyframe& keyframe : content.keyframes.all()) {
+    if (!is_of_last(keyframe, content)) maps.insert(keyframe.map);
+  }
+  return maps;
+}
+
+/// The pose graph of one map.
+struct MapGraph {
+  MapGraph(const MapContent& content, int map)
+      : indices(static_cast<std::size_t>(content.keyframes.size())) {
+    for (const Keyframe& keyframe : content.keyframes.all()) {
+      if (keyframe.map != map) continue;
+      indices[static_cast<std::size_t>(keyframe.id)] = poses.size();
+      poses.push_back(keyframe.world_from_camera);
+      earlier += is_of_last(keyframe, content) ? 0 : 1;
+    }
+    auto loop = content.loops.begin();
+    for (const PoseEdge& edge : content.edges) {
+      const bool is_used = !edge.may_be_wrong || loop++->is_used;
+      if (!is_used || content.keyframes[edge.from].map != map ||
+          content.keyframes[edge.to].map != map) {
+        continue;
+      }
+      edges.push_back(edge);
+      edges.back().from = static_cast<int>(index_of(edge.from));
+      edges.back().to = static_cast<int>(index_of(edge.to));
+    }
+  }
+
+  /// The index of a keyframe of the map among `poses`.
+  std::size_t index_of(int keyframe) const { return indices[static_cast<std::size_t>(keyframe)]; }
+
+  std::vector<std::size_t> indices;  ///< for each keyframe
+  std::vector<Pose> poses;           ///< of the keyframes of the map
+  std::size_t earlier = 0;           ///< number of those of earlier recordings, which come first
+  std::vector<PoseEdge> edges;       ///< without loops that are not used
+};
+
 }  // namespace
 
 MapContent::MapContent(const CameraModel& of, const SurfaceMapOptions& options)
     : camera(of), surface_options(options), keyframes(of) {}
 
+bool are_same_camera(const CameraModel& one, const CameraModel& other) {
+  const auto is_same = [](double a, double b) {
+    constexpr double tolerance = 0.001;
+    return std::abs(a - b) <= tolerance * std::max(std::abs(a), 1.0);
+  };
+  return one.width_px == other.width_px && one.height_px == other.height_px &&
+         is_same(one.fx_px, other.fx_px) && is_same(one.fy_px, other.fy_px) &&
+         is_same(one.cx_px, other.cx_px) && is_same(one.cy_px, other.cy_px) &&
+         std::ranges::equal(one.distortion, other.distortion, is_same);
+}
+
+int largest_map(const MapContent& content) {
+  std::map<int, int> counts;
+  for (const Keyframe& keyframe : content.keyframes.all()) ++counts[keyframe.map];
+  const auto largest =
+      std::ranges::max_element(counts, {}, [](const auto& count) { return count.second; });
+  return largest == counts.end() ? 0 : largest->first;
+}
+
 Pose pose_of(const RegisteredFrame& frame, const KeyframeGraph& keyframes) {
   return keyframes[frame.keyframe].world_from_camera * frame.keyframe_from_camera;
 }
 
-Trajectory trajectory_of(const MapContent& content, int map) {
+Trajectory trajectory_of(const MapContent& content, int map, int recording) {
   Trajectory trajectory;
   for (const RegisteredFrame& frame : content.frames) {
-    if (!is_of_last(frame, content) || content.keyframes[frame.keyframe].map != map) continue;
+    if (frame.recording != recording || content.keyframes[frame.keyframe].map != map) continue;
     trajectory.push_back({frame.timestamp_s, pose_of(frame, content.keyframes)});
   }
   return trajectory;
+}
+
+Trajectory trajectory_of(const MapContent& content, int map) {
+  return trajectory_of(content, map, static_cast<int>(content.recordings.size()) - 1);
 }
 
 std::vector<int> frames_of(const MapContent& content, int map) {
@@ -59,34 +125,42 @@ Trajectory keyframe_trajectory_of(const MapContent& content, int map) {
 }
 
 PoseCertainty least_certain_of(const MapContent& content, int map) {
-  std::vector<Pose> poses;
-  std::vector<int> index_of(static_cast<std::size_t>(content.keyframes.size()), -1);
-  for (const Keyframe& keyframe : content.keyframes.all()) {
-    if (keyframe.map != map) continue;
-    index_of[static_cast<std::size_t>(keyframe.id)] = static_cast<int>(poses.size());
-    poses.push_back(keyframe.world_from_camera);
-  }
-  std::vector<PoseEdge> edges;
-  auto loop = content.loops.begin();
-  for (const PoseEdge& edge : content.edges) {
-    const bool is_used = !edge.may_be_wrong || loop++->is_used;
-    if (!is_used || content.keyframes[edge.from].map != map ||
-        content.keyframes[edge.to].map != map)
-      continue;
-    edges.push_back(edge);
-    edges.back().from = index_of[static_cast<std::size_t>(edge.from)];
-    edges.back().to = index_of[static_cast<std::size_t>(edge.to)];
-  }
-  const std::vector<ExpectedError> errors = expected_errors(poses, edges);
+  const MapGraph graph(content, map);
+  const std::vector<ExpectedError> errors = expected_errors(graph.poses, graph.edges);
   PoseCertainty least{.frame = -1, .error = {}};
   for (const RegisteredFrame& frame : content.frames) {
     if (!is_of_last(frame, content) || content.keyframes[frame.keyframe].map != map) continue;
-    const int index = index_of[static_cast<std::size_t>(frame.keyframe)];
-    ExpectedError error = errors[static_cast<std::size_t>(index)];
-    error.position_m = std::hypot(error.position_m, frame.sigma_m);
+    ExpectedError error = errors[graph.index_of(frame.keyframe)];
+    error.position_m =
+        std::hypot(error.position_m, spread_of(frame.covariance).translation_sigma_m());
     if (least.frame < 0 || error.position_m > least.error.position_m) least = {frame.index, error};
   }
   return least;
+}
+
+std::vector<Matrix6d> covariances_of(const MapContent& content, int map) {
+  const MapGraph graph(content, map);
+  const bool is_first = content.recordings.size() == 1;
+  const std::size_t held = is_first ? 1 : graph.earlier;
+  const std::vector<Matrix6d> of_keyframes = covariances_beside(graph.poses, graph.edges, held);
+  std::vector<Matrix6d> covariances;
+  for (const RegisteredFrame& frame : content.frames) {
+    const Keyframe& keyframe = content.keyframes[frame.keyframe];
+    if (!is_of_last(frame, content) || keyframe.map != map) continue;
+    Matrix6d covariance = rotated(frame.covariance, keyframe.world_from_camera.linear());
+    const std::size_t index = graph.index_of(frame.keyframe);
+    if (index >= held) {
+      // An error of the keyframe moves the frame with it, and its rotation swings the frame around.
+      const Eigen::Vector3d arm_m =
+          keyframe.world_from_camera.linear() * frame.keyframe_from_camera.translation();
+      Matrix6d moved = Matrix6d::Identity();
+      moved.bottomLeftCorner<3, 3>() << 0, arm_m.z(), -arm_m.y(), -arm_m.z(), 0, arm_m.x(),
+          arm_m.y(), -arm_m.x(), 0;
+      covariance += moved * of_keyframes[index - held] * moved.transpose();
+    }
+    covariances.push_back(covariance);
+  }
+  return covariances;
 }
 
 std::size_t voxel_count(const MapContent& content) {
@@ -99,15 +173,25 @@ MapCloud surface_of(const MapContent& content, int map) {
   SurfaceMap whole(content.surface_options);
   for (const Submap& submap : content.submaps) {
     const Keyframe& anchor = content.keyframes[submap.anchor];
-    if (anchor.map == map) whole.add(submap.surface, anchor.world_from_camera);
+    if (anchor.map == map) {
+      whole.add(submap.surface, anchor.world_from_camera, anchor.recording);
+    }
   }
   MapCloud surface = whole.extract();
   if (!content.surface_options.drop_free_space_violations) return surface;
   std::vector<Keyframe> seen_by;
   std::ranges::copy_if(content.keyframes.all(), std::back_inserter(seen_by),
                        [&](const Keyframe& keyframe) { return keyframe.map == map; });
+  std::ranges::stable_sort(seen_by, {}, &Keyframe::recording);
   return without_free_space_violations(surface, seen_by, content.camera,
                                        content.surface_options.voxel_m);
+}
+
+int localised_frames_of(const MapContent& content) {
+  const std::set<int> earlier = earlier_maps(content);
+  return static_cast<int>(std::ranges::count_if(content.frames, [&](const RegisteredFrame& frame) {
+    return is_of_last(frame, content) && earlier.contains(content.keyframes[frame.keyframe].map);
+  }));
 }
 
 std::vector<int> maps_of(const MapContent& content) {
@@ -115,10 +199,7 @@ std::vector<int> maps_of(const MapContent& content) {
   for (const RegisteredFrame& frame : content.frames) {
     if (is_of_last(frame, content)) ++counts[content.keyframes[frame.keyframe].map];
   }
-  std::set<int> extended;
-  for (const Keyframe& keyframe : content.keyframes.all()) {
-    if (!is_of_last(keyframe, content)) extended.insert(keyframe.map);
-  }
+  const std::set<int> extended = earlier_maps(content);
   std::vector<int> maps;
   for (const auto& [map, frames] : counts) maps.push_back(map);
   std::ranges::stable_sort(maps, std::ranges::greater(),

@@ -11,9 +11,6 @@
 namespace tofmap {
 namespace {
 
-/// Number of keyframes that must recognise the same place.
-constexpr std::size_t least_agreeing_keyframes = 3;
-
 std::size_t recognised_keyframes(const std::vector<const PoseEdge*>& edges) {
   std::set<int> keyframes;
   for (const PoseEdge* edge : edges) keyframes.insert(edge->to);

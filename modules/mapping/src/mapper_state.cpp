@@ -132,6 +132,12 @@ MapperState RoomMapper::state() const {
       {"differing_keyframes", differing_keyframes_},
       {"joins_taken_back", joins_taken_back_},
       {"recognitions", recognitions},
+      {"compared", compared_},
+      {"ambiguous", ambiguous_},
+      {"start", start_ ? Json{{"map", start_->map},
+                              {"pose", json_of(start_->world_from_camera)},
+                              {"has_rotation", start_->has_rotation}}
+                       : Json(nullptr)},
       {"held",
        held}}.dump();
   return state;
@@ -164,6 +170,13 @@ void RoomMapper::restore(MapContent content, const MapperState& state) {
   for (const Json& edge : list_in(json, "recognitions")) {
     recognitions_.push_back(edge_in(edge, keyframes));
   }
+  compared_ = integer_in(json, "compared", 0);
+  ambiguous_ = integer_in(json, "ambiguous", 0);
+  start_.reset();
+  if (const Json& start = member(json, "start"); !start.is_null()) {
+    start_ = MapPlace{integer_in(start, "map", 0, begun_maps_ - 1), pose_in(start, "pose"),
+                      flag_in(start, "has_rotation")};
+  }
   const Json& held = list_in(json, "held");
   if (held.size() != state.held.size()) throw InputError("'held' does not fit its clouds");
   held_.clear();
@@ -178,8 +191,6 @@ void RoomMapper::restore(MapContent content, const MapperState& state) {
     }
   }
   content_ = std::move(content);
-  const auto first = std::ranges::find(content_.frames, recording(), &RegisteredFrame::recording);
-  first_own_frame_ = static_cast<std::size_t>(first - content_.frames.begin());
 }
 
 }  // namespace tofmap

@@ -393,7 +393,8 @@ void Odometry::learn_covariances(double periods, const Attempt& attempt, Trackin
   }
   Covariance sum = Covariance::Zero();
   for (const Covariance& covariance : result.target_covariances) sum += covariance.inverse();
-  result.spread = spread_of(sum.inverse());
+  result.covariance = sum.inverse();
+  result.spread = spread_of(result.covariance);
 }
 
 void Odometry::note_keyframe(int id) {

@@ -3,8 +3,10 @@
 
 // How RoomMapper closes loops, mends slips of odometry and fits the pose graph.
 
+#include "tofmap/mapping/change_detection.hpp"
 #include "tofmap/mapping/loop_closure.hpp"
 #include "tofmap/mapping/loop_fit.hpp"
+#include "tofmap/mapping/map_fit.hpp"
 #include "tofmap/mapping/room_mapper.hpp"
 #include "tofmap/mapping/slip_search.hpp"
 
@@ -56,14 +58,8 @@ std::optional<Slip> RoomMapper::slip_behind(const PoseEdge& loop) {
 /// Adds a loop to those that the next fit decides on. One that would move the path waits for
 /// others.
 void RoomMapper::add_loop(const PoseEdge& edge) {
-  const Pose found = content_.keyframes[edge.from].world_from_camera * edge.from_from_to;
-  const Pose& believed = content_.keyframes[edge.to].world_from_camera;
-  const double error_m = (found.translation() - believed.translation()).norm();
   if (would_move(edge, content_.keyframes.all())) waiting_loop_ = edge.to;
-  content_.edges.push_back(edge);
-  content_.loops.push_back({.from_frame = content_.keyframes[edge.from].frame_index,
-                            .to_frame = content_.keyframes[edge.to].frame_index,
-                            .error_m = error_m});
+  tofmap::add_loop(content_, edge);
   ++unfitted_loops_;
 }
 
@@ -73,17 +69,7 @@ bool RoomMapper::loop_awaits_others() const {
 
 void RoomMapper::finish() {
   if (unfitted_loops_ > 0) fit();
-}
-
-/// Moves all keyframes, and what is known of the last frame with them.
-void RoomMapper::set_poses(std::span<const Pose> poses) {
-  const Pose current_before = content_.keyframes[current_].world_from_camera;
-  for (int id = 0; id < content_.keyframes.size(); ++id) {
-    content_.keyframes.set_pose(id, poses[static_cast<std::size_t>(id)]);
-  }
-  const Pose new_from_old_world =
-      content_.keyframes[current_].world_from_camera * current_before.inverse();
-  odometry_.move(new_from_old_world);
+  content_.changes = find_changes(content_);
 }
 
 /// Searches for slips that explain the loops since the last fit, and mends them.
@@ -100,8 +86,9 @@ void RoomMapper::mend_slips() {
 /// Replaces the edges across a slip, and moves what is behind it.
 void RoomMapper::mend(const Slip& slip) {
   content_.edges = without_slip(content_.edges, slip);
-  set_poses(
-      fit_loops(content_.keyframes.all(), content_.edges, loop_options_, held_keyframes()).poses);
+  const Pose before = content_.keyframes[current_].world_from_camera;
+  fit_poses(content_, loop_options_, held_keyframes());
+  follow_keyframe(before);
   rebuild_submaps(slip.at);
 }
 
@@ -133,28 +120,23 @@ void RoomMapper::rebuild_submaps(int at) {
   }
 }
 
+/// Moves what is known of the last frame with its keyframe, which has moved.
+void RoomMapper::follow_keyframe(const Pose& before) {
+  odometry_.move(content_.keyframes[current_].world_from_camera * before.inverse());
+}
+
 void RoomMapper::fit() {
   mend_slips();
-  const LoopFit fitted =
-      fit_loops(content_.keyframes.all(), content_.edges, loop_options_, held_keyframes());
-  set_poses(fitted.poses);
+  const Pose before = content_.keyframes[current_].world_from_camera;
+  fit_map(content_, loop_options_, held_keyframes());
+  follow_keyframe(before);
   waiting_loop_ = -1;
-  content_.keyframes.forget_loops();
   auto loop = content_.loops.begin();
-  for (std::size_t i = 0; i < content_.edges.size(); ++i) {
-    if (!content_.edges[i].may_be_wrong) continue;
-    loop->mahalanobis_distance = fitted.edge_mahalanobis[i];
-    loop->is_used = fitted.is_used[i];
-    if (loop->is_used) {
-      // The relative pose of both ends is now correct, so frames may be registered with either.
-      content_.keyframes.connect_by_loop(content_.edges[i].from, content_.edges[i].to,
-                                         spread_of(content_.edges[i].covariance));
-    } else {
-      waiting_loop_ = std::max(waiting_loop_, content_.edges[i].to);
-    }
+  for (const PoseEdge& edge : content_.edges) {
+    if (!edge.may_be_wrong) continue;
+    if (!loop->is_used) waiting_loop_ = std::max(waiting_loop_, edge.to);
     ++loop;
   }
-  content_.keyframes.reconnect();
   unfitted_loops_ = 0;
   last_fit_ = content_.keyframes.size() - 1;
 }

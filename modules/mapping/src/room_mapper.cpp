@@ -10,7 +10,6 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include <tofmap/core/timed.hpp>
@@ -55,27 +54,18 @@ void RoomMapper::describe_recording(MapRecording recording) {
   content_.recordings.back() = std::move(recording);
 }
 
-void RoomMapper::go_on_with(MapContent finished, MapRecording recording, MapUse use) {
+void RoomMapper::go_on_with(MapContent finished, MapRecording recording, MapUse use,
+                            std::optional<MapPlace> start) {
   use_ = use;
+  start_ = start;
   content_ = std::move(finished);
   content_.recordings.push_back(std::move(recording));
   content_.keyframes.settle_maps();
-  first_own_frame_ = content_.frames.size();
   for (const Keyframe& keyframe : content_.keyframes.all()) map_ = std::max(map_, keyframe.map + 1);
   begun_maps_ = map_ + 1;
   searched_ = content_.keyframes.size();
   last_fit_ = std::max(0, searched_ - 1);
   last_slip_search_ = searched_ - keyframes_between_fits;
-}
-
-int RoomMapper::localised_frames() const {
-  std::set<int> earlier;
-  for (const Keyframe& keyframe : content_.keyframes.all()) {
-    if (keyframe.recording < recording()) earlier.insert(keyframe.map);
-  }
-  return static_cast<int>(std::ranges::count_if(own_frames(), [&](const RegisteredFrame& frame) {
-    return earlier.contains(content_.keyframes[frame.keyframe].map);
-  }));
 }
 
 /// Number of keyframes, from the first one, whose poses are held.
@@ -86,9 +76,11 @@ std::size_t RoomMapper::held_keyframes() const {
       [&](const Keyframe& keyframe) { return keyframe.recording < recording(); }));
 }
 
-/// The registered frames of the recording that is being mapped.
+/// The registered frames of the recording that is being mapped: the last ones.
 std::span<const RegisteredFrame> RoomMapper::own_frames() const {
-  return std::span(content_.frames).subspan(first_own_frame_);
+  const auto first =
+      std::ranges::lower_bound(content_.frames, recording(), {}, &RegisteredFrame::recording);
+  return {first, content_.frames.end()};
 }
 
 AddedFrame RoomMapper::add_frame(const NewFrame& frame) {
@@ -149,10 +141,14 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
              target != result.targets.end()) {
     current_ = *target;
   }
-  content_.frames.push_back(
-      {frame.timestamp_s, current_,
-       content_.keyframes[current_].world_from_camera.inverse() * result.world_from_camera,
-       frame.index, result.spread.translation_sigma_m(), recording()});
+  const Pose keyframe_from_world = content_.keyframes[current_].world_from_camera.inverse();
+  content_.frames.push_back({frame.timestamp_s, current_,
+                             keyframe_from_world * result.world_from_camera, frame.index,
+                             recording()});
+  if (!result.is_keyframe) {
+    content_.frames.back().covariance =
+        with_shared_errors(rotated(result.covariance, keyframe_from_world.linear()));
+  }
   result.target_covariances.clear();
   result.registration.target_information.clear();
   return result;
@@ -189,7 +185,6 @@ std::vector<const Keyframe*> RoomMapper::keyframes_around() const {
 
 /// Adds the surface of the latest registered frame to the submap of its keyframe.
 void RoomMapper::integrate(const SurfaceCloud& cloud) {
-  if (use_ == MapUse::localise) return;
   Submap& submap = content_.submaps[static_cast<std::size_t>(
       content_.submap_of[static_cast<std::size_t>(current_)])];
   const Pose anchor_from_keyframe = content_.keyframes[submap.anchor].world_from_camera.inverse() *

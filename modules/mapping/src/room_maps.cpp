@@ -5,6 +5,7 @@
 
 #include "tofmap/mapping/free_space.hpp"
 #include "tofmap/mapping/keyframe_edge.hpp"
+#include "tofmap/mapping/loop_fit.hpp"
 #include "tofmap/mapping/map_join.hpp"
 #include "tofmap/mapping/place_recognition.hpp"
 #include "tofmap/mapping/room_mapper.hpp"
@@ -36,6 +37,7 @@ void move(TrackingResult& result, const Pose& new_from_old_world) {
   result.world_from_camera = new_from_old_world * result.world_from_camera;
   result.registration.world_from_camera =
       new_from_old_world * result.registration.world_from_camera;
+  rotate(result.covariance);
   rotate(result.registration.covariance);
   for (auto& covariance : result.target_covariances) rotate(covariance);
   for (auto& information : result.registration.target_information) rotate(information);
@@ -122,19 +124,40 @@ void RoomMapper::recognise_place() {
     }
   }
   const auto is_possible = [&](const Keyframe& other, const Pose& pose) {
-    return can_be_at(other, pose, travel_tolerance_m);
+    return can_be_at(other, pose, travel_tolerance_m) &&
+           agrees_with_start(pose * keyframe.world_from_camera.inverse());
   };
-  const auto found = recognise(keyframe, std::move(candidates), is_possible,
-                               content_.keyframes.all(), camera_, loop_options_, registration_);
+  if (candidates.empty()) return;
+  const auto places = find_places(keyframe, std::move(candidates), is_possible,
+                                  content_.keyframes.all(), camera_, loop_options_, registration_);
+  const auto found = surest_place(places, content_.keyframes.all());
+  ++compared_;
+  ambiguous_ += !found && !places.empty() ? 1 : 0;
   if (!found) return;
   recognitions_.push_back(
       loop_edge(content_.keyframes[found->from], keyframe.id, found->registration));
   join_maps(travelled);
 }
 
+/// Whether the camera began in the direction that go_on_with() was told, if the newest map is at
+/// this pose in a finished one.
+bool RoomMapper::agrees_with_start(const Pose& finished_from_newest) const {
+  constexpr double most_rad = M_PI / 4;
+  if (!start_ || !start_->has_rotation) return true;
+  const RegisteredFrame& first = own_frames().front();
+  if (content_.keyframes[first.keyframe].map != map_) return true;
+  const Pose placed = finished_from_newest * pose_of(first, content_.keyframes);
+  return Eigen::AngleAxisd(start_->world_from_camera.linear().transpose() * placed.linear())
+             .angle() <= most_rad;
+}
+
 /// The path of the camera through the maps.
 std::vector<Stretch> RoomMapper::stretches() const {
   std::vector<Stretch> stretches;
+  if (start_ && !own_frames().empty()) {
+    add_position(stretches, start_->map, own_frames().front().timestamp_s,
+                 start_->world_from_camera.translation());
+  }
   for (const RegisteredFrame& frame : own_frames()) {
     add_position(stretches, content_.keyframes[frame.keyframe].map, frame.timestamp_s,
                  pose_of(frame, content_.keyframes).translation());
@@ -311,6 +334,21 @@ const Keyframe* RoomMapper::keyframe_near(const Pose& pose, int map) const {
 
 int RoomMapper::blind_joins() const {
   return static_cast<int>(std::ranges::count_if(joins_, &JoinedMaps::is_blind));
+}
+
+MapNearness RoomMapper::nearness() const {
+  MapNearness nearness{.keyframes = compared_, .ambiguous = ambiguous_};
+  std::map<int, std::vector<const PoseEdge*>> by_map;
+  for (const PoseEdge& edge : recognitions_) {
+    if (content_.keyframes[edge.from].recording == recording()) continue;
+    by_map[content_.keyframes[edge.from].map].push_back(&edge);
+    ++nearness.recognised;
+  }
+  for (const auto& [map, edges] : by_map) {
+    const auto agreeing = most_that_agree(edges, content_.keyframes.all(), loop_options_);
+    nearness.agreeing = std::max(nearness.agreeing, static_cast<int>(agreeing.size()));
+  }
+  return nearness;
 }
 
 }  // namespace tofmap

@@ -88,7 +88,7 @@ void SurfaceMap::integrate(const SurfaceCloud& cloud, const Pose& world_from_cam
   }
 }
 
-void SurfaceMap::add(const SurfaceMap& submap, const Pose& world_from_submap) {
+void SurfaceMap::add(const SurfaceMap& submap, const Pose& world_from_submap, int recording) {
   note_change();
   // In the order of the grid, since the order of the hash table depends on the order of insertion.
   for (const std::int64_t place : sorted_keys(submap.voxels_)) {
@@ -97,6 +97,8 @@ void SurfaceMap::add(const SurfaceMap& submap, const Pose& world_from_submap) {
     const Eigen::Vector3d in_world = world_from_submap * submap.mean_m(place, voxel);
     const std::int64_t own_place = key(in_world);
     Voxel& own = voxels_[own_place];
+    const auto seen_in = static_cast<std::uint32_t>(recording);
+    own.recording = own.observations == 0 ? seen_in : std::min(own.recording, seen_in);
     own.weighted_offset_m += voxel.weight * (in_world - centre_m(own_place)).cast<float>();
     own.weighted_normal += world_from_submap.linear().cast<float>() * voxel.weighted_normal;
     own.weight += voxel.weight;
@@ -119,6 +121,7 @@ MapCloud SurfaceMap::extract() const {
     point.data_n[3] = 0;
     point.confidence = voxel.confidence / static_cast<float>(voxel.observations);
     point.observations = voxel.observations;
+    point.recording = voxel.recording;
     map.push_back(point);
   }
   return map;

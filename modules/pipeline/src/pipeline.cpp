@@ -138,25 +138,28 @@ MapRecording described(const std::string& source, const SensorModel& sensor,
           .sensor = sensor};
 }
 
-/// Throws UsageError unless the cameras of a map and of a recording are the same, up to a
-/// thousandth.
+/// Throws UsageError unless the cameras of a map and of a recording are the same.
 void check_same_camera(const CameraModel& of_map, const CameraModel& camera) {
-  const auto differ = [](double one, double other) {
-    constexpr double tolerance = 0.001;
-    return std::abs(one - other) > tolerance * std::max(std::abs(one), 1.0);
-  };
-  bool is_other = of_map.width_px != camera.width_px || of_map.height_px != camera.height_px ||
-                  differ(of_map.fx_px, camera.fx_px) || differ(of_map.fy_px, camera.fy_px) ||
-                  differ(of_map.cx_px, camera.cx_px) || differ(of_map.cy_px, camera.cy_px);
-  for (std::size_t i = 0; i < camera.distortion.size(); ++i) {
-    is_other = is_other || differ(of_map.distortion[i], camera.distortion[i]);
-  }
-  if (!is_other) return;
+  if (are_same_camera(of_map, camera)) return;
   throw UsageError(fmt::format(
       "the map was made with another camera: {} x {} px, focal length {:.1f} px, and the recording "
       "has {} x {} px, {:.1f} px; record with the same camera",
       of_map.width_px, of_map.height_px, of_map.fx_px, camera.width_px, camera.height_px,
       camera.fx_px));
+}
+
+/// Whether a loop that the last recording has found, and that is used, moved what was there before.
+bool has_moved_map(const MapContent& content) {
+  auto loop = content.loops.begin();
+  for (const PoseEdge& edge : content.edges) {
+    if (!edge.may_be_wrong) continue;
+    const bool is_new = content.keyframes[edge.to].recording + 1 == std::ssize(content.recordings);
+    if (is_new && loop->is_used && loop->error_m > KeyframeGraph::well_connected_sigma_m) {
+      return true;
+    }
+    ++loop;
+  }
+  return false;
 }
 
 const SensorModel& checked(const SensorModel& sensor, const UnwrapOptions& options) {
@@ -234,10 +237,10 @@ MapRun::MapRun(const SensorModel& sensor, const PipelineOptions& options, const 
   mapper_.describe_recording(described(source, sensor, options));
 }
 
-void MapRun::go_on_with(MapContent finished, MapUse use) {
+void MapRun::go_on_with(MapContent finished, MapUse use, std::optional<MapPlace> start) {
   check_same_camera(finished.camera, sensor_.camera);
   MapRecording recording = mapper_.content().recordings.back();
-  mapper_.go_on_with(std::move(finished), std::move(recording), use);
+  mapper_.go_on_with(std::move(finished), std::move(recording), use, start);
 }
 
 void MapRun::advance(FrameSource& source, const MapHooks& hooks) {
@@ -312,23 +315,32 @@ std::vector<SourcedFrame> MapRun::take_next(FrameSource& source) {
   return frames;
 }
 
-RoomMap MapRun::finish() {
+/// Ends the mapping, and tells the records in which map their frames are.
+void MapRun::finish_frames() {
   mapper_.finish();
-  RoomMap map;
   int number_of_map = 0;
   for (const int number : maps_of(mapper_.content())) {
     ++number_of_map;
     for (const int index : frames_of(mapper_.content(), number)) {
       std::ranges::lower_bound(frames_, index, {}, &FrameRecord::index)->map = number_of_map;
     }
-    SeparateMap one{trajectory_of(mapper_.content(), number),
-                    keyframe_trajectory_of(mapper_.content(), number),
-                    surface_of(mapper_.content(), number)};
+  }
+}
+
+RoomMap MapRun::finish() {
+  finish_frames();
+  const MapContent& content = mapper_.content();
+  RoomMap map;
+  for (const int number : maps_of(content)) {
+    SeparateMap one{trajectory_of(content, number), keyframe_trajectory_of(content, number),
+                    surface_of(content, number)};
     if (map.trajectory.empty()) {
       map.trajectory = std::move(one.trajectory);
       map.keyframes = std::move(one.keyframes);
       map.surface = std::move(one.surface);
-      map.least_certain = least_certain_of(mapper_.content(), number);
+      map.least_certain = least_certain_of(content, number);
+      std::ranges::copy_if(content.changes, std::back_inserter(map.changes),
+                           [&](const MapChange& change) { return change.map == number; });
     } else {
       map.separate_maps.push_back(std::move(one));
     }
@@ -338,8 +350,10 @@ RoomMap MapRun::finish() {
         return record.tracking.registered() &&
                converged_slowly(record.tracking.registration, options_.registration);
       }));
-  map.loops = mapper_.content().loops;
-  if (mapper_.content().recordings.size() > 1) map.localised = mapper_.localised_frames();
+  map.loops = content.loops;
+  if (content.recordings.size() > 1) map.localised = mapper_.localised_frames();
+  map.has_moved_map = has_moved_map(content);
+  map.nearness = mapper_.nearness();
   map.joins = mapper_.joins();
   map.blind_joins = mapper_.blind_joins();
   map.joins_taken_back = mapper_.joins_taken_back();
@@ -347,6 +361,29 @@ RoomMap MapRun::finish() {
   map.errors = errors_.survey();
   map.interrupted = is_interrupted_;
   return map;
+}
+
+Localisation MapRun::finish_localised() {
+  finish_frames();
+  const MapContent& content = mapper_.content();
+  Localisation result;
+  if (mapper_.localised_frames() > 0) {
+    const int map = maps_of(content).front();
+    const Trajectory trajectory = trajectory_of(content, map);
+    const auto covariances = covariances_of(content, map);
+    const std::vector<int> indices = frames_of(content, map);
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+      result.localised.push_back({indices[i], trajectory[i], covariances[i]});
+    }
+    std::ranges::copy_if(
+        content.changes, std::back_inserter(result.changes), [&](const MapChange& change) {
+          return change.map == map && change.recording + 1 == std::ssize(content.recordings);
+        });
+  }
+  result.nearness = mapper_.nearness();
+  result.frames = std::move(frames_);
+  result.interrupted = is_interrupted_;
+  return result;
 }
 
 RoomMap map_room(FrameSource& source, const PipelineOptions& options, const MapHooks& hooks) {

@@ -3,10 +3,7 @@
 
 #include "run_rows.hpp"
 
-#include <array>
 #include <string>
-#include <string_view>
-#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -19,14 +16,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* damaged_status = "damaged";
-
-constexpr std::array<std::pair<const char*, double StageTimes::*>, 6> time_names{
-    {{"unwrap", &StageTimes::unwrap_ms},
-     {"filter", &StageTimes::filter_ms},
-     {"cloud", &StageTimes::cloud_ms},
-     {"register", &StageTimes::register_ms},
-     {"map", &StageTimes::map_ms},
-     {"loops", &StageTimes::loop_ms}}};
 
 Json registration_json(const RegistrationResult& result) {
   return {{"status", name_of(result.status)},
@@ -107,7 +96,7 @@ FrameRecord record_in(const FrameRow& row) {
   record.filters = filters_in(details.at("filters"));
   record.tracking.is_keyframe = details.at("is_keyframe").get<bool>();
   record.tracking.registration = registration_in(details.at("registration"));
-  for (const auto& [name, time] : time_names) {
+  for (const auto& [name, time] : stage_times) {
     record.times.*time = details.at("milliseconds").at(name).get<double>();
   }
   return record;
@@ -128,7 +117,7 @@ FrameRow frame_row(const FrameRecord& record, int recording) {
   }
   if (!record.is_prepared()) return row;
   Json times;
-  for (const auto& [name, time] : time_names) times[name] = record.times.*time;
+  for (const auto& [name, time] : stage_times) times[name] = record.times.*time;
   row.details = Json{
       {"iterations", record.iterations},
       {"curl_violations", record.curl_violations},

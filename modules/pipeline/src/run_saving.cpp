@@ -72,10 +72,9 @@ SurfaceCloud cloud_in(const std::string& bytes, const CameraModel& camera) {
 /// An entry that must be there, read from its bytes to their end.
 template <class Read>
 void read_entry(const MapStore& store, const char* name, const Read& read) {
-  const auto bytes = store.entry(name);
-  if (!bytes) throw InputError(std::string("'") + name + "' is missing");
+  const std::string bytes = store.expected_entry(name);
   naming(name, [&] {
-    ByteReader in(*bytes);
+    ByteReader in(bytes);
     read(in);
     in.expect_end();
   });
@@ -83,10 +82,10 @@ void read_entry(const MapStore& store, const char* name, const Read& read) {
 
 MapperState mapper_state_in(const MapStore& store, const CameraModel& camera) {
   MapperState state;
-  state.json = store.entry(mapper_entry).value_or("");
+  state.json = store.expected_entry(mapper_entry);
   for (const std::string& name : store.entries(held_entries)) {
     state.held.push_back(
-        std::make_shared<const SurfaceCloud>(cloud_in(store.entry(name).value_or(""), camera)));
+        std::make_shared<const SurfaceCloud>(cloud_in(store.expected_entry(name), camera)));
   }
   return state;
 }

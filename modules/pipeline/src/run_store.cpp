@@ -92,12 +92,6 @@ void check_recording(const std::string& line, const SequenceReader& source) {
       "--resume");
 }
 
-std::string expected_entry(const MapStore& store, const char* name) {
-  auto bytes = store.entry(name);
-  if (!bytes) throw InputError(std::string("'") + name + "' is missing");
-  return *std::move(bytes);
-}
-
 }  // namespace
 
 void store_run(MapStore& store, MapRun& run, FrameSample& sample, const SequenceReader& source,
@@ -140,8 +134,8 @@ void resume_run(const MapStore& store, MapRun& run, FrameSample& sample, Sequenc
   if (*version != state_version) {
     throw InputError("was written by another version of tofmap; start anew without --resume");
   }
-  check_identity(expected_entry(store, identity_entry), identity(source.sensor(), options));
-  check_recording(expected_entry(store, recording_entry), source);
+  check_identity(store.expected_entry(identity_entry), identity(source.sensor(), options));
+  check_recording(store.expected_entry(recording_entry), source);
   naming("the state of the run is damaged; start anew without --resume", [&] {
     run.load(store, [&](int index) { return source.read(index); });
     sample.load(store, static_cast<int>(run.frames().size()));

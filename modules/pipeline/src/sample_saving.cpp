@@ -138,7 +138,7 @@ void FrameSample::load(const MapStore& store, int frames_done) {
   frames_.clear();
   unsaved_.clear();
   for (const std::string& name : store.entries(sample_entries)) {
-    const std::string bytes = store.entry(name).value_or("");
+    const std::string bytes = store.expected_entry(name);
     frames_.push_back(naming(name, [&] { return SampleReader(bytes, camera_).sampled(); }));
   }
   const auto wanted = static_cast<int>(std::ranges::lower_bound(wanted_indices_, frames_done) -

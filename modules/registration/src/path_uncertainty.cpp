@@ -26,8 +26,10 @@ Eigen::Matrix3d cross_product_matrix(const Eigen::Vector3d& vector) {
   return matrix;
 }
 
+/// Adds a block unless it is of a pose that is held, whose index is negative.
 void add_block(const Matrix6d& block, int row, int col,
                std::vector<Eigen::Triplet<double>>& entries) {
+  if (row < 0 || col < 0) return;
   for (int i = 0; i < dofs; ++i) {
     for (int k = 0; k < dofs; ++k) {
       entries.emplace_back(dofs * row + i, dofs * col + k, block(i, k));
@@ -35,12 +37,15 @@ void add_block(const Matrix6d& block, int row, int col,
   }
 }
 
-/// The information of all edges about the errors of all poses.
-Sparse information_of(std::span<const Pose> poses, std::span<const PoseEdge> edges) {
+/// The information of all edges about the errors of all poses but the first `held`, which are
+/// exact.
+Sparse information_of(std::span<const Pose> poses, std::span<const PoseEdge> edges,
+                      std::size_t held = 0) {
   // Keeps the system regular: nothing else holds the path as a whole, or poses without edges.
   constexpr double hold_sigma = 100;  // radians or metres
   std::vector<Eigen::Triplet<double>> entries;
-  const int size = dofs * static_cast<int>(poses.size());
+  const int first = static_cast<int>(held);
+  const int size = dofs * (static_cast<int>(poses.size()) - first);
   for (int i = 0; i < size; ++i) entries.emplace_back(i, i, 1 / (hold_sigma * hold_sigma));
   for (const PoseEdge& edge : edges) {
     const Pose& from = poses[static_cast<std::size_t>(edge.from)];
@@ -49,10 +54,12 @@ Sparse information_of(std::span<const Pose> poses, std::span<const PoseEdge> edg
     Matrix6d by_from = -Matrix6d::Identity();
     by_from.bottomLeftCorner<3, 3>() = cross_product_matrix(to.translation() - from.translation());
     const Matrix6d information = rotated(edge.covariance.inverse(), from.linear());
-    add_block(by_from.transpose() * information * by_from, edge.from, edge.from, entries);
-    add_block(by_from.transpose() * information, edge.from, edge.to, entries);
-    add_block(information * by_from, edge.to, edge.from, entries);
-    add_block(information, edge.to, edge.to, entries);
+    const int row = edge.from - first;
+    const int col = edge.to - first;
+    add_block(by_from.transpose() * information * by_from, row, row, entries);
+    add_block(by_from.transpose() * information, row, col, entries);
+    add_block(information * by_from, col, row, entries);
+    add_block(information, col, col, entries);
   }
   Sparse matrix(size, size);
   matrix.setFromTriplets(entries.begin(), entries.end());
@@ -128,6 +135,21 @@ std::vector<ExpectedError> expected_errors(std::span<const Pose> poses,
     error = {std::sqrt(error.rotation_rad), std::sqrt(error.position_m)};
   }
   return expected;
+}
+
+std::vector<Matrix6d> covariances_beside(std::span<const Pose> poses,
+                                         std::span<const PoseEdge> edges, std::size_t held) {
+  check_edges(edges, poses.size());
+  std::vector<Matrix6d> covariances;
+  if (held >= poses.size()) return covariances;
+  const Eigen::SimplicialLLT<Sparse> factors(information_of(poses, edges, held));
+  const auto count = static_cast<Eigen::Index>(poses.size() - held);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(dofs * count, dofs);
+    columns.middleRows<dofs>(dofs * i).setIdentity();
+    covariances.emplace_back(factors.solve(columns).middleRows<dofs>(dofs * i));
+  }
+  return covariances;
 }
 
 }  // namespace tofmap

@@ -4,6 +4,7 @@
 #include "content_reader.hpp"
 
 #include "../state_json.hpp"
+#include "change_rows.hpp"
 #include "rows.hpp"
 
 #include <cstddef>
@@ -51,6 +52,7 @@ std::vector<MapRecording> read_recordings(SQLite::Database& database) {
     recording.version = row.getColumn(3).getString();
     recording.sensor = sensor_in(row.getColumn(4).getString());
     recording.options = row.getColumn(5).getString();
+    recording.verdict = row.getColumn(6).getString();
     recordings.push_back(std::move(recording));
   });
   if (recordings.empty()) throw InputError("is a map of no recording");
@@ -121,6 +123,12 @@ void read_links(SQLite::Database& database, MapContent& content) {
   }
 }
 
+Eigen::Matrix<double, 6, 6> numbers_in(SQLite::Statement& row, int index) {
+  Eigen::Matrix<double, 6, 6> matrix;
+  read_numbers(row, index, matrix.data(), static_cast<int>(matrix.size()));
+  return matrix;
+}
+
 void read_constraints(SQLite::Database& database, MapContent& content) {
   const int keyframes = content.keyframes.size();
   for_each_row(database, "constraints", "id", [&](SQLite::Statement& row, int number) {
@@ -132,8 +140,7 @@ void read_constraints(SQLite::Database& database, MapContent& content) {
     if (edge.from == edge.to) throw InputError("a constraint connects a keyframe with itself");
     constexpr int first = 8;
     edge.from_from_to = pose_in(row, first);
-    read_numbers(row, first + pose_columns, edge.covariance.data(),
-                 static_cast<int>(edge.covariance.size()));
+    edge.covariance = numbers_in(row, first + pose_columns);
     check_covariance(edge.covariance);
     content.edges.push_back(edge);
     if (!edge.may_be_wrong) return;
@@ -156,9 +163,10 @@ void read_frames(SQLite::Database& database, MapContent& content) {
     frame.index = integer_in(row, 2, 0, any);
     frame.timestamp_s = number_in(row, 3);
     frame.keyframe = integer_in(row, 4, 0, content.keyframes.size() - 1);
-    frame.sigma_m = number_in(row, 5);
-    constexpr int first = 6;
+    constexpr int first = 5;
     frame.keyframe_from_camera = pose_in(row, first);
+    frame.covariance = numbers_in(row, first + pose_columns);
+    if (!frame.covariance.isZero(0)) check_covariance(frame.covariance);
     content.frames.push_back(frame);
   });
 }
@@ -175,6 +183,11 @@ MapContent read_content(SQLite::Database& database,
   read_links(database, content);
   read_constraints(database, content);
   read_frames(database, content);
+  const int count = static_cast<int>(content.recordings.size());
+  for_each_row(database, "changes", "id", [&](SQLite::Statement& row, int number) {
+    expect_id(row, number);
+    content.changes.push_back(change_in(row, count));
+  });
   return content;
 }
 

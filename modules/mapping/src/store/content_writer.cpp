@@ -3,6 +3,7 @@
 
 #include "content_writer.hpp"
 
+#include "change_rows.hpp"
 #include "rows.hpp"
 
 #include <algorithm>
@@ -57,7 +58,7 @@ struct Insertion {
   SQLite::Statement statement;
 };
 
-/// Removes the rows whose number in a column is at least `first`.
+/// Removes the rows whose number in a column is at least `first`, if there are any.
 void remove_from(SQLite::Database& database, const std::string& table, const std::string& column,
                  std::size_t first) {
   database.exec("DELETE FROM " + table + " WHERE " + column + " >= " + std::to_string(first));
@@ -71,7 +72,7 @@ void write_properties(const MapContent& content, SQLite::Database& database) {
 }
 
 void write_recordings(const MapContent& content, SQLite::Database& database) {
-  Insertion row(database, "recordings", 6);
+  Insertion row(database, "recordings", 7);
   for (std::size_t i = 0; i < content.recordings.size(); ++i) {
     const MapRecording& recording = content.recordings[i];
     int column = 1;
@@ -81,6 +82,7 @@ void write_recordings(const MapContent& content, SQLite::Database& database) {
     row.statement.bind(column++, recording.version);
     row.statement.bind(column++, sensor_json(recording.sensor));
     row.statement.bind(column++, recording.options);
+    row.statement.bind(column++, recording.verdict);
     row.execute();
   }
 }
@@ -102,8 +104,7 @@ void write_submaps(const MapContent& content, const WrittenContent& before,
     bind_bytes(row.statement, 4, bytes);
     row.execute();
   }
-  if (content.submaps.size() < known)
-    remove_from(database, "submaps", "id", content.submaps.size());
+  remove_from(database, "submaps", "id", content.submaps.size());
 }
 
 void write_cloud(const Keyframe& keyframe, Insertion& row) {
@@ -145,11 +146,9 @@ std::vector<int> write_keyframes(const MapContent& content, const WrittenContent
     bind_bytes(row.statement, column, place);
     row.execute();
   }
-  if (static_cast<std::size_t>(content.keyframes.size()) < known) {
-    const auto size = static_cast<std::size_t>(content.keyframes.size());
-    remove_from(database, "clouds", "keyframe", size);
-    remove_from(database, "keyframes", "id", size);
-  }
+  const auto size = static_cast<std::size_t>(content.keyframes.size());
+  remove_from(database, "clouds", "keyframe", size);
+  remove_from(database, "keyframes", "id", size);
   return written_clouds;
 }
 
@@ -176,9 +175,7 @@ void write_links(const MapContent& content, const WrittenContent& before,
       row.execute();
     }
   }
-  if (static_cast<std::size_t>(content.keyframes.size()) < known) {
-    remove_from(database, "links", "keyframe", static_cast<std::size_t>(content.keyframes.size()));
-  }
+  remove_from(database, "links", "keyframe", static_cast<std::size_t>(content.keyframes.size()));
 }
 
 void write_constraints(const MapContent& content, SQLite::Database& database) {
@@ -216,7 +213,7 @@ void write_frames(const MapContent& content, const WrittenContent& before,
                   SQLite::Database& database) {
   std::size_t same = std::min(content.frames.size(), before.frames.size());
   while (same > 0 && !is_same(content.frames[same - 1], before.frames[same - 1])) --same;
-  if (same < before.frames.size()) remove_from(database, "frames", "id", same);
+  remove_from(database, "frames", "id", same);
   Insertion row(database, "frames", 6 + pose_columns);
   for (std::size_t i = same; i < content.frames.size(); ++i) {
     const RegisteredFrame& frame = content.frames[i];
@@ -226,8 +223,10 @@ void write_frames(const MapContent& content, const WrittenContent& before,
     row.statement.bind(column++, frame.index);
     row.statement.bind(column++, frame.timestamp_s);
     row.statement.bind(column++, frame.keyframe);
-    row.statement.bind(column++, frame.sigma_m);
     bind_pose(row.statement, column, frame.keyframe_from_camera);
+    column += pose_columns;
+    bind_numbers(row.statement, column, frame.covariance.data(),
+                 static_cast<int>(frame.covariance.size()));
     row.execute();
   }
 }
@@ -246,6 +245,7 @@ WrittenContent written(const MapContent& content) {
     written.submap_revisions.push_back(submap.surface.revision());
   }
   written.frames = content.frames;
+  written.changes = checksum_of(content.changes);
   return written;
 }
 
@@ -258,6 +258,7 @@ std::vector<int> write_content(const MapContent& content, const WrittenContent& 
   write_links(content, before, database);
   write_constraints(content, database);
   write_frames(content, before, database);
+  if (checksum_of(content.changes) != before.changes) write_changes(content.changes, database);
   return clouds;
 }
 

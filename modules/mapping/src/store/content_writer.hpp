@@ -29,6 +29,7 @@ struct WrittenContent {
   std::vector<int> submap_anchors;
   std::vector<std::uint64_t> submap_revisions;
   std::vector<RegisteredFrame> frames;
+  std::uint32_t changes = 0;  ///< checksum_of() them; 0 without changes
 };
 
 /// The same of a map that was just read from the file or written to it.

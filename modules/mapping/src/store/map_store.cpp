@@ -80,6 +80,12 @@ std::optional<std::string> MapStore::entry(const std::string& name) const {
   });
 }
 
+std::string MapStore::expected_entry(const std::string& name) const {
+  auto bytes = entry(name);
+  if (!bytes) throw InputError(file_->path.string() + ": '" + name + "' is missing");
+  return *std::move(bytes);
+}
+
 std::vector<std::string> MapStore::entries(const std::string& beginning) const {
   return naming_file(file_->path, [&] {
     std::vector<std::string> names;

@@ -22,7 +22,8 @@ CREATE TABLE recordings (
   added TEXT NOT NULL,
   version TEXT NOT NULL,
   sensor TEXT NOT NULL,
-  options TEXT NOT NULL
+  options TEXT NOT NULL,
+  verdict TEXT NOT NULL
 );
 
 CREATE TABLE submaps (
@@ -96,7 +97,6 @@ CREATE TABLE frames (
   frame INTEGER NOT NULL,
   timestamp_s REAL NOT NULL,
   keyframe INTEGER NOT NULL REFERENCES keyframes(id),
-  sigma_m REAL NOT NULL,
   x_m REAL NOT NULL,
   y_m REAL NOT NULL,
   z_m REAL NOT NULL,
@@ -104,7 +104,26 @@ CREATE TABLE frames (
   qy REAL NOT NULL,
   qz REAL NOT NULL,
   qw REAL NOT NULL,
-  rotation BLOB NOT NULL
+  rotation BLOB NOT NULL,
+  covariance BLOB NOT NULL
+);
+
+CREATE TABLE changes (
+  id INTEGER PRIMARY KEY,
+  map INTEGER NOT NULL,
+  recording INTEGER NOT NULL REFERENCES recordings(id),
+  kind TEXT NOT NULL CHECK (kind IN ('gone', 'new', 'moved')),
+  points INTEGER NOT NULL,
+  min_x_m REAL NOT NULL,
+  max_x_m REAL NOT NULL,
+  min_y_m REAL NOT NULL,
+  max_y_m REAL NOT NULL,
+  min_z_m REAL NOT NULL,
+  max_z_m REAL NOT NULL,
+  moved_m REAL,
+  motion BLOB NOT NULL,
+  before BLOB NOT NULL,
+  after BLOB NOT NULL
 );
 
 CREATE TABLE tracking (

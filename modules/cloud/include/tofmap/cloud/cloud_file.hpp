@@ -9,13 +9,15 @@
 namespace tofmap {
 
 /// A point of a map: position in metres and unit normal, both in the world frame; the mean
-/// confidence of its observations, that is, the probability that their wrap counts are right; and
-/// the number of observations.
+/// confidence of its observations, that is, the probability that their wrap counts are right; the
+/// number of observations; and, which files do not have, the index of the recording in which it was
+/// first seen (MapContent::recordings).
 struct EIGEN_ALIGN16 MapPoint {
   PCL_ADD_POINT4D;
   PCL_ADD_NORMAL4D;
   float confidence;
   std::uint32_t observations;
+  std::uint32_t recording = 0;
   PCL_MAKE_ALIGNED_OPERATOR_NEW
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include <tofmap/cloud/cloud_file.hpp>
 #include <tofmap/core/camera.hpp>
@@ -10,8 +11,20 @@
 
 namespace tofmap {
 
-/// Removes the points of a map that violate free space, that is, points at places that keyframes
-/// see through: moving objects, flying pixels and points with a wrong wrap count.
+/// What keyframes, in the order of time, have seen at a point of a map.
+struct Sightings {
+  int violating = 0;        ///< number of keyframes that see through the point
+  int agreeing = 0;         ///< number of keyframes that agree with it
+  int violating_since = 0;  ///< number of those that see through it since the last one that agrees
+
+  /// Whether the keyframes see through the point: more of them do so than agree with it, or at
+  /// least three do so after the last one that agrees. One or two may be deceived.
+  bool violates_free_space() const;
+};
+
+/// What keyframes, which are in the order of time, see at the points of a map. Keyframes of
+/// recordings before the one in which a point was first seen do not count: it may not have been
+/// there yet.
 ///
 /// A keyframe sees through a point if the point lies in front of the keyframe's surfaces at the
 /// pixel that it projects into and at the eight pixels around, each time by more than `margin_m`
@@ -19,9 +32,12 @@ namespace tofmap {
 /// normal counts by its range alone, and only if its wrap count is nearly certain or if it is on
 /// something that moves (moves()). Up to three of the nine pixels may have no range, but not the
 /// one in the middle. The keyframe agrees with the point if the point lies within that distance of
-/// the surface at its pixel. A point is removed if more keyframes see through it than agree with
-/// it, or if at least three see through it after the last one that agrees: what it showed has gone.
-/// `keyframes` are in the order of time. The result is the same for any number of threads.
+/// the surface at its pixel. The result is the same for any number of threads.
+std::vector<Sightings> sightings_of(const MapCloud& map, std::span<const Keyframe> keyframes,
+                                    const CameraModel& camera, double margin_m);
+
+/// Removes the points of a map that violate free space (sightings_of()): moving objects, flying
+/// pixels, points with a wrong wrap count, and what has gone.
 MapCloud without_free_space_violations(const MapCloud& map, std::span<const Keyframe> keyframes,
                                        const CameraModel& camera, double margin_m);
 

@@ -16,6 +16,10 @@ namespace tofmap {
 /// farther away.
 Eigen::Matrix<double, 6, 6> covariance_of(const Eigen::Matrix<double, 6, 6>& information);
 
+/// A covariance of a pose with the errors that neighbouring frames share, which registration cannot
+/// measure.
+Eigen::Matrix<double, 6, 6> with_shared_errors(const Eigen::Matrix<double, 6, 6>& covariance);
+
 /// The edge of the pose graph from a registration of keyframe `to` with keyframe `from`.
 /// `covariance` is that of the pose error, along the world's axes. That of the edge is along the
 /// axes of `from`, and increased by the errors that neighbouring frames share, which registration

@@ -86,6 +86,9 @@ class KeyframeGraph {
   /// Makes all joins of maps final: keyframes count as taken in the map that they belong to.
   void settle_maps();
 
+  /// Gives recordings other numbers: `number_of[recording]`.
+  void renumber_recordings(std::span<const int> number_of);
+
   /// Removes the newest keyframes, those with an id of at least `size`. None of the others may be
   /// connected with one of them.
   void shrink(int size);

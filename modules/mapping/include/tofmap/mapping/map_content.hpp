@@ -9,6 +9,7 @@
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/trajectory.hpp>
 #include <tofmap/mapping/keyframe_graph.hpp>
+#include <tofmap/mapping/map_change.hpp>
 #include <tofmap/mapping/surface_map.hpp>
 #include <tofmap/registration/path_uncertainty.hpp>
 #include <tofmap/registration/pose_graph.hpp>
@@ -35,10 +36,12 @@ struct RegisteredFrame {
   double timestamp_s = 0;
   int keyframe = 0;  ///< id of the keyframe that the frame belongs to
   Pose keyframe_from_camera = Pose::Identity();
-  int index = 0;  ///< of the frame in its recording
-  /// Standard deviation of the position relative to the keyframes that it was registered with.
-  double sigma_m = 0;
+  int index = 0;      ///< of the frame in its recording
   int recording = 0;  ///< index in MapContent::recordings
+  /// Of the error of the pose relative to all keyframes that it was registered with: rotation
+  /// vector in radians, then translation in metres, along the axes of `keyframe`. Zero for the
+  /// frame of the keyframe itself.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
 /// A submap: the surface seen from near one keyframe, the anchor, in the frame of the anchor.
@@ -54,6 +57,7 @@ struct MapRecording {
   std::string version;  ///< of the program
   std::string options;  ///< of all stages, as YAML
   SensorModel sensor;
+  std::string verdict = {};  ///< on the map after this recording (Verdict); empty: not judged
 };
 
 /// What a map consists of: all that registration, loop closure and the surface need. Keyframes of
@@ -70,7 +74,16 @@ struct MapContent {
   std::vector<RegisteredFrame> frames;
   std::vector<PoseEdge> edges;  ///< of odometry and of loops, between keyframes by their ids
   std::vector<Loop> loops;      ///< in the order of their edges
+  /// What recordings show to have changed: find_changes() at the end of the last recording.
+  std::vector<MapChange> changes;
 };
+
+/// Whether two cameras are the same, up to a thousandth. Only then can frames of one be registered
+/// with keyframes of the other.
+bool are_same_camera(const CameraModel& one, const CameraModel& other);
+
+/// The map that has the most keyframes (Keyframe::map). 0 if there are none.
+int largest_map(const MapContent& content);
 
 /// The pose of a frame in the world of its map.
 Pose pose_of(const RegisteredFrame& frame, const KeyframeGraph& keyframes);
@@ -80,8 +93,14 @@ Pose pose_of(const RegisteredFrame& frame, const KeyframeGraph& keyframes);
 /// frames first. Empty if there are none.
 std::vector<int> maps_of(const MapContent& content);
 
-/// Poses of the frames of the last recording that are registered in a map, from the current poses
-/// of their keyframes.
+/// Number of frames of the last recording that are registered in maps of earlier ones.
+int localised_frames_of(const MapContent& content);
+
+/// Poses of the frames of a recording that are registered in a map, from the current poses of their
+/// keyframes.
+Trajectory trajectory_of(const MapContent& content, int map, int recording);
+
+/// The same of the last recording.
 Trajectory trajectory_of(const MapContent& content, int map);
 
 /// Indices (RegisteredFrame::index) of the frames of the last recording that are registered in a
@@ -96,6 +115,11 @@ Trajectory keyframe_trajectory_of(const MapContent& content, int map);
 /// (expected_errors()), and that relative to the keyframe as when it was registered. The map must
 /// have such a frame.
 PoseCertainty least_certain_of(const MapContent& content, int map);
+
+/// The covariances of the errors of the poses of trajectory_of() in the world of the map, if its
+/// keyframes of earlier recordings are exact: rotation vector in radians, then translation in
+/// metres, along the axes of the world. Of the first recording, relative to the first keyframe.
+std::vector<Eigen::Matrix<double, 6, 6>> covariances_of(const MapContent& content, int map);
 
 /// The surface of a map: all of its submaps in its world frame, without free-space violations if
 /// the options say so.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -20,14 +21,17 @@ struct MapJoin {
   std::vector<PoseEdge> edges;  ///< the recognitions that agree on this pose
 };
 
+/// Number of keyframes that must recognise the same place. One alone may be wrong: places look
+/// alike.
+inline constexpr std::size_t least_agreeing_keyframes = 3;
+
 /// Searches for a map that `map` can be joined with. `recognitions` are edges between keyframes of
 /// different maps, from the map that was there first.
 ///
-/// One recognition may be wrong: places look alike. So recognitions by at least three different
-/// keyframes of `map` must agree with each other, as loops agree (fit_loops()), and must be more
-/// than half of all recognitions between both maps. Of several maps, the one with the most
-/// recognitions that agree is chosen. Empty if there is none. `keyframes` are in the order of their
-/// ids, from 0.
+/// Recognitions by at least `least_agreeing_keyframes` keyframes of `map` must agree with each
+/// other, as loops agree (fit_loops()), and must be more than half of all recognitions between both
+/// maps. Of several maps, the one with the most recognitions that agree is chosen. Empty if there
+/// is none. `keyframes` are in the order of their ids, from 0.
 std::optional<MapJoin> find_join(std::span<const PoseEdge> recognitions, int map,
                                  std::span<const Keyframe> keyframes, const LoopOptions& options);
 

@@ -53,6 +53,9 @@ class MapStore {
   /// What was stored under a name besides the map. Empty if nothing was.
   std::optional<std::string> entry(const std::string& name) const;
 
+  /// The same, but throws if nothing was stored under the name.
+  std::string expected_entry(const std::string& name) const;
+
   /// The names of all entries that begin like this, in alphabetical order.
   std::vector<std::string> entries(const std::string& beginning) const;
 

@@ -87,7 +87,10 @@ struct TrackingResult {
   /// Whether frame and keyframes see through each other where they should not. It is tested only if
   /// the pose is unlikely.
   bool contradicts_targets = false;
-  PoseSpread spread;  ///< of the pose relative to all targets together, if the status is `tracked`
+  /// Covariance of the error of the pose relative to all targets together, as in
+  /// `target_covariances`, if the status is `tracked`, else zero.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  PoseSpread spread;  ///< of `covariance`
 
   /// Whether the pose of the frame was found.
   bool registered() const {

@@ -49,7 +49,22 @@ struct AddedFrame {
 /// What a recording does with a finished map.
 enum class MapUse {
   extend,    ///< goes on with it: adds its surface, and corrects poses by new loops
-  localise,  ///< is localised in it: the poses of its keyframes are held, and no surface is added
+  localise,  ///< is localised in it: the poses of its keyframes are held
+};
+
+/// A place in a finished map.
+struct MapPlace {
+  int map = 0;  ///< Keyframe::map
+  Pose world_from_camera = Pose::Identity();
+  bool has_rotation = true;  ///< false if only the position is known
+};
+
+/// How near a recording came to being found in a map.
+struct MapNearness {
+  int keyframes = 0;   ///< number of keyframes that were compared with the map
+  int recognised = 0;  ///< number of those that recognised a place with certainty
+  int ambiguous = 0;   ///< number of those that may be at several places
+  int agreeing = 0;    ///< largest number of those that agree on where the recording is
 };
 
 /// Tracks the camera, closes loops, and keeps trajectory and map consistent.
@@ -84,14 +99,22 @@ class RoomMapper {
   /// Says what the frames come from. Without this, content().recordings says nothing of it.
   void describe_recording(MapRecording recording);
 
+  /// Says how good the map is after the recording (MapRecording::verdict).
+  void note_verdict(const std::string& verdict) { content_.recordings.back().verdict = verdict; }
+
   /// Goes on with a finished map: the frames that follow are those of another recording of the same
   /// place. They begin a map of their own, which is joined with the finished one as soon as its
-  /// places are recognised. `recording` describes them. Must be called before the first frame.
-  void go_on_with(MapContent finished, MapRecording recording, MapUse use);
+  /// places are recognised. `recording` describes them. `start` is where the camera is at the first
+  /// frame, if that is known to half a metre and 45 degrees; otherwise it may be anywhere. Must be
+  /// called before the first frame.
+  void go_on_with(MapContent finished, MapRecording recording, MapUse use,
+                  std::optional<MapPlace> start = std::nullopt);
 
-  /// Number of frames of the recording that are registered in the finished map. Without
-  /// go_on_with(), 0.
-  int localised_frames() const;
+  /// How near the frames came to being found in the finished map.
+  MapNearness nearness() const;
+
+  /// localised_frames_of() the map so far.
+  int localised_frames() const { return localised_frames_of(content_); }
 
   /// Registers a frame. If that succeeds, adds its surface to the map and, if it becomes a
   /// keyframe, searches for a loop. Frames must come in the order of time.
@@ -100,8 +123,8 @@ class RoomMapper {
   /// Otherwise copies of one image would count as independent observations of its points.
   AddedFrame add_frame(const NewFrame& frame);
 
-  /// Fits the pose graph if it has loop constraints that were not fitted yet. Must be called after
-  /// the last frame.
+  /// Fits the pose graph if it has loop constraints that were not fitted yet, and finds what has
+  /// changed between recordings. Must be called after the last frame.
   void finish();
 
   /// The map so far. Keyframes and what refers to them may still move.
@@ -149,6 +172,7 @@ class RoomMapper {
   void integrate(const SurfaceCloud& cloud);
   void close_loops();
   void recognise_place();
+  bool agrees_with_start(const Pose& finished_from_newest) const;
   std::vector<Stretch> stretches() const;
   void join_maps(std::span<const Stretch> travelled);
   int differing_keyframes(const MapJoin& join) const;
@@ -175,7 +199,7 @@ class RoomMapper {
   void add_keyframe(const NewFrame& frame, std::span<const Keyframe* const> around,
                     const TrackingResult& result);
   int submap_for(int id, const Pose& pose, std::span<const Keyframe* const> around);
-  void set_poses(std::span<const Pose> poses);
+  void follow_keyframe(const Pose& before);
   void mend_slips();
   void rebuild_submaps(int at);
   void fit();
@@ -187,7 +211,9 @@ class RoomMapper {
   StillOdometry odometry_;
   MapContent content_;
   MapUse use_ = MapUse::extend;
-  std::size_t first_own_frame_ = 0;  ///< frames before it are of earlier recordings
+  std::optional<MapPlace> start_;
+  int compared_ = 0;   ///< number of keyframes that were compared with maps of earlier recordings
+  int ambiguous_ = 0;  ///< number of those that may be at several places
   int unfitted_loops_ = 0;
   int waiting_loop_ = -1;  ///< later keyframe of the newest loop that awaits others; −1: none
   int last_fit_ = 0;       ///< id of the newest keyframe in the last fit

@@ -27,6 +27,8 @@ struct SurfaceMapOptions {
   /// pixels, points with a wrong wrap count (without_free_space_violations()).
   bool drop_free_space_violations = true;
 
+  bool operator==(const SurfaceMapOptions&) const = default;
+
   static std::vector<OptionField<SurfaceMapOptions>> fields();
 };
 
@@ -46,8 +48,9 @@ class SurfaceMap {
   void integrate(const SurfaceCloud& cloud, const Pose& world_from_camera);
 
   /// Adds the voxels of a submap with the same options, each as one point with the weight and the
-  /// observations of the voxel. Throws UsageError as integrate() does.
-  void add(const SurfaceMap& submap, const Pose& world_from_submap);
+  /// observations of the voxel. `recording` is the index of the recording that the submap is of.
+  /// Throws UsageError as integrate() does.
+  void add(const SurfaceMap& submap, const Pose& world_from_submap, int recording = 0);
 
   /// Number of voxels seen so far.
   std::size_t size() const { return voxels_.size(); }
@@ -72,6 +75,7 @@ class SurfaceMap {
     float weight = 0;
     float confidence = 0;  ///< sum over the observations
     std::uint32_t observations = 0;
+    std::uint32_t recording = 0;  ///< the first one of those that were added
   };
 
   std::int64_t key(const Eigen::Vector3d& point_m) const;

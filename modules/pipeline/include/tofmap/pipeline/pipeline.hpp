@@ -4,15 +4,18 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <tofmap/acquisition/frame_source.hpp>
 #include <tofmap/cloud/surface_cloud.hpp>
+#include <tofmap/core/verdict.hpp>
 #include <tofmap/diagnostics/error_survey.hpp>
 #include <tofmap/filters/filter_chain.hpp>
 #include <tofmap/mapping/map_store.hpp>
 #include <tofmap/mapping/room_mapper.hpp>
+#include <tofmap/pipeline/localisation.hpp>
 #include <tofmap/pipeline/room_map.hpp>
 #include <tofmap/unwrap/unwrap.hpp>
 
@@ -93,7 +96,7 @@ class MapRun {
 
   /// Goes on with a finished map (RoomMapper::go_on_with()). Must be called before the first frame.
   /// Throws UsageError if the map was made with another camera.
-  void go_on_with(MapContent finished, MapUse use);
+  void go_on_with(MapContent finished, MapUse use, std::optional<MapPlace> start = std::nullopt);
 
   /// Processes frames from the source until the source ends or a hook ends the run. Frames that
   /// are damaged or cannot be registered are skipped; their records say why. Frames are prepared
@@ -127,7 +130,14 @@ class MapRun {
   /// not be called afterwards.
   RoomMap finish();
 
+  /// Says how good the map is that finish() has returned (MapRecording::verdict).
+  void note_verdict(Verdict verdict) { mapper_.note_verdict(std::string(name_of(verdict))); }
+
+  /// As finish(), for a run that was localised in a finished map (MapUse::localise).
+  Localisation finish_localised();
+
  private:
+  void finish_frames();
   std::vector<SourcedFrame> take_next(FrameSource& source);
   std::vector<bool> find_repeats(const std::vector<SourcedFrame>& frames);
   void add(const PreparedFrame& frame, const MapHooks& hooks);

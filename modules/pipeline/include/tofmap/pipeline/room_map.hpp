@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tofmap/cloud/cloud_file.hpp>
@@ -32,6 +34,15 @@ struct StageTimes {
     return unwrap_ms + filter_ms + cloud_ms + register_ms + map_ms + loop_ms;
   }
 };
+
+/// The stages in order, by the names that reports and map files have for them, and their times.
+inline constexpr std::array<std::pair<const char*, double StageTimes::*>, 6> stage_times{
+    {{"unwrap", &StageTimes::unwrap_ms},
+     {"filter", &StageTimes::filter_ms},
+     {"cloud", &StageTimes::cloud_ms},
+     {"register", &StageTimes::register_ms},
+     {"map", &StageTimes::map_ms},
+     {"loops", &StageTimes::loop_ms}}};
 
 /// The result of processing one frame.
 struct FrameRecord {
@@ -87,6 +98,10 @@ struct RoomMap {
   /// Number of frames that were found in the map of earlier recordings (MapRun::go_on_with()).
   /// Empty if there were none.
   std::optional<int> localised;
+  MapNearness nearness;            ///< RoomMapper::nearness()
+  std::vector<MapChange> changes;  ///< those of the map, by all recordings; see find_changes()
+  /// Whether the recording has moved the map that it extends, by loops that are used.
+  bool has_moved_map = false;
   std::vector<FrameRecord> frames;  ///< all frames, in order
   ErrorSurvey errors;               ///< MapRun::errors at the end of the run
   bool interrupted = false;         ///< a hook ended the run early

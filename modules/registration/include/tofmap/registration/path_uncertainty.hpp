@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -26,5 +27,13 @@ struct ExpectedError {
 /// gives the same values. Throws UsageError as check_edges() does.
 std::vector<ExpectedError> expected_errors(std::span<const Pose> poses,
                                            std::span<const PoseEdge> edges);
+
+/// The covariances of the errors of poses, by the covariances of the edges, if the first `held` of
+/// them are exact: rotation vector, radians, then translation, metres, both along the axes of the
+/// world. One for each of the other poses, in order. What expected_errors() says of poses and edges
+/// holds here as well. Throws UsageError as check_edges() does.
+std::vector<Eigen::Matrix<double, 6, 6>> covariances_beside(std::span<const Pose> poses,
+                                                            std::span<const PoseEdge> edges,
+                                                            std::size_t held);
 
 }  // namespace tofmap

@@ -23,6 +23,9 @@ inline constexpr Rgb black{0, 0, 0};
 inline constexpr Rgb invalid{190, 190, 190};  ///< a pixel without a value
 inline constexpr Rgb corrected{214, 39, 40};  ///< a point that unwrapping moved (red)
 inline constexpr Rgb path{230, 90, 0};        ///< the path of the camera
+inline constexpr Rgb gone{214, 39, 40};       ///< a surface that is no longer there
+inline constexpr Rgb appeared{44, 160, 44};   ///< a surface that was not there before
+inline constexpr Rgb moved{31, 119, 180};     ///< a surface that was elsewhere before
 }  // namespace colors
 
 /// Sequences of colours for a scale. Lightness changes evenly along each, so that the order is

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "output/map_information.hpp"
+
+#include "output/change_report.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+
+#include <Eigen/Geometry>
+
+#include <tofmap/core/text.hpp>
+#include <tofmap/mapping/map_store.hpp>
+
+namespace tofmap::app {
+namespace {
+
+constexpr double bytes_per_megabyte = 1e6;
+
+void print_recordings(const MapContent& content) {
+  for (int i = 0; i < std::ssize(content.recordings); ++i) {
+    const MapRecording& recording = content.recordings[static_cast<std::size_t>(i)];
+    const auto frames = std::ranges::count(content.frames, i, &RegisteredFrame::recording);
+    const auto keyframes = std::ranges::count(content.keyframes.all(), i, &Keyframe::recording);
+    std::printf("recording %d: %s, %s, %s, %s, tofmap %s\n", i,
+                recording.source.empty() ? "unknown source" : recording.source.c_str(),
+                recording.added.empty() ? "unknown date" : recording.added.c_str(),
+                counted(static_cast<std::size_t>(frames), "frame").c_str(),
+                counted(static_cast<std::size_t>(keyframes), "keyframe").c_str(),
+                recording.version.c_str());
+  }
+}
+
+void print_camera(const MapContent& content) {
+  const CameraModel& camera = content.camera;
+  std::printf("camera: %d x %d px, f %.1f x %.1f px\n", camera.width_px, camera.height_px,
+              camera.fx_px, camera.fy_px);
+}
+
+void print_maps(const MapContent& content) {
+  std::set<int> numbers;
+  for (const Keyframe& keyframe : content.keyframes.all()) numbers.insert(keyframe.map);
+  for (const int number : numbers) {
+    std::size_t keyframes = 0;
+    for (const Keyframe& keyframe : content.keyframes.all()) {
+      keyframes += keyframe.map == number ? 1 : 0;
+    }
+    const MapCloud surface = surface_of(content, number);
+    Eigen::AlignedBox3f box;
+    for (const MapPoint& point : surface) box.extend(Eigen::Vector3f(point.getVector3fMap()));
+    Eigen::Vector3f size_m = Eigen::Vector3f::Zero();
+    if (!box.isEmpty()) size_m = box.sizes();
+    std::printf("map %d: %s, %zu points, %.2f x %.2f x %.2f m\n", number,
+                counted(keyframes, "keyframe").c_str(), surface.size(), size_m.x(), size_m.y(),
+                size_m.z());
+  }
+  if (numbers.size() > 1) std::printf("  these could not be joined with each other\n");
+}
+
+void print_constraints(const MapContent& content) {
+  const auto used = std::ranges::count(content.loops, true, &Loop::is_used);
+  std::printf("constraints: %zu of odometry, %zu of loops, of which %td are used\n",
+              content.edges.size() - content.loops.size(), content.loops.size(), used);
+}
+
+}  // namespace
+
+void print_map_information(const std::filesystem::path& file) {
+  const MapStore store = MapStore::open(file);
+  const MapContent content = store.content();
+  std::printf("map file: %s, %.1f MB\n", file.c_str(),
+              static_cast<double>(std::filesystem::file_size(file)) / bytes_per_megabyte);
+  if (!store.entries("run/").empty()) {
+    std::printf("  of a run that was interrupted; 'tofmap map --resume' continues it\n");
+  }
+  print_recordings(content);
+  print_camera(content);
+  print_maps(content);
+  print_constraints(content);
+  std::printf("surface: %s of %.3f m in %s\n", counted(voxel_count(content), "voxel").c_str(),
+              content.surface_options.voxel_m, counted(content.submaps.size(), "submap").c_str());
+  for (const std::string& line : told_changes(content.changes, content.recordings)) {
+    std::printf("%s\n", line.c_str());
+  }
+}
+
+}  // namespace tofmap::app

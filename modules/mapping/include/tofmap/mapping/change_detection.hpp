@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <tofmap/mapping/map_change.hpp>
+#include <tofmap/mapping/map_content.hpp>
+
+namespace tofmap {
+
+/// Finds what each recording of a map shows to have changed since the recordings before it.
+///
+/// A surface is gone if keyframes of the recording see through it (sightings_of()), and the
+/// recording has no surface there with a similar normal. Near other surfaces, which free space
+/// cannot tell it from, what is connected with such points is gone as well. Surfaces are new if
+/// the same holds with earlier and later recordings exchanged. What no keyframe has seen before or
+/// has seen again is no change. Connected pieces of fewer than `least_points_of_change` points are
+/// left out. A piece that is gone and a new one are a thing that moved if they have the same shape.
+///
+/// In the order of recordings; those of one recording by kind, the largest first.
+std::vector<MapChange> find_changes(const MapContent& content, int map);
+
+/// The changes in all maps.
+std::vector<MapChange> find_changes(const MapContent& content);
+
+/// Smallest number of map points of a change. Fewer are mostly edges of things, which each
+/// recording sees a bit differently.
+inline constexpr std::size_t least_points_of_change = 12;
+
+}  // namespace tofmap

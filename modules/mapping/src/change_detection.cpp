@@ -1,0 +1,232 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/mapping/change_detection.hpp"
+
+#include "moved_shape.hpp"
+#include "near_points.hpp"
+#include "tofmap/mapping/free_space.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace tofmap {
+namespace {
+
+/// Number of keyframes that must see through a point. A single one may be deceived.
+constexpr int least_views = 2;
+
+/// How far a surface goes on beside the points that keyframes see through: closer to another
+/// surface, the noise of a keyframe hides it.
+constexpr float growth_m = 0.15F;
+
+/// The surface of a map, as some of its recordings saw it.
+struct SeenSurface {
+  MapCloud points;
+  std::vector<Keyframe> keyframes;
+};
+
+/// The surface that the recordings from `first` to before `end` saw, without free-space violations.
+SeenSurface surface_seen(const MapContent& content, int map, int first, int end) {
+  SeenSurface seen;
+  const auto is_seen = [&](const Keyframe& keyframe) {
+    return keyframe.map == map && keyframe.recording >= first && keyframe.recording < end;
+  };
+  std::ranges::copy_if(content.keyframes.all(), std::back_inserter(seen.keyframes), is_seen);
+  std::ranges::stable_sort(seen.keyframes, {}, &Keyframe::recording);
+  SurfaceMap whole(content.surface_options);
+  for (const Submap& submap : content.submaps) {
+    const Keyframe& anchor = content.keyframes[submap.anchor];
+    if (is_seen(anchor)) whole.add(submap.surface, anchor.world_from_camera, anchor.recording);
+  }
+  seen.points = without_free_space_violations(whole.extract(), seen.keyframes, content.camera,
+                                              content.surface_options.voxel_m);
+  return seen;
+}
+
+/// For each point, whether another surface has none there that may be the same.
+std::vector<char> without_counterpart(const MapCloud& points, const MapCloud& other,
+                                      float voxel_m) {
+  constexpr float reach_voxels = 2;
+  const float least_cosine = std::cos(static_cast<float>(M_PI) / 4);
+  const NearPoints search(other, reach_voxels * voxel_m);
+  std::vector<char> is_alone(points.size());
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t at = 0; at < std::ssize(points); ++at) {
+    const auto i = static_cast<std::size_t>(at);
+    const Eigen::Vector3f normal = points[i].getNormalVector3fMap();
+    is_alone[i] =
+        search.any_near(points[i],
+                        [&](std::size_t k) {
+                          const Eigen::Vector3f apart_m =
+                              other[k].getVector3fMap() - points[i].getVector3fMap();
+                          return normal.dot(other[k].getNormalVector3fMap()) >= least_cosine &&
+                                 std::abs(normal.dot(apart_m)) <= voxel_m;
+                        })
+            ? 0
+            : 1;
+  }
+  return is_alone;
+}
+
+/// The connected pieces of a surface that keyframes of another time see through. `other` is the
+/// surface that these saw.
+std::vector<MapCloud> pieces_seen_through(const MapCloud& points, const SeenSurface& other,
+                                          const MapContent& content) {
+  const double voxel_m = content.surface_options.voxel_m;
+  const auto step_m = static_cast<float>(2 * voxel_m);
+  const std::vector<char> is_alone =
+      without_counterpart(points, other.points, static_cast<float>(voxel_m));
+  const std::vector<Sightings> sightings =
+      sightings_of(points, other.keyframes, content.camera, voxel_m);
+  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> seed_of(points.size(), none);
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (is_alone[i] == 0 || sightings[i].violating < least_views ||
+        !sightings[i].violates_free_space()) {
+      continue;
+    }
+    seed_of[i] = i;
+    open.push_back(i);
+  }
+  const NearPoints search(points, step_m);
+  for (std::size_t done = 0; done < open.size(); ++done) {
+    const std::size_t from = open[done];
+    search.any_near(points[from], [&](std::size_t i) {
+      const MapPoint& seed = points[seed_of[from]];
+      if (seed_of[i] == none && is_alone[i] != 0 &&
+          (points[i].getVector3fMap() - seed.getVector3fMap()).norm() <= growth_m) {
+        seed_of[i] = seed_of[from];
+        open.push_back(i);
+      }
+      return false;
+    });
+  }
+  std::ranges::sort(open);
+  std::vector<MapCloud> pieces;
+  std::vector<char> is_taken(points.size(), 0);
+  for (const std::size_t first : open) {
+    if (is_taken[first] != 0) continue;
+    is_taken[first] = 1;
+    std::vector<std::size_t> piece{first};
+    for (std::size_t done = 0; done < piece.size(); ++done) {
+      search.any_near(points[piece[done]], [&](std::size_t i) {
+        if (seed_of[i] != none && is_taken[i] == 0) {
+          is_taken[i] = 1;
+          piece.push_back(i);
+        }
+        return false;
+      });
+    }
+    if (piece.size() < least_points_of_change) continue;
+    std::ranges::sort(piece);
+    MapCloud& cloud = pieces.emplace_back();
+    for (const std::size_t i : piece) cloud.push_back(points[i]);
+  }
+  return pieces;
+}
+
+/// The mean direction, in the world, that is up for the cameras.
+Eigen::Vector3d upwards(std::span<const Keyframe> keyframes) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Keyframe& keyframe : keyframes) sum -= keyframe.world_from_camera.linear().col(1);
+  return sum.norm() > 0 ? Eigen::Vector3d(sum.normalized()) : Eigen::Vector3d::UnitZ();
+}
+
+/// Takes out the pieces that have moved, those that fit best first.
+std::vector<MapChange> take_moved(std::vector<MapCloud>& gone, std::vector<MapCloud>& appeared,
+                                  const Eigen::Vector3d& up, double voxel_m) {
+  struct Match {
+    std::size_t before, after;
+    MovedShape moved;
+  };
+  std::vector<Match> matches;
+  for (std::size_t before = 0; before < gone.size(); ++before) {
+    for (std::size_t after = 0; after < appeared.size(); ++after) {
+      if (auto moved = find_motion(gone[before], appeared[after], up, voxel_m)) {
+        matches.push_back({before, after, *moved});
+      }
+    }
+  }
+  std::ranges::stable_sort(matches, std::ranges::greater(),
+                           [](const Match& match) { return match.moved.fit; });
+  std::vector<MapChange> changes;
+  for (const auto& [before, after, moved] : matches) {
+    if (gone[before].empty() || appeared[after].empty()) continue;
+    changes.push_back({.kind = ChangeKind::moved,
+                       .before = std::exchange(gone[before], {}),
+                       .after = std::exchange(appeared[after], {}),
+                       .after_from_before = moved.after_from_before});
+  }
+  std::erase_if(gone, &MapCloud::empty);
+  std::erase_if(appeared, &MapCloud::empty);
+  return changes;
+}
+
+std::size_t size_of(const MapChange& change) { return change.before.size() + change.after.size(); }
+
+/// The changes that a recording shows, the largest of each kind first.
+std::vector<MapChange> changes_in(const MapContent& content, int map, int recording) {
+  const SeenSurface before = surface_seen(content, map, 0, recording);
+  const SeenSurface now = surface_seen(content, map, recording, recording + 1);
+  if (before.points.empty() || now.points.empty()) return {};
+  std::vector<MapCloud> gone = pieces_seen_through(before.points, now, content);
+  // What is new was first seen after the keyframes that see through it.
+  MapCloud later = now.points;
+  for (MapPoint& point : later) point.recording = 0;
+  std::vector<MapCloud> appeared = pieces_seen_through(later, before, content);
+  for (MapCloud& piece : appeared) {
+    for (MapPoint& point : piece) point.recording = static_cast<std::uint32_t>(recording);
+  }
+  std::vector<MapChange> changes =
+      take_moved(gone, appeared, upwards(content.keyframes.all()), content.surface_options.voxel_m);
+  for (MapCloud& piece : gone) {
+    changes.push_back({.kind = ChangeKind::gone, .before = std::move(piece), .after = {}});
+  }
+  for (MapCloud& piece : appeared) {
+    changes.push_back({.kind = ChangeKind::appeared, .before = {}, .after = std::move(piece)});
+  }
+  for (MapChange& change : changes) {
+    change.map = map;
+    change.recording = recording;
+  }
+  std::ranges::stable_sort(changes, [](const MapChange& one, const MapChange& other) {
+    return std::pair(one.kind, size_of(other)) < std::pair(other.kind, size_of(one));
+  });
+  return changes;
+}
+
+constexpr std::array<NamedValue<ChangeKind>, 3> kind_names{
+    {{"gone", ChangeKind::gone}, {"new", ChangeKind::appeared}, {"moved", ChangeKind::moved}}};
+
+}  // namespace
+
+std::span<const NamedValue<ChangeKind>> named_values(ChangeKind /*kind*/) { return kind_names; }
+
+std::vector<MapChange> find_changes(const MapContent& content, int map) {
+  std::vector<MapChange> changes;
+  for (int recording = 1; recording < std::ssize(content.recordings); ++recording) {
+    std::ranges::move(changes_in(content, map, recording), std::back_inserter(changes));
+  }
+  return changes;
+}
+
+std::vector<MapChange> find_changes(const MapContent& content) {
+  std::set<int> maps;
+  for (const Keyframe& keyframe : content.keyframes.all()) maps.insert(keyframe.map);
+  std::vector<MapChange> changes;
+  for (const int map : maps) {
+    std::ranges::move(find_changes(content, map), std::back_inserter(changes));
+  }
+  return changes;
+}
+
+}  // namespace tofmap

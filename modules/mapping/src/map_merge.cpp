@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/mapping/map_merge.hpp"
+
+#include "tofmap/mapping/change_detection.hpp"
+#include "tofmap/mapping/free_space.hpp"
+#include "tofmap/mapping/keyframe_edge.hpp"
+#include "tofmap/mapping/loop_closure.hpp"
+#include "tofmap/mapping/loop_fit.hpp"
+#include "tofmap/mapping/map_fit.hpp"
+#include "tofmap/mapping/map_join.hpp"
+#include "tofmap/mapping/place_recognition.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+/// Share of the compared keyframes that may contradict a join. Things that have moved hide a view
+/// as a whole now and then.
+constexpr double most_contradicting = 0.2;
+
+int maps_begun(const MapContent& content) {
+  int begun = 0;
+  for (const Keyframe& keyframe : content.keyframes.all()) {
+    begun = std::max({begun, keyframe.map + 1, keyframe.taken_in + 1});
+  }
+  return begun;
+}
+
+/// The keyframes of a map with the numbers that they get after those of another one. Their worlds
+/// are still apart.
+std::vector<Keyframe> renumbered(const MapContent& added, const MapContent& content) {
+  const int first = content.keyframes.size();
+  const int first_map = maps_begun(content);
+  const int first_recording = static_cast<int>(content.recordings.size());
+  const double path_m = first > 0 ? content.keyframes[first - 1].path_m : 0;
+  std::vector<Keyframe> keyframes;
+  for (Keyframe keyframe : added.keyframes.all()) {
+    keyframe.id += first;
+    keyframe.map += first_map;
+    keyframe.taken_in = keyframe.map;
+    keyframe.recording += first_recording;
+    keyframe.path_m += path_m;
+    keyframes.push_back(std::move(keyframe));
+  }
+  return keyframes;
+}
+
+/// Adds all of a map but its keyframes, which were renumbered().
+void append_rest(const MapContent& added, std::vector<Keyframe> keyframes, MapContent& content) {
+  const int first = content.keyframes.size();
+  const int first_submap = static_cast<int>(content.submaps.size());
+  const int first_recording = static_cast<int>(content.recordings.size());
+  std::ranges::copy(added.recordings, std::back_inserter(content.recordings));
+  for (Keyframe& keyframe : keyframes) {
+    const KeyframeCloud cloud = std::exchange(keyframe.cloud, {});
+    content.keyframes.add(std::move(keyframe), [cloud] { return cloud.compact(); });
+  }
+  for (int id = 0; id < added.keyframes.size(); ++id) {
+    const auto links = added.keyframes.links(id);
+    std::vector<KeyframeLink> moved(links.begin(), links.end());
+    for (KeyframeLink& link : moved) link.to += first;
+    content.keyframes.set_links(first + id, std::move(moved));
+  }
+  for (const Submap& submap : added.submaps) {
+    content.submaps.push_back({submap.anchor + first, submap.surface});
+  }
+  for (const int submap : added.submap_of) content.submap_of.push_back(submap + first_submap);
+  for (RegisteredFrame frame : added.frames) {
+    frame.keyframe += first;
+    frame.recording += first_recording;
+    content.frames.push_back(frame);
+  }
+  for (PoseEdge edge : added.edges) {
+    edge.from += first;
+    edge.to += first;
+    content.edges.push_back(edge);
+  }
+  std::ranges::copy(added.loops, std::back_inserter(content.loops));
+}
+
+/// Joins maps with the first one.
+class MapMerger {
+ public:
+  MapMerger(MapContent first, const LoopOptions& loops, const RegistrationOptions& registration)
+      : content_(std::move(first)),
+        loops_(loops),
+        registration_(registration),
+        map_(largest_map(content_)) {
+    content_.keyframes.settle_maps();
+  }
+
+  /// Joins a map if its places are recognised. Tells how near it came.
+  bool join(const MapContent& added, const std::function<void()>& tell, MapNearness& nearness);
+
+  MapContent take();
+
+ private:
+  std::vector<PoseEdge> recognise_in(std::span<const Keyframe> keyframes, int map,
+                                     const std::function<void()>& tell,
+                                     MapNearness& nearness) const;
+  bool contradicts(const MapJoin& join, std::span<const Keyframe> keyframes) const;
+  void close_loops(int first, const std::function<void()>& tell);
+  void order_recordings();
+
+  MapContent content_;
+  LoopOptions loops_;
+  RegistrationOptions registration_;
+  int map_;  ///< the map that others are joined with
+};
+
+/// Recognises places of the map so far in those keyframes, of all, that belong to `map`.
+std::vector<PoseEdge> MapMerger::recognise_in(std::span<const Keyframe> keyframes, int map,
+                                              const std::function<void()>& tell,
+                                              MapNearness& nearness) const {
+  const auto everywhere = [](const Keyframe&, const Pose&) { return true; };
+  std::vector<PoseEdge> recognitions;
+  for (const Keyframe& keyframe : keyframes) {
+    if (keyframe.map != map) continue;
+    tell();
+    std::vector<const Keyframe*> candidates;
+    for (const Keyframe& other : keyframes) {
+      if (other.map == map_) candidates.push_back(&other);
+    }
+    const auto places = find_places(keyframe, std::move(candidates), everywhere, keyframes,
+                                    content_.camera, loops_, registration_);
+    const auto found = surest_place(places, keyframes);
+    ++nearness.keyframes;
+    nearness.recognised += found ? 1 : 0;
+    nearness.ambiguous += !found && !places.empty() ? 1 : 0;
+    if (!found) continue;
+    recognitions.push_back(loop_edge(keyframes[static_cast<std::size_t>(found->from)], keyframe.id,
+                                     found->registration));
+  }
+  return recognitions;
+}
+
+/// Whether too many keyframes of a map contradict the free space of those that they recognised.
+bool MapMerger::contradicts(const MapJoin& join, std::span<const Keyframe> keyframes) const {
+  std::size_t contradicting = 0;
+  for (const PoseEdge& edge : join.edges) {
+    const Keyframe& keyframe = keyframes[static_cast<std::size_t>(edge.to)];
+    const auto cloud = keyframe.cloud.load();
+    const RegistrationTarget placed{cloud.get(), join.into_from_map * keyframe.world_from_camera};
+    const RegistrationTarget target = target_of(keyframes[static_cast<std::size_t>(edge.from)]);
+    if (contradicts_free_space(placed, target, content_.camera, most_violations_since)) {
+      ++contradicting;
+    }
+  }
+  return static_cast<double>(contradicting) >
+         most_contradicting * static_cast<double>(join.edges.size());
+}
+
+bool MapMerger::join(const MapContent& added, const std::function<void()>& tell,
+                     MapNearness& nearness) {
+  nearness = {};
+  const std::vector<Keyframe> own = renumbered(added, content_);
+  std::vector<Keyframe> all(content_.keyframes.all().begin(), content_.keyframes.all().end());
+  const int first = content_.keyframes.size();
+  const int map = largest_map(added) + maps_begun(content_);
+  std::ranges::copy(own, std::back_inserter(all));
+  const std::vector<PoseEdge> recognitions = recognise_in(all, map, tell, nearness);
+  std::vector<const PoseEdge*> edges;
+  for (const PoseEdge& edge : recognitions) edges.push_back(&edge);
+  nearness.agreeing = static_cast<int>(most_that_agree(edges, all, loops_).size());
+  const auto join = find_join(recognitions, map, all, loops_);
+  if (!join || contradicts(*join, all)) return false;
+  append_rest(added, own, content_);
+  content_.keyframes.join(map, map_, join->into_from_map);
+  for (const PoseEdge& edge : join->edges) add_loop(content_, edge);
+  fit_map(content_, loops_);
+  close_loops(first, tell);
+  return true;
+}
+
+/// Searches loops between the keyframes from `first` on and those before.
+void MapMerger::close_loops(int first, const std::function<void()>& tell) {
+  if (!loops_.close) return;
+  for (int id = first; id < content_.keyframes.size(); ++id) {
+    const Keyframe& keyframe = content_.keyframes[id];
+    if (keyframe.map != map_) continue;
+    tell();
+    const LoopCandidate loop =
+        find_loop(keyframe, content_.keyframes.all(), content_.keyframes.spreads_from(id),
+                  content_.camera, loops_, registration_);
+    if (loop.edge && !loop.needs_slip && loop.from < first) add_loop(content_, *loop.edge);
+  }
+  fit_map(content_, loops_);
+}
+
+/// Puts the recordings in the order of their dates.
+void MapMerger::order_recordings() {
+  std::vector<std::size_t> order(content_.recordings.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return content_.recordings[i].added; });
+  std::vector<MapRecording> ordered;
+  std::vector<int> place(order.size());
+  for (const std::size_t i : order) {
+    place[i] = static_cast<int>(ordered.size());
+    ordered.push_back(content_.recordings[i]);
+  }
+  content_.recordings = std::move(ordered);
+  content_.keyframes.renumber_recordings(place);
+  for (RegisteredFrame& frame : content_.frames) {
+    frame.recording = place[static_cast<std::size_t>(frame.recording)];
+  }
+  std::ranges::stable_sort(content_.frames, {}, &RegisteredFrame::recording);
+}
+
+MapContent MapMerger::take() {
+  order_recordings();
+  content_.changes = find_changes(content_);
+  return std::move(content_);
+}
+
+/// Throws UsageError if maps cannot be merged.
+void check_maps(const std::vector<MapContent>& maps) {
+  if (maps.empty()) throw UsageError("there is no map to merge");
+  const MapContent& first = maps.front();
+  std::set<std::pair<std::string, std::string>> recordings;
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const MapContent& map = maps[i];
+    if (!are_same_camera(first.camera, map.camera)) {
+      throw UsageError(fmt::format(
+          "map {} was made with another camera than the first one; only maps of one camera can be "
+          "merged",
+          i + 1));
+    }
+    if (!(first.surface_options == map.surface_options)) {
+      throw UsageError(fmt::format(
+          "map {} has other options 'map.…' than the first one, such as voxels of {} instead of {} "
+          "m; make both with the same options",
+          i + 1, map.surface_options.voxel_m, first.surface_options.voxel_m));
+    }
+    for (const MapRecording& recording : map.recordings) {
+      if (recordings.emplace(recording.source, recording.added).second) continue;
+      throw UsageError(
+          fmt::format("the recording {} of {} is in two of the maps; give one of them only",
+                      recording.source, recording.added));
+    }
+  }
+}
+
+}  // namespace
+
+MergedMaps merge_maps(std::vector<MapContent> maps, const LoopOptions& loops,
+                      const RegistrationOptions& registration,
+                      const std::function<void(std::size_t map)>& tell) {
+  check_maps(maps);
+  std::vector<MapNearness> nearness(maps.size());
+  std::vector<bool> is_joined(maps.size(), false);
+  is_joined.front() = true;
+  MapMerger merger(std::move(maps.front()), loops, registration);
+  for (bool has_grown = true; has_grown;) {
+    has_grown = false;
+    for (std::size_t i = 1; i < maps.size(); ++i) {
+      if (is_joined[i]) continue;
+      const auto tell_of_map = [&] {
+        if (tell) tell(i);
+      };
+      is_joined[i] = merger.join(maps[i], tell_of_map, nearness[i]);
+      has_grown = has_grown || is_joined[i];
+    }
+  }
+  return {merger.take(), std::move(nearness), std::move(is_joined)};
+}
+
+}  // namespace tofmap

@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "change_rows.hpp"
+
+#include "../state_json.hpp"
+#include "rows.hpp"
+
+#include <array>
+#include <limits>
+#include <string>
+
+#include <Eigen/Geometry>
+#include <zlib.h>
+
+#include <tofmap/core/bytes.hpp>
+
+namespace tofmap {
+namespace {
+
+/// The columns of the table `changes`.
+enum Column { id, map, recording, kind, points, first_of_box, moved = 11, motion, before, after };
+constexpr int columns = after + 1;
+
+constexpr int numbers_per_point = 7;
+constexpr std::size_t bytes_per_point =
+    numbers_per_point * sizeof(float) + 2 * sizeof(std::uint32_t);
+
+std::string bytes_of(const MapCloud& cloud) {
+  ByteWriter out;
+  for (const MapPoint& point : cloud) {
+    for (const float coordinate : point.getVector3fMap()) out.number(coordinate);
+    for (const float coordinate : point.getNormalVector3fMap()) out.number(coordinate);
+    out.number(point.confidence);
+    out.number(point.observations);
+    out.number(point.recording);
+  }
+  return out.take();
+}
+
+MapCloud cloud_in(std::string_view bytes, int recordings) {
+  if (bytes.size() % bytes_per_point != 0) throw InputError("stored bytes end early");
+  MapCloud cloud;
+  cloud.resize(bytes.size() / bytes_per_point);
+  ByteReader in(bytes);
+  for (MapPoint& point : cloud) {
+    for (float& coordinate : point.getVector3fMap()) coordinate = in.number<float>();
+    point.data[3] = 1;
+    for (float& coordinate : point.getNormalVector3fMap()) coordinate = in.number<float>();
+    point.data_n[3] = 0;
+    point.confidence = in.number<float>(0, 1);
+    point.observations = in.number<std::uint32_t>();
+    point.recording = in.number<std::uint32_t>(0, static_cast<std::uint32_t>(recordings - 1));
+  }
+  return cloud;
+}
+
+Eigen::AlignedBox3f box_of(const MapChange& change) {
+  Eigen::AlignedBox3f box;
+  for (const MapCloud* cloud : {&change.before, &change.after}) {
+    for (const MapPoint& point : *cloud) box.extend(Eigen::Vector3f(point.getVector3fMap()));
+  }
+  return box;
+}
+
+Eigen::Vector3d centroid_of(const MapCloud& cloud) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const MapPoint& point : cloud) sum += point.getVector3fMap().cast<double>();
+  return sum / static_cast<double>(cloud.size());
+}
+
+/// How far the middle of what was there before has moved.
+double moved_m(const MapChange& change) {
+  const Eigen::Vector3d middle_m = centroid_of(change.before);
+  return (change.after_from_before * middle_m - middle_m).norm();
+}
+
+}  // namespace
+
+std::uint32_t checksum_of(std::span<const MapChange> changes) {
+  uLong checksum = crc32(0, nullptr, 0);
+  const auto add = [&](const std::string& bytes) {
+    checksum = crc32(checksum, reinterpret_cast<const Bytef*>(bytes.data()),
+                     static_cast<uInt>(bytes.size()));
+  };
+  for (const MapChange& change : changes) {
+    ByteWriter out;
+    out.number(static_cast<int>(change.kind));
+    out.number(change.map);
+    out.number(change.recording);
+    out.numbers({change.after_from_before.data(), 16});
+    add(out.take());
+    add(bytes_of(change.before));
+    add(bytes_of(change.after));
+  }
+  return static_cast<std::uint32_t>(checksum);
+}
+
+void write_changes(std::span<const MapChange> changes, SQLite::Database& database) {
+  database.exec("DELETE FROM changes");
+  std::string sql = "INSERT INTO changes VALUES (?";
+  for (int i = 1; i < columns; ++i) sql += ", ?";
+  SQLite::Statement row(database, sql + ")");
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const MapChange& change = changes[i];
+    // Parameters count from 1, columns from 0.
+    row.bind(1 + id, static_cast<int>(i));
+    row.bind(1 + map, change.map);
+    row.bind(1 + recording, change.recording);
+    row.bind(1 + kind, std::string(name_of(change.kind)));
+    row.bind(1 + points, static_cast<int>(change.before.size() + change.after.size()));
+    const Eigen::AlignedBox3f box = box_of(change);
+    for (int axis = 0; axis < 3; ++axis) {
+      row.bind(1 + first_of_box + 2 * axis, static_cast<double>(box.min()[axis]));
+      row.bind(2 + first_of_box + 2 * axis, static_cast<double>(box.max()[axis]));
+    }
+    if (change.kind == ChangeKind::moved) row.bind(1 + moved, moved_m(change));
+    bind_numbers(row, 1 + motion, change.after_from_before.data(), 16);
+    const std::string before_bytes = bytes_of(change.before);
+    const std::string after_bytes = bytes_of(change.after);
+    bind_bytes(row, 1 + before, before_bytes);
+    bind_bytes(row, 1 + after, after_bytes);
+    row.exec();
+    row.reset();
+    row.clearBindings();
+  }
+}
+
+MapChange change_in(SQLite::Statement& row, int recordings) {
+  MapChange change;
+  change.map = integer_in(row, map, 0, std::numeric_limits<int>::max());
+  change.recording = integer_in(row, recording, 1, recordings - 1);
+  const auto named = find_named<ChangeKind>(row.getColumn(kind).getString());
+  if (!named) throw InputError("a change is neither 'gone', 'new' nor 'moved'");
+  change.kind = *named;
+  Eigen::Matrix4d matrix;
+  read_numbers(row, motion, matrix.data(), static_cast<int>(matrix.size()));
+  check_rotation(matrix.topLeftCorner<3, 3>());
+  if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) throw InputError("a motion is none");
+  change.after_from_before = Pose(matrix);
+  const SQLite::Column before_bytes = row.getColumn(before);
+  const SQLite::Column after_bytes = row.getColumn(after);
+  change.before = cloud_in(bytes_in(before_bytes), recordings);
+  change.after = cloud_in(bytes_in(after_bytes), recordings);
+  if (change.before.empty() != (change.kind == ChangeKind::appeared) ||
+      change.after.empty() != (change.kind == ChangeKind::gone)) {
+    throw InputError("a change has points that do not fit its kind");
+  }
+  return change;
+}
+
+}  // namespace tofmap

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/mapping/map_merge.hpp"
+
+#include "support/scenery.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tofmap/core/error.hpp>
+
+namespace tofmap {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// The map of a part of the path through a scene.
+MapContent mapped(const test::Scenery& scene, int first, int end, const std::string& added,
+                  const SurfaceMapOptions& surface = {}) {
+  RoomMapper mapper(scene.camera(), {}, {}, {}, surface);
+  mapper.describe_recording(
+      {.source = "part", .added = added, .version = "", .options = "", .sensor = {}});
+  for (int i = first; i < end; ++i) mapper.add_frame({i, i / 15.0, scene.view(i), false});
+  mapper.finish();
+  return mapper.content();
+}
+
+class MergedRoom : public testing::Test {
+ protected:
+  static constexpr int begins[] = {100, 140, 180};
+  static constexpr int frames = 60;
+
+  MapContent part(int i) const {
+    return mapped(room_, begins[i], begins[i] + frames, std::to_string(i));
+  }
+
+  /// Largest error of the paths of all recordings in the world of a map that began at this frame.
+  double worst_error_m(const MapContent& content, int first) const {
+    double worst_m = 0;
+    const Pose world_from_scene = room_.pose(first).inverse();
+    for (const RegisteredFrame& frame : content.frames) {
+      const Pose truth = world_from_scene * room_.pose(frame.index);
+      worst_m = std::max(
+          worst_m, (truth.translation() - pose_of(frame, content.keyframes).translation()).norm());
+    }
+    return worst_m;
+  }
+
+  test::Scenery room_{"room"};
+};
+
+TEST_F(MergedRoom, IsTheSameInAnyOrder) {
+  for (const auto& order : std::vector<std::vector<int>>{{0, 1, 2}, {2, 0, 1}, {0, 2, 1}}) {
+    std::vector<MapContent> parts;
+    for (const int i : order) parts.push_back(part(i));
+    const MergedMaps merged = merge_maps(std::move(parts), {}, {});
+    EXPECT_THAT(merged.is_joined, ElementsAre(true, true, true));
+    EXPECT_EQ(merged.content.frames.size(), 3 * frames);
+    EXPECT_LT(worst_error_m(merged.content, begins[order.front()]), 0.01);
+    std::vector<std::string> dates;
+    for (const MapRecording& recording : merged.content.recordings) {
+      dates.push_back(recording.added);
+    }
+    EXPECT_THAT(dates, ElementsAre("0", "1", "2"));
+    EXPECT_TRUE(merged.content.changes.empty());
+  }
+}
+
+TEST_F(MergedRoom, DoesNotHoldAnotherPlace) {
+  const test::Scenery other("flat");
+  std::vector<MapContent> parts{part(0), mapped(other, 0, frames, "other"), part(1)};
+  const MergedMaps merged = merge_maps(std::move(parts), {}, {});
+  EXPECT_THAT(merged.is_joined, ElementsAre(true, false, true));
+  EXPECT_EQ(merged.content.frames.size(), 2 * frames);
+  EXPECT_GT(merged.nearness[1].keyframes, 0);
+  EXPECT_LT(merged.nearness[1].agreeing, 3);
+}
+
+TEST_F(MergedRoom, RefusesMapsThatDoNotGoTogether) {
+  const auto complaint = [](std::vector<MapContent> parts) -> std::string {
+    try {
+      merge_maps(std::move(parts), {}, {});
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(complaint({part(0), part(0)}), HasSubstr("in two of the maps"));
+  SurfaceMapOptions coarse;
+  coarse.voxel_m = 0.1;
+  EXPECT_THAT(complaint({part(0), mapped(room_, 100, 110, "coarse", coarse)}),
+              HasSubstr("other options"));
+  EXPECT_THAT(complaint({}), HasSubstr("no map"));
+}
+
+TEST_F(MergedRoom, CanBeGivenUp) {
+  struct GivenUp {};
+  EXPECT_THROW(merge_maps({part(0), part(1)}, {}, {}, [](std::size_t) { throw GivenUp(); }),
+               GivenUp);
+}
+
+}  // namespace
+}  // namespace tofmap
