@@ -66,7 +66,7 @@ struct Recording {
       write;
 };
 
-/// Says which people and doors found no place in the scene.
+/// Says which people, doors and pieces of furniture found no place in the scene.
 void print_missing(const Simulator& simulator, const SimulatorOptions& wanted) {
   const auto print = [](int there, int asked, const char* what, const char* lacking) {
     if (there == asked) return;
@@ -76,6 +76,13 @@ void print_missing(const Simulator& simulator, const SimulatorOptions& wanted) {
         "the scene lacks free floor that the camera sees");
   print(static_cast<int>(simulator.bodies().doors().size()), wanted.doors, "doors",
         "the scene lacks walls that the camera sees, with space for a door");
+  const int rearranged = rearranged_count(simulator.furniture());
+  if (rearranged == wanted.rearranged) return;
+  std::fprintf(
+      stderr,
+      "tofmap: %d of %d pieces of furniture were rearranged: the scene lacks furniture and "
+      "free floor that the camera sees\n",
+      rearranged, wanted.rearranged);
 }
 
 Recording simulated(const std::string& scene, RecordingFormat format,

@@ -117,7 +117,7 @@ std::optional<ImageF> ImportedTruth::range_m(int index, Eigen::Index rows,
 
 void ImportedTruth::copy_to(const fs::path& sequence) const {
   if (folder_.empty()) return;
-  for (const char* name : {"groundtruth.txt", "scene.ply"}) {
+  for (const char* name : {"groundtruth.txt", "scene.ply", "furniture.json"}) {
     if (!is_there(folder_ / name)) continue;
     std::error_code error;
     fs::copy_file(folder_ / name, sequence / name, error);

@@ -42,8 +42,8 @@ class ImportedTruth {
   /// cannot be read or do not have this size.
   std::optional<ImageF> range_m(int index, Eigen::Index rows, Eigen::Index cols) const;
 
-  /// Copies groundtruth.txt and scene.ply, if they exist, into the folder of a sequence. Throws
-  /// InputError if a file cannot be copied.
+  /// Copies groundtruth.txt, scene.ply and furniture.json, if they exist, into the folder of a
+  /// sequence. Throws InputError if a file cannot be copied.
   void copy_to(const std::filesystem::path& sequence) const;
 
  private:

@@ -47,6 +47,18 @@ TEST_F(BadOptions, ValueOutOfRangeTellsWhatIsAllowed) {
                  {"filters.min_confidence", "'1.5'", "0 … 1"});
 }
 
+TEST_F(BadOptions, FurnitureIsRearrangedWithinLimits) {
+  const auto simulate = [&](const std::string& option) {
+    return run_program({"simulate", "wall", "--out", out_.string(), "--set", option});
+  };
+  const Finished many = simulate("simulator.rearranged=51");
+  EXPECT_EQ(many.status, 2);
+  EXPECT_THAT(many.err, HasSubstr("simulator.rearranged"));
+  EXPECT_THAT(many.err, HasSubstr("0 … 50"));
+  EXPECT_EQ(simulate("simulator.walk=-1").status, 2);
+  EXPECT_EQ(simulate("simulator.arrangement=-1").status, 2);
+}
+
 TEST_F(BadOptions, ValueThatIsNoNumberIsRefused) {
   expect_bad_use({"--set", "unwrap.max_range_m=nan"}, {"unwrap.max_range_m", "'nan'"});
   expect_bad_use({"--set", "unwrap.max_range_m=30m"}, {"unwrap.max_range_m", "'30m'"});

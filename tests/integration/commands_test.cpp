@@ -24,10 +24,10 @@ using testing::IsSupersetOf;
 class Commands : public WithRecording {};
 
 TEST_F(Commands, SimulateWritesAWholeSequence) {
-  EXPECT_THAT(
-      names_in(sequence_),
-      IsSupersetOf({"amplitude_a", "amplitude_b", "frames.txt", "groundtruth.txt", "options.yaml",
-                    "phase_a", "phase_b", "range_truth", "scene.ply", "sequence.yaml"}));
+  EXPECT_THAT(names_in(sequence_),
+              IsSupersetOf({"amplitude_a", "amplitude_b", "frames.txt", "furniture.json",
+                            "groundtruth.txt", "options.yaml", "phase_a", "phase_b", "range_truth",
+                            "scene.ply", "sequence.yaml"}));
   EXPECT_EQ(names_in(sequence_ / "phase_a").size(), frames);
 }
 
@@ -41,6 +41,28 @@ TEST_F(Commands, SimulateWritesWhatMovesAndNamesWhatFoundNoPlace) {
   // A room of 9 x 5 m lacks the walls for eight doors, 2 m apart, in view.
   EXPECT_THAT(finished.err, HasSubstr("of 8 doors found a place"));
   EXPECT_THAT(finished.err, Not(HasSubstr("people")));
+}
+
+TEST_F(Commands, SimulateRearrangesFurnitureAndSaysIfThereIsTooLittle) {
+  const auto simulate = [&](const std::string& scene, const std::string& count) {
+    return run_program({"simulate", scene, "--out", (folder_.path() / scene).string(), "--frames",
+                        "2", "--set", "simulator.width_px=44", "simulator.height_px=36",
+                        "simulator.rearranged=" + count, "simulator.walk=1"});
+  };
+  const Finished room = simulate("room", "3");
+  ASSERT_EQ(room.status, 0) << room.err;
+  EXPECT_EQ(room.err.find("furniture"), std::string::npos);
+  std::set<std::string> states;
+  const auto furniture = read_json(folder_.path() / "room" / "furniture.json");
+  for (const auto& piece : furniture.at("pieces")) states.insert(piece.at("state"));
+  EXPECT_EQ(states, (std::set<std::string>{"gone", "moved", "new", "same"}));
+  EXPECT_NE(read_text(folder_.path() / "room" / "scene.ply"), read_text(sequence_ / "scene.ply"));
+  EXPECT_NE(read_text(folder_.path() / "room" / "groundtruth.txt"),
+            read_text(sequence_ / "groundtruth.txt"));
+
+  const Finished slope = simulate("slope", "2");
+  ASSERT_EQ(slope.status, 0) << slope.err;
+  EXPECT_THAT(slope.err, HasSubstr("0 of 2 pieces of furniture were rearranged"));
 }
 
 TEST_F(Commands, SimulateRepeatsItselfFromTheOptionsItWrote) {

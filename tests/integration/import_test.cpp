@@ -117,6 +117,14 @@ TEST_F(Kinect2Import, OfASimulatedRecordingIsUnwrappedToTheTrueRanges) {
   EXPECT_GT(right, 0.95 * seen);
 }
 
+TEST_F(Kinect2Import, TakesTheTruthOfTheSceneAlong) {
+  ASSERT_EQ(import().status, 0);
+  for (const std::string file : {"scene.ply", "furniture.json"}) {
+    EXPECT_NE(read_text(recording_ / file), "") << file;
+    EXPECT_EQ(read_text(out_ / file), read_text(recording_ / file)) << file;
+  }
+}
+
 TEST_F(Kinect2Import, OfSaturatedPixelsLeavesThemSaturated) {
   recording_ = folder_.path() / "near";
   std::ofstream(folder_.path() / "poses.txt") << "0 0 0 0 0 0 0 1\n";

@@ -162,6 +162,7 @@ int simulate_kinect2(const Simulator& simulator, int errors_seed,
                                   "simulated-" + std::to_string(errors_seed));
   TruthWriter truth(folder);
   write_mesh_ply(folder / "scene.ply", simulator.surface());
+  write_furniture(folder / "furniture.json", simulator.furniture());
   const int total = *simulator.frame_count();
   for (int i = 0; i < total; ++i) {
     if (keep_going && !keep_going(i, total)) break;

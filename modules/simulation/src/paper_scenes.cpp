@@ -5,6 +5,7 @@
 // Behnke (IROS 2010). λ_A is 5.17 m at 29 MHz.
 
 #include "builtin_scenes.hpp"
+#include "furniture_shapes.hpp"
 
 namespace tofmap {
 
@@ -68,11 +69,10 @@ Scene slope_scene() {
 Scene beyond_scene() {
   Scene scene{.name = "beyond", .min_frames = 20, .max_range_m = 15.5};
   add_hull(scene.surface, {12, 13, 9}, 0.7, 0.8, 0.8);
-  TriangleMesh& mesh = scene.surface;
-  add_box(mesh, {6.5, 2, 0}, {8.5, 3.5, 1.2}, 0.8);
-  add_box(mesh, {8, 8.5, 0}, {9.2, 10.5, 2}, 0.6);
-  add_box(mesh, {5, 6, 0}, {6, 7.5, 0.8}, 0.9);
-  add_cylinder(mesh, {9.5, 6, 0}, 0.4, 4, 0.7);
+  add_piece(scene, "crate", box_shape({6.5, 2, 0}, {8.5, 3.5, 1.2}, 0.8));
+  add_piece(scene, "cupboard", box_shape({8, 8.5, 0}, {9.2, 10.5, 2}, 0.6));
+  add_piece(scene, "crate", box_shape({5, 6, 0}, {6, 7.5, 0.8}, 0.9));
+  add_cylinder(scene.surface, {9.5, 6, 0}, 0.4, 4, 0.7);
   scene.path = CameraPath({{{1.5, 6.2, 7}, {1, 0.02, -0.65}},
                            {{1.5, 6.4, 7}, {1, 0, -0.65}},
                            {{1.5, 6.6, 7}, {1, -0.02, -0.65}},
@@ -115,9 +115,9 @@ Scene corridor_scene() {
     add_box(mesh, {x, 0, 0}, {x + 0.35, 0.3, height}, 0.6);
     add_box(mesh, {x + 0.9, width - 0.25, 0}, {x + 1.2, width, height}, 0.65);
   }
-  add_box(mesh, {6.2, 0, 0}, {6.7, 0.4, 1.1}, 0.3);
-  add_box(mesh, {16.4, width - 0.45, 0}, {16.9, width, 0.9}, 0.35);
-  add_box(mesh, {11.9, width - 0.4, 0}, {12.3, width, 1.4}, 0.5);
+  add_piece(scene, "box", box_shape({6.2, 0, 0}, {6.7, 0.4, 1.1}, 0.3));
+  add_piece(scene, "box", box_shape({16.4, width - 0.45, 0}, {16.9, width, 0.9}, 0.35));
+  add_piece(scene, "box", box_shape({11.9, width - 0.4, 0}, {12.3, width, 1.4}, 0.5));
   std::vector<Waypoint> waypoints;
   for (int i = 0; i <= 8; ++i) {
     const double sway = i % 2 == 0 ? 0.12 : -0.12;

@@ -5,6 +5,7 @@
 // decades.
 
 #include "builtin_scenes.hpp"
+#include "furniture_shapes.hpp"
 
 #include <array>
 
@@ -46,17 +47,19 @@ void add_partition(TriangleMesh& mesh, const Opening& opening, double reflectanc
 }
 
 /// Adds dark objects at all ranges between the partitions and the far wall.
-void furnish_hall(TriangleMesh& mesh, double height) {
+void furnish_hall(Scene& scene, double height) {
+  TriangleMesh& mesh = scene.surface;
   for (const double x : {10.0, 14.0, 18.0}) {
     add_cylinder(mesh, {x, 4.2, 0}, 0.3, height, 0.12);
     add_cylinder(mesh, {x, 11.8, 0}, 0.3, height, 0.12);
   }
-  add_box(mesh, {11.2, 7.0, 0}, {12.4, 7.9, 0.8}, 0.25);
-  add_box(mesh, {15.0, 9.0, 0}, {16.2, 10.0, 1.7}, 0.1);
-  add_box(mesh, {19.0, 5.4, 0}, {19.6, 7.0, 2.2}, 0.15);
-  add_rotated_box(mesh, {12.5, 12.6, 0}, {14.0, 13.4, 1.2}, 0.5, 0.3);
-  add_rotated_box(mesh, {9.0, 2.0, 0}, {10.2, 3.0, 1.5}, 0.8, 0.2);
-  add_box(mesh, {21.9, 8.4, 1.0}, {22.0, 10.4, 2.4}, 0.3);
+  add_piece(scene, "crate", box_shape({11.2, 7.0, 0}, {12.4, 7.9, 0.8}, 0.25));
+  add_piece(scene, "crate", box_shape({15.0, 9.0, 0}, {16.2, 10.0, 1.7}, 0.1));
+  add_piece(scene, "cupboard", box_shape({19.0, 5.4, 0}, {19.6, 7.0, 2.2}, 0.15));
+  add_piece(scene, "crate", rotated_box_shape({12.5, 12.6, 0}, {14.0, 13.4, 1.2}, 0.5, 0.3));
+  add_piece(scene, "crate", rotated_box_shape({9.0, 2.0, 0}, {10.2, 3.0, 1.5}, 0.8, 0.2));
+  add_piece(scene, "board", box_shape({21.9, 8.4, 1.0}, {22.0, 10.4, 2.4}, 0.3),
+            FurniturePiece::on_wall);
   add_box(mesh, {8.0, 0, height - 0.5}, {8.4, 16, height}, 0.1);
   add_box(mesh, {13.0, 0, height - 0.5}, {13.4, 16, height}, 0.1);
 }
@@ -81,7 +84,7 @@ Scene passage_scene() {
   constexpr double height = 4.5;
   add_hull(scene.surface, {22, 16, height}, 0.12, 0.1, 0.08);
   for (const Opening& opening : openings) add_partition(scene.surface, opening, 0.9);
-  furnish_hall(scene.surface, height);
+  furnish_hall(scene, height);
   std::vector<Waypoint> waypoints{{{0.8, 8, 1.4}, {1, 0, 0}}};
   for (const Opening& opening : openings) go_through(waypoints, opening);
   waypoints.push_back({{8.6, 8, 1.4}, {1, 0, 0}});

@@ -4,7 +4,7 @@
 // Random rooms, to which no method was tuned. The same seed gives the same room.
 
 #include "builtin_scenes.hpp"
-#include "noise.hpp"
+#include "random_draw.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,47 +17,26 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A sequence of random numbers that the seed determines.
-class Draw {
- public:
-  explicit Draw(int seed) : key_(mix(static_cast<std::uint64_t>(seed) + 0x726f6f6dULL)) {}
-
-  double between(double low, double high) {
-    constexpr double unit = 0x1p-53;
-    return low + (high - low) * static_cast<double>(mix(key_ ^ mix(counter_++)) >> 11U) * unit;
-  }
-
-  /// A number whose logarithm is distributed uniformly.
-  double log_between(double low, double high) {
-    return std::exp(between(std::log(low), std::log(high)));
-  }
-
-  int index(int count) { return std::min(static_cast<int>(between(0, count)), count - 1); }
-
- private:
-  std::uint64_t key_;
-  std::uint64_t counter_ = 0;
-};
-
 /// A random reflectance, from black cloth to white paint.
-double reflectance(Draw& draw) { return draw.log_between(0.1, 0.95); }
+double reflectance(RandomDraw& draw) { return draw.log_between(0.1, 0.95); }
 
-Vector3d place_on_floor(Draw& draw, const Vector3d& room_m) {
+Vector3d place_on_floor(RandomDraw& draw, const Vector3d& room_m) {
   return {draw.between(0, room_m.x()), draw.between(0, room_m.y()), 0};
 }
 
-/// Adds a box with a random yaw between the heights `bottom_m` and `top_m`.
-void add_random_box(TriangleMesh& mesh, Draw& draw, const Vector3d& room_m, double bottom_m,
-                    double top_m) {
+/// A box with a random yaw between the heights `bottom_m` and `top_m`.
+TriangleMesh random_box(RandomDraw& draw, const Vector3d& room_m, double bottom_m, double top_m) {
   const Vector3d place = place_on_floor(draw, room_m);
   const Vector3d half(draw.log_between(0.05, 1), draw.log_between(0.05, 1), 0);
+  TriangleMesh mesh;
   add_rotated_box(mesh, place - half + Vector3d(0, 0, bottom_m),
                   place + half + Vector3d(0, 0, top_m), draw.between(0, std::numbers::pi),
                   reflectance(draw));
+  return mesh;
 }
 
 /// Adds a tilted board that stands on the floor.
-void add_board(TriangleMesh& mesh, Draw& draw, const Vector3d& room_m) {
+void add_board(TriangleMesh& mesh, RandomDraw& draw, const Vector3d& room_m) {
   const double yaw = draw.between(0, 2 * std::numbers::pi);
   const double tilt = draw.between(0.1, 1.4);
   const Vector3d along = draw.between(0.4, 2) * Vector3d(std::cos(yaw), std::sin(yaw), 0);
@@ -68,7 +47,7 @@ void add_board(TriangleMesh& mesh, Draw& draw, const Vector3d& room_m) {
 }
 
 /// Adds a wall across part of the room, with a door or a window.
-void add_partition(TriangleMesh& mesh, Draw& draw, const Vector3d& room_m) {
+void add_partition(TriangleMesh& mesh, RandomDraw& draw, const Vector3d& room_m) {
   const Vector3d from = place_on_floor(draw, room_m);
   const double length_m = draw.between(1.5, 0.6 * room_m.y());
   const double yaw = draw.index(4) * std::numbers::pi / 2;
@@ -81,17 +60,19 @@ void add_partition(TriangleMesh& mesh, Draw& draw, const Vector3d& room_m) {
   add_wall(mesh, from, to, top_m, 0.12, {opening}, reflectance(draw));
 }
 
-void add_thing(TriangleMesh& mesh, Draw& draw, const Vector3d& room_m) {
+/// Only boxes on the floor are furniture, which can be rearranged.
+void add_thing(Scene& scene, RandomDraw& draw, const Vector3d& room_m) {
+  TriangleMesh& mesh = scene.surface;
   switch (draw.index(8)) {
     case 0:
       add_cylinder(mesh, place_on_floor(draw, room_m), draw.log_between(0.03, 0.4), room_m.z(),
                    reflectance(draw));
       break;
     case 1:  // hangs from the ceiling
-      add_random_box(mesh, draw, room_m, draw.between(0.7, 0.97) * room_m.z(), room_m.z());
+      add_mesh(mesh, random_box(draw, room_m, draw.between(0.7, 0.97) * room_m.z(), room_m.z()));
       break;
     case 2:  // table top or shelf
-      add_random_box(mesh, draw, room_m, 0.72, 0.76);
+      add_mesh(mesh, random_box(draw, room_m, 0.72, 0.76));
       break;
     case 3:
       add_board(mesh, draw, room_m);
@@ -100,13 +81,13 @@ void add_thing(TriangleMesh& mesh, Draw& draw, const Vector3d& room_m) {
       add_partition(mesh, draw, room_m);
       break;
     default:
-      add_random_box(mesh, draw, room_m, 0, draw.log_between(0.2, 2.4));
+      add_piece(scene, "box", random_box(draw, room_m, 0, draw.log_between(0.2, 2.4)));
   }
 }
 
 /// A place at about eye height for the camera: the best of 100 random places, which has free space
 /// around it and is far from the middle of the room.
-Vector3d free_place(Draw& draw, const RayScene& rays, const Vector3d& room_m) {
+Vector3d free_place(RandomDraw& draw, const RayScene& rays, const Vector3d& room_m) {
   constexpr double wanted_m = 0.9;
   Vector3d best = room_m / 2;
   double best_score = 0;
@@ -124,7 +105,7 @@ Vector3d free_place(Draw& draw, const RayScene& rays, const Vector3d& room_m) {
 }
 
 /// A closed path near `place` that looks across the room, from side to side.
-CameraPath look_across(Draw& draw, const Vector3d& place, const Vector3d& room_m) {
+CameraPath look_across(RandomDraw& draw, const Vector3d& place, const Vector3d& room_m) {
   const Vector3d across = room_m / 2 - place;
   const double middle = std::atan2(across.y(), across.x());
   const double pitch = draw.between(-0.25, 0.15);
@@ -142,13 +123,13 @@ CameraPath look_across(Draw& draw, const Vector3d& place, const Vector3d& room_m
 }  // namespace
 
 Scene random_scene(int seed) {
-  Draw draw(seed);
+  RandomDraw draw(seed, 0x726f6f6dULL);
   const Vector3d room_m(draw.log_between(6, 30), draw.log_between(5, 20), draw.log_between(2.5, 8));
   Scene scene{.name = "random", .min_frames = 120};
   add_hull(scene.surface, room_m, draw.between(0.15, 0.8), draw.between(0.3, 0.9),
            draw.between(0.3, 0.85));
   const int things = 6 + draw.index(20);
-  for (int i = 0; i < things; ++i) add_thing(scene.surface, draw, room_m);
+  for (int i = 0; i < things; ++i) add_thing(scene, draw, room_m);
   const RayScene rays(scene.surface);
   scene.path = look_across(draw, free_place(draw, rays, room_m), room_m);
   scene.max_range_m = room_m.norm() + 0.1;

@@ -4,6 +4,7 @@
 // Furnished places for mapping.
 
 #include "builtin_scenes.hpp"
+#include "furniture_shapes.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -14,79 +15,40 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Adds a table top on four legs. The table fills the box from `min`, on the floor, to `max`.
-void add_table(TriangleMesh& mesh, const Vector3d& min, const Vector3d& max, double reflectance) {
-  constexpr double top = 0.05;
-  constexpr double leg = 0.08;
-  add_box(mesh, {min.x(), min.y(), max.z() - top}, max, reflectance);
-  for (const double x : {min.x(), max.x() - leg}) {
-    for (const double y : {min.y(), max.y() - leg}) {
-      add_box(mesh, {x, y, 0}, {x + leg, y + leg, max.z() - top}, 0.7 * reflectance);
-    }
-  }
-}
+void furnish_room(Scene& scene) {
+  const int on_wall = FurniturePiece::on_wall;
+  add_piece(scene, "shelf", shelf_shape({0.6, 0.02, 0}, {2.6, 0.42, 2.1}, true, 0.6));
+  add_piece(scene, "shelf", shelf_shape({8.6, 8.58, 0}, {10.8, 8.98, 2.2}, false, 0.5));
+  add_piece(scene, "wardrobe", box_shape({3.4, 0.02, 0}, {4.6, 0.62, 1.9}, 0.75));
+  add_piece(scene, "sofa", sofa_shape({5.4, 0.05, 0}, {7.6, 0.95, 0.85}, 0.35));
+  add_piece(scene, "chest of drawers", box_shape({8.4, 0.02, 0}, {9.6, 0.5, 0.9}, 0.65));
+  add_piece(scene, "cupboard", box_shape({11.35, 1.5, 0}, {11.98, 3.1, 1.3}, 0.55));
+  const int board =
+      add_piece(scene, "wall board", box_shape({11.5, 5.2, 0.7}, {11.98, 7.0, 0.76}, 0.8), on_wall);
+  add_piece(scene, "screen", box_shape({11.6, 5.6, 0.76}, {11.8, 6.4, 1.3}, 0.15), board);
+  add_piece(scene, "wardrobe", box_shape({0.02, 5.6, 0}, {0.6, 7.6, 2.0}, 0.7));
+  const int crate =
+      add_piece(scene, "crate", rotated_box_shape({0.5, 2.2, 0}, {1.2, 2.9, 0.7}, 0.5, 0.45));
+  add_piece(scene, "crate", rotated_box_shape({0.55, 2.3, 0.7}, {1.05, 2.8, 1.1}, 0.9, 0.5), crate);
+  add_piece(scene, "chest", rotated_box_shape({10.6, 7.2, 0}, {11.3, 8.0, 0.9}, 0.35, 0.4));
+  const int sideboard =
+      add_piece(scene, "sideboard", box_shape({2.2, 8.4, 0}, {4.4, 8.98, 0.8}, 0.6));
+  add_piece(scene, "screen", box_shape({2.6, 8.6, 0.8}, {3.9, 8.75, 1.55}, 0.12), sideboard);
+  add_piece(scene, "cupboard", box_shape({5.6, 8.7, 0}, {6.6, 8.98, 2.1}, 0.3));
 
-void add_chair(TriangleMesh& mesh, const Vector3d& seat, double yaw_rad, double reflectance) {
-  const Vector3d half(0.22, 0.22, 0);
-  add_rotated_box(mesh, seat - half + Vector3d(0, 0, 0.40), seat + half + Vector3d(0, 0, 0.46),
-                  yaw_rad, reflectance);
-  const Vector3d back = seat + Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()) * Vector3d(-0.2, 0, 0);
-  add_rotated_box(mesh, back + Vector3d(-0.03, -0.22, 0.46), back + Vector3d(0.03, 0.22, 0.95),
-                  yaw_rad, reflectance);
-  add_cylinder(mesh, seat, 0.05, 0.4, reflectance);
-}
-
-/// Adds open shelves: a back, two sides and boards. The open side faces +y if `faces_y`, otherwise
-/// −y.
-void add_shelf(TriangleMesh& mesh, const Vector3d& min, const Vector3d& max, bool faces_y,
-               double reflectance) {
-  constexpr double board = 0.03;
-  const double back = faces_y ? min.y() : max.y() - board;
-  add_box(mesh, {min.x(), back, min.z()}, {max.x(), back + board, max.z()}, 0.8 * reflectance);
-  add_box(mesh, min, {min.x() + board, max.y(), max.z()}, reflectance);
-  add_box(mesh, {max.x() - board, min.y(), min.z()}, max, reflectance);
-  constexpr int boards = 5;
-  for (int i = 0; i < boards; ++i) {
-    const double z = min.z() + i * (max.z() - min.z() - board) / (boards - 1);
-    add_box(mesh, {min.x(), min.y(), z}, {max.x(), max.y(), z + board}, reflectance);
-  }
-}
-
-void add_sofa(TriangleMesh& mesh, const Vector3d& min, const Vector3d& max, double reflectance) {
-  add_box(mesh, min, {max.x(), max.y(), 0.42}, reflectance);
-  add_box(mesh, {min.x(), min.y(), 0.42}, {max.x(), min.y() + 0.22, max.z()}, reflectance);
-  add_box(mesh, {min.x(), min.y(), 0.42}, {min.x() + 0.2, max.y(), 0.6}, reflectance);
-  add_box(mesh, {max.x() - 0.2, min.y(), 0.42}, {max.x(), max.y(), 0.6}, reflectance);
-}
-
-void furnish_room(TriangleMesh& mesh) {
-  add_shelf(mesh, {0.6, 0.02, 0}, {2.6, 0.42, 2.1}, true, 0.6);
-  add_shelf(mesh, {8.6, 8.58, 0}, {10.8, 8.98, 2.2}, false, 0.5);
-  add_box(mesh, {3.4, 0.02, 0}, {4.6, 0.62, 1.9}, 0.75);
-  add_sofa(mesh, {5.4, 0.05, 0}, {7.6, 0.95, 0.85}, 0.35);
-  add_box(mesh, {8.4, 0.02, 0}, {9.6, 0.5, 0.9}, 0.65);
-  add_box(mesh, {11.35, 1.5, 0}, {11.98, 3.1, 1.3}, 0.55);
-  add_box(mesh, {11.5, 5.2, 0.7}, {11.98, 7.0, 0.76}, 0.8);
-  add_box(mesh, {11.6, 5.6, 0.76}, {11.8, 6.4, 1.3}, 0.15);
-  add_box(mesh, {0.02, 5.6, 0}, {0.6, 7.6, 2.0}, 0.7);
-  add_rotated_box(mesh, {0.5, 2.2, 0}, {1.2, 2.9, 0.7}, 0.5, 0.45);
-  add_rotated_box(mesh, {0.55, 2.3, 0.7}, {1.05, 2.8, 1.1}, 0.9, 0.5);
-  add_rotated_box(mesh, {10.6, 7.2, 0}, {11.3, 8.0, 0.9}, 0.35, 0.4);
-  add_box(mesh, {2.2, 8.4, 0}, {4.4, 8.98, 0.8}, 0.6);
-  add_box(mesh, {2.6, 8.6, 0.8}, {3.9, 8.75, 1.55}, 0.12);
-  add_box(mesh, {5.6, 8.7, 0}, {6.6, 8.98, 2.1}, 0.3);
-
-  add_table(mesh, {4.9, 3.9, 0}, {7.1, 5.1, 0.75}, 0.6);
-  add_chair(mesh, {5.4, 3.6, 0}, 1.4, 0.45);
-  add_chair(mesh, {6.6, 3.55, 0}, 1.7, 0.45);
-  add_chair(mesh, {5.5, 5.45, 0}, -1.5, 0.45);
-  add_chair(mesh, {6.7, 5.4, 0}, -1.9, 0.45);
-  add_box(mesh, {5.7, 4.3, 0.75}, {6.0, 4.6, 1.0}, 0.85);
+  const int table = add_piece(scene, "table", table_shape({4.9, 3.9, 0}, {7.1, 5.1, 0.75}, 0.6));
+  add_piece(scene, "chair", chair_shape({5.4, 3.6, 0}, 1.4, 0.45));
+  add_piece(scene, "chair", chair_shape({6.6, 3.55, 0}, 1.7, 0.45));
+  add_piece(scene, "chair", chair_shape({5.5, 5.45, 0}, -1.5, 0.45));
+  add_piece(scene, "chair", chair_shape({6.7, 5.4, 0}, -1.9, 0.45));
+  add_piece(scene, "box", box_shape({5.7, 4.3, 0.75}, {6.0, 4.6, 1.0}, 0.85), table);
   // Pillars, a floor lamp and a beam under the ceiling.
+  TriangleMesh& mesh = scene.surface;
   add_box(mesh, {3.0, 4.2, 0}, {3.4, 4.6, 3}, 0.7);
   add_cylinder(mesh, {8.8, 4.6, 0}, 0.22, 3, 0.65);
-  add_cylinder(mesh, {1.0, 8.2, 0}, 0.03, 1.6, 0.5);
-  add_cylinder(mesh, {1.0, 8.2, 1.6}, 0.2, 0.3, 0.9);
+  TriangleMesh lamp = cylinder_shape({1.0, 8.2, 0}, 0.03, 1.6, 0.5);
+  add_cylinder(lamp, {1.0, 8.2, 1.6}, 0.2, 0.3, 0.9);
+  add_piece(scene, "lamp", lamp);
   add_box(mesh, {7.8, 0, 2.7}, {8.1, 9, 3}, 0.7);
 }
 
@@ -108,32 +70,34 @@ void add_flat_walls(TriangleMesh& mesh) {
   add_wall(mesh, {5, 4, 0}, {10, 4, 0}, height, 0.12, {{2.0, 3.1, 0, 2.1}}, 0.65);
 }
 
-void furnish_flat(TriangleMesh& mesh) {
+void furnish_flat(Scene& scene) {
+  const int on_wall = FurniturePiece::on_wall;
   // Living room, lower left.
-  add_sofa(mesh, {0.8, 0.05, 0}, {2.8, 0.9, 0.8}, 0.35);
-  add_table(mesh, {0.9, 1.3, 0}, {1.7, 1.8, 0.45}, 0.6);
-  add_box(mesh, {0.02, 2.4, 0}, {0.42, 3.8, 1.0}, 0.55);
-  add_shelf(mesh, {3.4, 0.02, 0}, {4.7, 0.37, 2.0}, true, 0.55);
-  add_cylinder(mesh, {4.5, 3.5, 0}, 0.18, 1.5, 0.5);
+  add_piece(scene, "sofa", sofa_shape({0.8, 0.05, 0}, {2.8, 0.9, 0.8}, 0.35));
+  add_piece(scene, "low table", table_shape({0.9, 1.3, 0}, {1.7, 1.8, 0.45}, 0.6));
+  add_piece(scene, "sideboard", box_shape({0.02, 2.4, 0}, {0.42, 3.8, 1.0}, 0.55));
+  add_piece(scene, "shelf", shelf_shape({3.4, 0.02, 0}, {4.7, 0.37, 2.0}, true, 0.55));
+  add_piece(scene, "plant", cylinder_shape({4.5, 3.5, 0}, 0.18, 1.5, 0.5));
   // Kitchen, lower right.
-  add_box(mesh, {6.2, 0.02, 0}, {9.98, 0.62, 0.9}, 0.75);
-  add_box(mesh, {7.4, 0.02, 1.45}, {9.98, 0.37, 2.2}, 0.7);
-  add_box(mesh, {9.3, 0.62, 0}, {9.98, 1.3, 1.9}, 0.85);
-  add_table(mesh, {8.7, 2.3, 0}, {9.9, 3.2, 0.75}, 0.6);
-  add_chair(mesh, {8.4, 2.7, 0}, 0.2, 0.45);
-  add_box(mesh, {5.25, 3.3, 0}, {6.0, 3.85, 1.2}, 0.45);
+  add_piece(scene, "kitchen unit", box_shape({6.2, 0.02, 0}, {9.98, 0.62, 0.9}, 0.75));
+  add_piece(scene, "wall cupboard", box_shape({7.4, 0.02, 1.45}, {9.98, 0.37, 2.2}, 0.7), on_wall);
+  add_piece(scene, "fridge", box_shape({9.3, 0.62, 0}, {9.98, 1.3, 1.9}, 0.85));
+  add_piece(scene, "table", table_shape({8.7, 2.3, 0}, {9.9, 3.2, 0.75}, 0.6));
+  add_piece(scene, "chair", chair_shape({8.4, 2.7, 0}, 0.2, 0.45));
+  add_piece(scene, "cupboard", box_shape({5.25, 3.3, 0}, {6.0, 3.85, 1.2}, 0.45));
   // Study, upper right.
-  add_table(mesh, {8.6, 7.2, 0}, {9.95, 7.95, 0.75}, 0.55);
-  add_box(mesh, {9.0, 7.6, 0.75}, {9.6, 7.7, 1.2}, 0.12);
-  add_shelf(mesh, {5.4, 7.6, 0}, {7.4, 7.97, 2.1}, false, 0.5);
-  add_box(mesh, {9.4, 4.6, 0}, {9.98, 6.0, 1.8}, 0.7);
-  add_rotated_box(mesh, {5.5, 4.4, 0}, {6.2, 5.0, 0.6}, 0.4, 0.4);
+  const int desk = add_piece(scene, "desk", table_shape({8.6, 7.2, 0}, {9.95, 7.95, 0.75}, 0.55));
+  add_piece(scene, "screen", box_shape({9.0, 7.6, 0.75}, {9.6, 7.7, 1.2}, 0.12), desk);
+  add_piece(scene, "shelf", shelf_shape({5.4, 7.6, 0}, {7.4, 7.97, 2.1}, false, 0.5));
+  add_piece(scene, "cupboard", box_shape({9.4, 4.6, 0}, {9.98, 6.0, 1.8}, 0.7));
+  add_piece(scene, "crate", rotated_box_shape({5.5, 4.4, 0}, {6.2, 5.0, 0.6}, 0.4, 0.4));
   // Bedroom, upper left.
-  add_box(mesh, {0.05, 5.0, 0}, {1.5, 7.0, 0.5}, 0.8);
-  add_box(mesh, {0.02, 5.0, 0.5}, {0.1, 7.0, 1.1}, 0.4);
-  add_box(mesh, {0.4, 7.4, 0}, {2.6, 7.97, 2.1}, 0.65);
-  add_box(mesh, {3.9, 4.2, 0}, {4.8, 4.75, 0.9}, 0.5);
-  add_box(mesh, {4.1, 7.3, 0}, {4.85, 7.95, 1.3}, 0.6);
+  TriangleMesh bed = box_shape({0.05, 5.0, 0}, {1.5, 7.0, 0.5}, 0.8);
+  add_box(bed, {0.02, 5.0, 0.5}, {0.1, 7.0, 1.1}, 0.4);
+  add_piece(scene, "bed", bed);
+  add_piece(scene, "wardrobe", box_shape({0.4, 7.4, 0}, {2.6, 7.97, 2.1}, 0.65));
+  add_piece(scene, "chest of drawers", box_shape({3.9, 4.2, 0}, {4.8, 4.75, 0.9}, 0.5));
+  add_piece(scene, "chest of drawers", box_shape({4.1, 7.3, 0}, {4.85, 7.95, 1.3}, 0.6));
 }
 
 }  // namespace
@@ -141,7 +105,7 @@ void furnish_flat(TriangleMesh& mesh) {
 Scene room_scene() {
   Scene scene{.name = "room", .min_frames = 150, .max_range_m = 15.5};
   add_hull(scene.surface, {12, 9, 3}, 0.45, 0.8, 0.7);
-  furnish_room(scene.surface);
+  furnish_room(scene);
   // A closed loop around the middle of the room. The camera looks across it, at the opposite side.
   const Vector3d middle(6, 4.5, 1.4);
   std::vector<Waypoint> waypoints;
@@ -160,7 +124,7 @@ Scene room_scene() {
 Scene flat_scene() {
   Scene scene{.name = "flat", .min_frames = 300, .max_range_m = 13};
   add_flat_walls(scene.surface);
-  furnish_flat(scene.surface);
+  furnish_flat(scene);
   constexpr double eye = 1.4;
   std::vector<Waypoint> waypoints;
   pass_through(waypoints, {5, 2.05, eye}, Vector3d::UnitX());
@@ -188,14 +152,14 @@ Scene hall_scene() {
   for (const double x : {2.2, 4.5, 6.8}) {
     add_cylinder(mesh, {x, 1.1, 0}, 0.18, 3.2, 0.7);
     add_box(mesh, {x - 0.15, 4.25, 0}, {x + 0.15, 4.55, 3.2}, 0.6);
-    add_box(mesh, {x - 1.0, 5.05, 0}, {x + 0.4, 5.45, 0.45}, 0.35);
+    add_piece(scene, "bench", box_shape({x - 1.0, 5.05, 0}, {x + 0.4, 5.45, 0.45}, 0.35));
     add_box(mesh, {x - 0.2, 0, 2.8}, {x + 0.2, 5.5, 3.2}, 0.75);
   }
-  add_shelf(mesh, {0.6, 0.02, 0}, {2.0, 0.4, 1.9}, true, 0.5);
-  add_shelf(mesh, {7.2, 0.02, 0}, {8.6, 0.4, 1.9}, true, 0.3);
-  add_box(mesh, {8.6, 2.0, 0}, {8.98, 3.4, 2.1}, 0.2);
-  add_table(mesh, {4.0, 2.2, 0}, {5.4, 3.0, 0.75}, 0.55);
-  add_cylinder(mesh, {8.2, 4.8, 0}, 0.03, 1.9, 0.4);
+  add_piece(scene, "shelf", shelf_shape({0.6, 0.02, 0}, {2.0, 0.4, 1.9}, true, 0.5));
+  add_piece(scene, "shelf", shelf_shape({7.2, 0.02, 0}, {8.6, 0.4, 1.9}, true, 0.3));
+  add_piece(scene, "cupboard", box_shape({8.6, 2.0, 0}, {8.98, 3.4, 2.1}, 0.2));
+  add_piece(scene, "table", table_shape({4.0, 2.2, 0}, {5.4, 3.0, 0.75}, 0.55));
+  add_piece(scene, "coat stand", cylinder_shape({8.2, 4.8, 0}, 0.03, 1.9, 0.4));
   std::vector<Waypoint> waypoints;
   constexpr int count = 12;
   for (int i = 0; i < count; ++i) {
@@ -226,12 +190,13 @@ Scene atrium_scene() {
   for (double x = 4; x < length - 2; x += 5) {
     add_cylinder(mesh, {x, 2.4, 0}, 0.3, height, 0.9);
     add_box(mesh, {x - 0.25, width - 2.9, 0}, {x + 0.25, width - 2.4, height}, 0.85);
-    add_box(mesh, {x - 0.6, 7.0, 0}, {x + 0.6, 8.2, 0.5}, 0.5);
-    add_cylinder(mesh, {x + 1.5, 11.2, 0}, 0.45, 0.9, 0.3);
-    add_cylinder(mesh, {x + 1.5, 11.2, 0.9}, 0.12, 2.4, 0.35);
+    add_piece(scene, "bench", box_shape({x - 0.6, 7.0, 0}, {x + 0.6, 8.2, 0.5}, 0.5));
+    TriangleMesh plant = cylinder_shape({x + 1.5, 11.2, 0}, 0.45, 0.9, 0.3);
+    add_cylinder(plant, {x + 1.5, 11.2, 0.9}, 0.12, 2.4, 0.35);
+    add_piece(scene, "plant", plant);
   }
-  add_box(mesh, {19, 8.2, 0}, {22, 10.6, 2.4}, 0.55);
-  add_box(mesh, {12, 4.6, 0}, {13.2, 5.4, 1.1}, 0.85);
+  add_piece(scene, "kiosk", box_shape({19, 8.2, 0}, {22, 10.6, 2.4}, 0.55));
+  add_piece(scene, "counter", box_shape({12, 4.6, 0}, {13.2, 5.4, 1.1}, 0.85));
   // Stairs to the first gallery.
   for (int step = 0; step < 12; ++step) {
     const double x = 23 + 0.32 * step;

@@ -21,6 +21,7 @@
 #include <tofmap/acquisition/sequence.hpp>
 #include <tofmap/core/error.hpp>
 #include <tofmap/simulation/pixel_label.hpp>
+#include <tofmap/simulation/rearrangement.hpp>
 
 namespace tofmap {
 namespace {
@@ -84,6 +85,36 @@ CameraMotion camera_motion(const Scene& scene, const SimulatorOptions& options) 
                      delay_shares(options));
 }
 
+/// The scene with its furniture rearranged and with the walk of the options.
+Scene arranged(Scene scene, const SimulatorOptions& options) {
+  if (options.walk != 0 && !options.trajectory_file.empty()) {
+    throw UsageError(
+        "simulator.walk varies the path of the scene, which simulator.trajectory_file replaces; "
+        "leave one of them out");
+  }
+  scene = rearranged(std::move(scene), options.rearranged, options.arrangement);
+  if (options.walk == 0) return scene;
+  scene.path = other_walk(scene, options.walk);
+  // The walk may lead farther away from surfaces than the path of the scene.
+  constexpr double max_written_range_m = 65.5;
+  scene.max_range_m = std::max(
+      scene.max_range_m, std::min(bounds(scene.surface).diagonal().norm(), max_written_range_m));
+  return scene;
+}
+
+/// Throws UsageError if a pose is inside a piece that was put in or moved.
+void refuse_way_through_furniture(const Trajectory& poses,
+                                  const std::vector<FurniturePiece>& furniture) {
+  for (const FurniturePiece& piece : furniture) {
+    if (piece.state != PieceState::added && piece.state != PieceState::moved) continue;
+    for (const StampedPose& pose : poses) {
+      if (!piece.box.contains(pose.world_from_camera.translation())) continue;
+      throw UsageError("simulator.trajectory_file leads through the rearranged piece '" +
+                       piece.name + "'; choose another simulator.arrangement");
+    }
+  }
+}
+
 /// The rays of a scene, to whose surface the frames of doors are added.
 RayScene with_frames(Scene& scene, const MovingBodies& bodies) {
   bodies.add_frames(scene.surface);
@@ -93,8 +124,8 @@ RayScene with_frames(Scene& scene, const MovingBodies& bodies) {
 }  // namespace
 
 Simulator::Simulator(Scene scene, const SimulatorOptions& options, std::function<bool()> keep_going)
-    : scene_(std::move(scene)),
-      options_(checked_options(options)),
+    : options_(checked_options(options)),
+      scene_(arranged(std::move(scene), options_)),
       sensor_(sensor_model(options_)),
       reach_m_(options_.max_range_m > 0 ? options_.max_range_m : scene_.max_range_m),
       motion_(camera_motion(scene_, options_)),
@@ -102,7 +133,9 @@ Simulator::Simulator(Scene scene, const SimulatorOptions& options, std::function
       ray_scene_(with_frames(scene_, bodies_)),
       rays_(subpixel_rays(sensor_.camera, options_.subpixels)),
       noise_sigma_(noise_strength(options_.range_noise_m, sensor_.modulation)),
-      keep_going_(std::move(keep_going)) {}
+      keep_going_(std::move(keep_going)) {
+  if (!options_.trajectory_file.empty()) refuse_way_through_furniture(trajectory(), furniture());
+}
 
 std::optional<SourcedFrame> Simulator::next() {
   if (next_index_ >= *frame_count()) return std::nullopt;
@@ -345,6 +378,7 @@ int simulate_sequence(const Simulator& simulator, const std::filesystem::path& f
                       const std::function<bool(int done, int total)>& keep_going) {
   SequenceWriter writer(folder, simulator.sensor());
   write_mesh_ply(folder / "scene.ply", simulator.surface());
+  write_furniture(folder / "furniture.json", simulator.furniture());
   const int total = *simulator.frame_count();
   for (int i = 0; i < total; ++i) {
     if (keep_going && !keep_going(i, total)) break;

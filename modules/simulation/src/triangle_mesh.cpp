@@ -41,6 +41,16 @@ Eigen::AlignedBox3d bounds(const TriangleMesh& mesh) {
   return box;
 }
 
+void add_mesh(TriangleMesh& mesh, const TriangleMesh& other) {
+  const auto offset = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+  mesh.reflectance.insert(mesh.reflectance.end(), other.reflectance.begin(),
+                          other.reflectance.end());
+  for (const auto& [a, b, c] : other.triangles) {
+    mesh.triangles.push_back({a + offset, b + offset, c + offset});
+  }
+}
+
 void add_quad(TriangleMesh& mesh, const Vector3d& c, const Vector3d& a, const Vector3d& b,
               double reflectance) {
   const std::uint32_t i = add_vertex(mesh, c, reflectance);

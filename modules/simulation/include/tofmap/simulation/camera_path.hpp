@@ -42,6 +42,7 @@ class CameraPath {
 
   bool empty() const { return waypoints_.empty(); }
   bool closed() const { return closed_; }
+  const std::vector<Waypoint>& waypoints() const { return waypoints_; }
 
   /// The largest value of the spline parameter.
   double end() const;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <tofmap/simulation/camera_path.hpp>
+#include <tofmap/simulation/furniture.hpp>
 #include <tofmap/simulation/triangle_mesh.hpp>
 
 namespace tofmap {
@@ -18,7 +19,14 @@ struct Scene {
   CameraPath path = {};
   int min_frames = 0;      ///< smallest number of frames of a recording of the whole path
   double max_range_m = 0;  ///< rays from the path end here if the simulator has no other limit
+  std::vector<FurniturePiece> furniture = {};  ///< parts of the surface that can be rearranged
 };
+
+/// Adds the triangles of `shape` to the surface of the scene as a piece of furniture, and returns
+/// its index in Scene::furniture. `on` is what carries it (FurniturePiece::on). A number is
+/// appended to the name if the scene has a piece of that name.
+int add_piece(Scene& scene, const std::string& name, const TriangleMesh& shape,
+              int on = FurniturePiece::on_floor);
 
 /// The names of the built-in scenes.
 const std::vector<std::string>& scene_names();

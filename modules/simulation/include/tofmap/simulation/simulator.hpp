@@ -159,6 +159,20 @@ struct SimulatorOptions {
   /// the path of the scene.
   std::string trajectory_file;
 
+  /// Seed of another walk through the scene, 0 or larger (other_walk()). 0: the path of the scene.
+  /// It must be 0 if there is a trajectory file.
+  int walk = 0;
+
+  // Furniture.
+
+  /// Number of pieces of furniture that are taken away, put in anew or moved, 0 … 50
+  /// (tofmap/simulation/rearrangement.hpp). There are fewer where the scene lacks furniture and
+  /// free floor in view.
+  int rearranged = 0;
+
+  /// Seed of what is rearranged and where, 0 or larger.
+  int arrangement = 1;
+
   // What moves.
 
   /// Largest number of people, 0 … 8. There are fewer where the scene lacks free space.
@@ -217,8 +231,9 @@ class Simulator final : public FrameSource {
  public:
   /// `keep_going` is called before every row of an image, from several threads. Once it returns
   /// false, the present frame stays unfinished, and next() returns no more frames. Throws
-  /// UsageError if an option is not allowed or the scene has no triangle, and InputError if the
-  /// trajectory file cannot be read or has no poses.
+  /// UsageError if an option is not allowed, the scene has no triangle, or a trajectory file is
+  /// combined with `walk` or leads through rearranged furniture, and InputError if that file cannot
+  /// be read or has no poses.
   Simulator(Scene scene, const SimulatorOptions& options, std::function<bool()> keep_going = {});
 
   /// The sensor. Its max_range_m is that of the options: a camera does not know the size of the
@@ -247,6 +262,9 @@ class Simulator final : public FrameSource {
 
   /// The surface that does not move, with the frames of doors.
   const TriangleMesh& surface() const { return scene_.surface; }
+
+  /// The furniture of the scene, which is part of surface().
+  const std::vector<FurniturePiece>& furniture() const { return scene_.furniture; }
   const RayScene& rays() const { return ray_scene_; }
 
   /// What moves.
@@ -276,8 +294,8 @@ class Simulator final : public FrameSource {
   struct Truth;
   Truth cast_truth(int index) const;
 
-  Scene scene_;
   SimulatorOptions options_;
+  Scene scene_;  ///< with its furniture rearranged, and the walk of the options
   SensorModel sensor_;
   double reach_m_ = 0;  ///< range at which rays end
   CameraMotion motion_;
@@ -289,11 +307,11 @@ class Simulator final : public FrameSource {
   std::function<bool()> keep_going_;
 };
 
-/// Writes all frames as a sequence, with groundtruth.txt, range_truth/, label_truth/, scene.ply
-/// and, if something moves, moving_truth/, into a new or empty folder. `keep_going(done, total)` is
-/// called before each frame. If it returns false, or if the simulator is stopped, the frames so far
-/// remain as a complete sequence. Returns the number of frames written. Throws InputError if a file
-/// cannot be written.
+/// Writes all frames as a sequence, with groundtruth.txt, range_truth/, label_truth/, scene.ply,
+/// furniture.json and, if something moves, moving_truth/, into a new or empty folder.
+/// `keep_going(done, total)` is called before each frame. If it returns false, or if the simulator
+/// is stopped, the frames so far remain as a complete sequence. Returns the number of frames
+/// written. Throws InputError if a file cannot be written.
 int simulate_sequence(const Simulator& simulator, const std::filesystem::path& folder,
                       const std::function<bool(int done, int total)>& keep_going = {});
 

@@ -23,6 +23,9 @@ struct TriangleMesh {
 /// The axis-aligned bounding box of all vertices. Empty if there are none.
 Eigen::AlignedBox3d bounds(const TriangleMesh& mesh);
 
+/// Adds all vertices and triangles of another mesh.
+void add_mesh(TriangleMesh& mesh, const TriangleMesh& other);
+
 /// Adds a parallelogram with the corners c, c + a, c + a + b, c + b, metres.
 void add_quad(TriangleMesh& mesh, const Eigen::Vector3d& c, const Eigen::Vector3d& a,
               const Eigen::Vector3d& b, double reflectance);
