@@ -90,8 +90,8 @@ Json report_json(const MergeArguments& arguments, const MergedMaps& merged, int 
                               {"joined", bool{merged.is_joined[i]}},
                               {"keyframes", nearness.keyframes},
                               {"recognised", nearness.recognised},
-                              {"ambiguous", nearness.ambiguous},
-                              {"agreeing", nearness.agreeing}});
+                              {"agreeing", nearness.agreeing},
+                              {"ambiguous", nearness.is_ambiguous}});
   }
   report["changes"] = changes_json(content.changes, content.recordings);
   return report;
@@ -132,11 +132,13 @@ int run_merge(const MergeArguments& arguments) {
   OutputFolder out(arguments.out);
   const bool quiet = arguments.common.quiet;
   Progress progress("comparing map", static_cast<int>(arguments.maps.size()), quiet);
-  const MergedMaps merged = merge_maps(std::move(input.maps), options.pipeline.loops,
-                                       options.pipeline.registration, [&](std::size_t i) {
-                                         stop_if_interrupted();
-                                         progress.show(static_cast<int>(i));
-                                       });
+  const OdometryOptions& odometry = options.pipeline.odometry;
+  const MergedMaps merged = merge_maps(
+      std::move(input.maps), {odometry.keyframe_translation_m, odometry.keyframe_rotation_rad},
+      options.pipeline.loops, options.pipeline.registration, [&](std::size_t i) {
+        stop_if_interrupted();
+        progress.show(static_cast<int>(i));
+      });
   const bool is_any_joined = std::ranges::count(merged.is_joined, true) > 1;
   for (std::size_t i = 0; i < arguments.maps.size(); ++i) {
     if (merged.is_joined[i]) continue;

@@ -52,6 +52,7 @@ OptionTable option_table(const std::string& command, ProgramOptions& options) {
     bind_options(table, options.pipeline);
   } else if (is_any_of({"merge"})) {
     table.bind("registration", options.pipeline.registration);
+    table.bind("odometry", options.pipeline.odometry);
     table.bind("loops", options.pipeline.loops);
   } else if (is_any_of({"calibrate"})) {
     table.bind("unwrap", options.pipeline.unwrap);

@@ -18,9 +18,11 @@ std::string told(int keyframes) { return counted(static_cast<std::size_t>(keyfra
 
 std::string told_nearness(const MapNearness& nearness) {
   return fmt::format(
-      "of {} that were compared, {} recognised a place with certainty, {} of which agree with each "
-      "other; {} must",
-      told(nearness.keyframes), nearness.recognised, nearness.agreeing, least_agreeing_keyframes);
+      "of {} that were compared, {} may see places of it, {} of which agree on one; {} must, "
+      "without "
+      "contradicting it{}",
+      told(nearness.keyframes), nearness.recognised, nearness.agreeing, least_agreeing_keyframes,
+      nearness.is_ambiguous ? ". Another place is as likely" : "");
 }
 
 std::string told_refusal(const MapNearness& nearness, std::size_t frames) {
@@ -32,13 +34,7 @@ std::string told_refusal(const MapNearness& nearness, std::size_t frames) {
            "map' of the recording by itself says why";
   }
   const std::string near = refused + told_nearness(nearness);
-  if (nearness.ambiguous > nearness.recognised) {
-    return near +
-           fmt::format(
-               ". {} may be at several places, which look alike; say where the camera begins "
-               "with --start",
-               told(nearness.ambiguous));
-  }
+  if (nearness.is_ambiguous) return near + "; say where the camera begins with --start";
   return near +
          ". The recording shows another place, or the same from where the map was not seen from";
 }

@@ -21,6 +21,9 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+const KeyframeSpacing spacing{OdometryOptions().keyframe_translation_m,
+                              OdometryOptions().keyframe_rotation_rad};
+
 /// The map of a part of the path through a scene.
 MapContent mapped(const test::Scenery& scene, int first, int end, const std::string& added,
                   const SurfaceMapOptions& surface = {}) {
@@ -60,7 +63,7 @@ TEST_F(MergedRoom, IsTheSameInAnyOrder) {
   for (const auto& order : std::vector<std::vector<int>>{{0, 1, 2}, {2, 0, 1}, {0, 2, 1}}) {
     std::vector<MapContent> parts;
     for (const int i : order) parts.push_back(part(i));
-    const MergedMaps merged = merge_maps(std::move(parts), {}, {});
+    const MergedMaps merged = merge_maps(std::move(parts), spacing, {}, {});
     EXPECT_THAT(merged.is_joined, ElementsAre(true, true, true));
     EXPECT_EQ(merged.content.frames.size(), 3 * frames);
     EXPECT_LT(worst_error_m(merged.content, begins[order.front()]), 0.01);
@@ -76,7 +79,7 @@ TEST_F(MergedRoom, IsTheSameInAnyOrder) {
 TEST_F(MergedRoom, DoesNotHoldAnotherPlace) {
   const test::Scenery other("flat");
   std::vector<MapContent> parts{part(0), mapped(other, 0, frames, "other"), part(1)};
-  const MergedMaps merged = merge_maps(std::move(parts), {}, {});
+  const MergedMaps merged = merge_maps(std::move(parts), spacing, {}, {});
   EXPECT_THAT(merged.is_joined, ElementsAre(true, false, true));
   EXPECT_EQ(merged.content.frames.size(), 2 * frames);
   EXPECT_GT(merged.nearness[1].keyframes, 0);
@@ -86,7 +89,7 @@ TEST_F(MergedRoom, DoesNotHoldAnotherPlace) {
 TEST_F(MergedRoom, RefusesMapsThatDoNotGoTogether) {
   const auto complaint = [](std::vector<MapContent> parts) -> std::string {
     try {
-      merge_maps(std::move(parts), {}, {});
+      merge_maps(std::move(parts), spacing, {}, {});
     } catch (const UsageError& error) {
       return error.what();
     }
@@ -102,8 +105,9 @@ TEST_F(MergedRoom, RefusesMapsThatDoNotGoTogether) {
 
 TEST_F(MergedRoom, CanBeGivenUp) {
   struct GivenUp {};
-  EXPECT_THROW(merge_maps({part(0), part(1)}, {}, {}, [](std::size_t) { throw GivenUp(); }),
-               GivenUp);
+  EXPECT_THROW(
+      merge_maps({part(0), part(1)}, spacing, {}, {}, [](std::size_t) { throw GivenUp(); }),
+      GivenUp);
 }
 
 }  // namespace

@@ -191,7 +191,9 @@ TEST_F(StoredMap, KeepsWhatHasChanged) {
   MapContent content = mapper_.content();
   content.recordings.push_back(content.recordings.front());
   const MapCloud surface = surface_of(content, 0);
-  MapChange change{.kind = ChangeKind::moved, .map = 0, .recording = 1};
+  MapChange change;
+  change.kind = ChangeKind::moved;
+  change.recording = 1;
   change.before.push_back(surface[1]);
   change.after.push_back(surface[2]);
   change.after.push_back(surface[3]);

@@ -235,6 +235,8 @@ TEST_P(RearrangedScene, KnowsWhereItsPiecesAreAndWere) {
       Eigen::AlignedBox3d box;
       for (const auto& triangle : mesh_of(after, piece.part).triangles) {
         for (const std::uint32_t vertex : triangle) {
+          EXPECT_GE(vertex, piece.part.first_vertex) << piece.name;
+          EXPECT_LT(vertex, piece.part.first_vertex + piece.part.vertices) << piece.name;
           box.extend(after.surface.vertices[vertex].cast<double>());
         }
       }

@@ -23,17 +23,47 @@ namespace {
 /// Number of keyframes that must see through a point. A single one may be deceived.
 constexpr int least_views = 2;
 
+/// How many times more keyframes must agree with a surface than see through it, for it to have been
+/// there: edges of things, and ranges between two surfaces, are seen by some and not by others.
+constexpr int times_surer = 3;
+
 /// How far a surface goes on beside the points that keyframes see through: closer to another
 /// surface, the noise of a keyframe hides it.
 constexpr float growth_m = 0.15F;
 
 /// The surface of a map, as some of its recordings saw it.
 struct SeenSurface {
-  MapCloud points;
+  MapCloud points;            ///< without free-space violations
+  std::vector<char> is_sure;  ///< for each point, whether several keyframes agree with it
   std::vector<Keyframe> keyframes;
 };
 
-/// The surface that the recordings from `first` to before `end` saw, without free-space violations.
+/// For each point, the number of keyframes whose pixels resolve its surface, occlusion aside. A
+/// pixel that covers more of it, far away or at a grazing angle, mixes things.
+std::vector<int> resolving_views(const MapCloud& points, std::span<const Keyframe> keyframes,
+                                 const CameraModel& camera) {
+  constexpr double most_covered_m = 0.15;
+  std::vector<int> views(points.size(), 0);
+  for (const Keyframe& keyframe : keyframes) {
+    const Pose camera_from_world = keyframe.world_from_camera.inverse();
+#pragma omp parallel for schedule(static)
+    for (std::ptrdiff_t at = 0; at < std::ssize(points); ++at) {
+      const auto i = static_cast<std::size_t>(at);
+      const Eigen::Vector3d point_m = camera_from_world * points[i].getVector3fMap().cast<double>();
+      const Eigen::Vector3d normal =
+          camera_from_world.linear() * points[i].getNormalVector3fMap().cast<double>();
+      const double cosine = -normal.dot(point_m.normalized());
+      if (point_m.z() <= 0 || point_m.norm() > most_covered_m * camera.fx_px * cosine) continue;
+      const auto pixel = project(camera, point_m);
+      const bool is_in_view = pixel && pixel->x() >= 0 && pixel->y() >= 0 &&
+                              pixel->x() < camera.width_px && pixel->y() < camera.height_px;
+      views[i] += is_in_view ? 1 : 0;
+    }
+  }
+  return views;
+}
+
+/// The surface that the recordings from `first` to before `end` saw.
 SeenSurface surface_seen(const MapContent& content, int map, int first, int end) {
   SeenSurface seen;
   const auto is_seen = [&](const Keyframe& keyframe) {
@@ -46,8 +76,18 @@ SeenSurface surface_seen(const MapContent& content, int map, int first, int end)
     const Keyframe& anchor = content.keyframes[submap.anchor];
     if (is_seen(anchor)) whole.add(submap.surface, anchor.world_from_camera, anchor.recording);
   }
-  seen.points = without_free_space_violations(whole.extract(), seen.keyframes, content.camera,
-                                              content.surface_options.voxel_m);
+  const MapCloud points = whole.extract();
+  const std::vector<Sightings> sightings =
+      sightings_of(points, seen.keyframes, content.camera, content.surface_options.voxel_m);
+  const std::vector<int> resolving = resolving_views(points, seen.keyframes, content.camera);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& [violating, agreeing, since] = sightings[i];
+    if (sightings[i].violates_free_space()) continue;
+    seen.points.push_back(points[i]);
+    const bool is_sure = resolving[i] >= least_views && agreeing >= least_views &&
+                         agreeing >= times_surer * violating;
+    seen.is_sure.push_back(is_sure ? 1 : 0);
+  }
   return seen;
 }
 
@@ -78,8 +118,9 @@ std::vector<char> without_counterpart(const MapCloud& points, const MapCloud& ot
 
 /// The connected pieces of a surface that keyframes of another time see through. `other` is the
 /// surface that these saw.
-std::vector<MapCloud> pieces_seen_through(const MapCloud& points, const SeenSurface& other,
+std::vector<MapCloud> pieces_seen_through(const SeenSurface& surface, const SeenSurface& other,
                                           const MapContent& content) {
+  const MapCloud& points = surface.points;
   const double voxel_m = content.surface_options.voxel_m;
   const auto step_m = static_cast<float>(2 * voxel_m);
   const std::vector<char> is_alone =
@@ -90,7 +131,7 @@ std::vector<MapCloud> pieces_seen_through(const MapCloud& points, const SeenSurf
   std::vector<std::size_t> seed_of(points.size(), none);
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (is_alone[i] == 0 || sightings[i].violating < least_views ||
+    if (is_alone[i] == 0 || surface.is_sure[i] == 0 || sightings[i].violating < least_views ||
         !sightings[i].violates_free_space()) {
       continue;
     }
@@ -126,7 +167,8 @@ std::vector<MapCloud> pieces_seen_through(const MapCloud& points, const SeenSurf
         return false;
       });
     }
-    if (piece.size() < least_points_of_change) continue;
+    const auto seeds = std::ranges::count_if(piece, [&](std::size_t i) { return seed_of[i] == i; });
+    if (2 * seeds < std::ssize(piece) || piece.size() < least_points_of_change) continue;
     std::ranges::sort(piece);
     MapCloud& cloud = pieces.emplace_back();
     for (const std::size_t i : piece) cloud.push_back(points[i]);
@@ -141,33 +183,60 @@ Eigen::Vector3d upwards(std::span<const Keyframe> keyframes) {
   return sum.norm() > 0 ? Eigen::Vector3d(sum.normalized()) : Eigen::Vector3d::UnitZ();
 }
 
-/// Takes out the pieces that have moved, those that fit best first.
+/// Whether keyframes see a surface where a motion puts it, as far as they see that place.
+bool may_be_at(const MapCloud& surface, const Pose& motion, const SeenSurface& seen,
+               const MapContent& content) {
+  constexpr double most_seen_through = 0.1;
+  MapCloud moved = surface;
+  for (MapPoint& point : moved) {
+    point.getVector3fMap() = motion.cast<float>() * Eigen::Vector3f(point.getVector3fMap());
+    point.recording = 0;
+  }
+  const std::vector<Sightings> sightings =
+      sightings_of(moved, seen.keyframes, content.camera, content.surface_options.voxel_m);
+  const auto seen_through = std::ranges::count_if(sightings, &Sightings::violates_free_space);
+  return static_cast<double>(seen_through) <=
+         most_seen_through * static_cast<double>(surface.size());
+}
+
+/// Takes out the pieces that have moved, those that fit best first. `before` and `now` are what was
+/// seen before and after.
 std::vector<MapChange> take_moved(std::vector<MapCloud>& gone, std::vector<MapCloud>& appeared,
-                                  const Eigen::Vector3d& up, double voxel_m) {
+                                  const SeenSurface& before, const SeenSurface& now,
+                                  const MapContent& content) {
   struct Match {
-    std::size_t before, after;
+    std::size_t gone, appeared;
     MovedShape moved;
   };
+  // The largest pieces come first. Where there are many, most are no things.
+  constexpr std::size_t most_pieces = 20;
+  for (auto* pieces : {&gone, &appeared}) {
+    std::ranges::stable_sort(*pieces, std::ranges::greater(),
+                             [](const MapCloud& piece) { return piece.size(); });
+  }
+  const Eigen::Vector3d up = upwards(now.keyframes);
   std::vector<Match> matches;
-  for (std::size_t before = 0; before < gone.size(); ++before) {
-    for (std::size_t after = 0; after < appeared.size(); ++after) {
-      if (auto moved = find_motion(gone[before], appeared[after], up, voxel_m)) {
-        matches.push_back({before, after, *moved});
+  for (std::size_t i = 0; i < std::min(gone.size(), most_pieces); ++i) {
+    for (std::size_t k = 0; k < std::min(appeared.size(), most_pieces); ++k) {
+      const auto moved = find_motion(gone[i], appeared[k], up, content.surface_options.voxel_m);
+      if (moved && may_be_at(gone[i], moved->after_from_before, now, content) &&
+          may_be_at(appeared[k], moved->after_from_before.inverse(), before, content)) {
+        matches.push_back({i, k, *moved});
       }
     }
   }
   std::ranges::stable_sort(matches, std::ranges::greater(),
                            [](const Match& match) { return match.moved.fit; });
   std::vector<MapChange> changes;
-  for (const auto& [before, after, moved] : matches) {
-    if (gone[before].empty() || appeared[after].empty()) continue;
+  for (const auto& [from, to, moved] : matches) {
+    if (gone[from].empty() || appeared[to].empty()) continue;
     changes.push_back({.kind = ChangeKind::moved,
-                       .before = std::exchange(gone[before], {}),
-                       .after = std::exchange(appeared[after], {}),
+                       .before = std::exchange(gone[from], {}),
+                       .after = std::exchange(appeared[to], {}),
                        .after_from_before = moved.after_from_before});
   }
-  std::erase_if(gone, &MapCloud::empty);
-  std::erase_if(appeared, &MapCloud::empty);
+  std::erase_if(gone, [](const MapCloud& piece) { return piece.empty(); });
+  std::erase_if(appeared, [](const MapCloud& piece) { return piece.empty(); });
   return changes;
 }
 
@@ -178,16 +247,15 @@ std::vector<MapChange> changes_in(const MapContent& content, int map, int record
   const SeenSurface before = surface_seen(content, map, 0, recording);
   const SeenSurface now = surface_seen(content, map, recording, recording + 1);
   if (before.points.empty() || now.points.empty()) return {};
-  std::vector<MapCloud> gone = pieces_seen_through(before.points, now, content);
+  std::vector<MapCloud> gone = pieces_seen_through(before, now, content);
   // What is new was first seen after the keyframes that see through it.
-  MapCloud later = now.points;
-  for (MapPoint& point : later) point.recording = 0;
+  SeenSurface later = now;
+  for (MapPoint& point : later.points) point.recording = 0;
   std::vector<MapCloud> appeared = pieces_seen_through(later, before, content);
   for (MapCloud& piece : appeared) {
     for (MapPoint& point : piece) point.recording = static_cast<std::uint32_t>(recording);
   }
-  std::vector<MapChange> changes =
-      take_moved(gone, appeared, upwards(content.keyframes.all()), content.surface_options.voxel_m);
+  std::vector<MapChange> changes = take_moved(gone, appeared, before, now, content);
   for (MapCloud& piece : gone) {
     changes.push_back({.kind = ChangeKind::gone, .before = std::move(piece), .after = {}});
   }

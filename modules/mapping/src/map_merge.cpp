@@ -4,7 +4,7 @@
 #include "tofmap/mapping/map_merge.hpp"
 
 #include "tofmap/mapping/change_detection.hpp"
-#include "tofmap/mapping/free_space.hpp"
+#include "tofmap/mapping/join_choice.hpp"
 #include "tofmap/mapping/keyframe_edge.hpp"
 #include "tofmap/mapping/loop_closure.hpp"
 #include "tofmap/mapping/loop_fit.hpp"
@@ -25,10 +25,6 @@
 
 namespace tofmap {
 namespace {
-
-/// Share of the compared keyframes that may contradict a join. Things that have moved hide a view
-/// as a whole now and then.
-constexpr double most_contradicting = 0.2;
 
 int maps_begun(const MapContent& content) {
   int begun = 0;
@@ -90,11 +86,19 @@ void append_rest(const MapContent& added, std::vector<Keyframe> keyframes, MapCo
   std::ranges::copy(added.loops, std::back_inserter(content.loops));
 }
 
+/// The places that keyframes recognise.
+struct Recognitions {
+  std::vector<PoseEdge> sure;      ///< those that are certain by themselves
+  std::vector<PoseEdge> possible;  ///< all
+};
+
 /// Joins maps with the first one.
 class MapMerger {
  public:
-  MapMerger(MapContent first, const LoopOptions& loops, const RegistrationOptions& registration)
+  MapMerger(MapContent first, const KeyframeSpacing& spacing, const LoopOptions& loops,
+            const RegistrationOptions& registration)
       : content_(std::move(first)),
+        spacing_(spacing),
         loops_(loops),
         registration_(registration),
         map_(largest_map(content_)) {
@@ -107,25 +111,24 @@ class MapMerger {
   MapContent take();
 
  private:
-  std::vector<PoseEdge> recognise_in(std::span<const Keyframe> keyframes, int map,
-                                     const std::function<void()>& tell,
-                                     MapNearness& nearness) const;
-  bool contradicts(const MapJoin& join, std::span<const Keyframe> keyframes) const;
+  Recognitions recognise_in(std::span<const Keyframe> keyframes, int map,
+                            const std::function<void()>& tell, MapNearness& nearness) const;
   void close_loops(int first, const std::function<void()>& tell);
   void order_recordings();
 
   MapContent content_;
+  KeyframeSpacing spacing_;
   LoopOptions loops_;
   RegistrationOptions registration_;
   int map_;  ///< the map that others are joined with
 };
 
 /// Recognises places of the map so far in those keyframes, of all, that belong to `map`.
-std::vector<PoseEdge> MapMerger::recognise_in(std::span<const Keyframe> keyframes, int map,
-                                              const std::function<void()>& tell,
-                                              MapNearness& nearness) const {
+Recognitions MapMerger::recognise_in(std::span<const Keyframe> keyframes, int map,
+                                     const std::function<void()>& tell,
+                                     MapNearness& nearness) const {
   const auto everywhere = [](const Keyframe&, const Pose&) { return true; };
-  std::vector<PoseEdge> recognitions;
+  Recognitions recognitions;
   for (const Keyframe& keyframe : keyframes) {
     if (keyframe.map != map) continue;
     tell();
@@ -135,31 +138,17 @@ std::vector<PoseEdge> MapMerger::recognise_in(std::span<const Keyframe> keyframe
     }
     const auto places = find_places(keyframe, std::move(candidates), everywhere, keyframes,
                                     content_.camera, loops_, registration_);
+    const auto edge_of_place = [&](const Recognition& place) {
+      return loop_edge(keyframes[static_cast<std::size_t>(place.from)], keyframe.id,
+                       place.registration);
+    };
+    for (const Recognition& place : places) recognitions.possible.push_back(edge_of_place(place));
     const auto found = surest_place(places, keyframes);
+    if (found) recognitions.sure.push_back(edge_of_place(*found));
     ++nearness.keyframes;
     nearness.recognised += found ? 1 : 0;
-    nearness.ambiguous += !found && !places.empty() ? 1 : 0;
-    if (!found) continue;
-    recognitions.push_back(loop_edge(keyframes[static_cast<std::size_t>(found->from)], keyframe.id,
-                                     found->registration));
   }
   return recognitions;
-}
-
-/// Whether too many keyframes of a map contradict the free space of those that they recognised.
-bool MapMerger::contradicts(const MapJoin& join, std::span<const Keyframe> keyframes) const {
-  std::size_t contradicting = 0;
-  for (const PoseEdge& edge : join.edges) {
-    const Keyframe& keyframe = keyframes[static_cast<std::size_t>(edge.to)];
-    const auto cloud = keyframe.cloud.load();
-    const RegistrationTarget placed{cloud.get(), join.into_from_map * keyframe.world_from_camera};
-    const RegistrationTarget target = target_of(keyframes[static_cast<std::size_t>(edge.from)]);
-    if (contradicts_free_space(placed, target, content_.camera, most_violations_since)) {
-      ++contradicting;
-    }
-  }
-  return static_cast<double>(contradicting) >
-         most_contradicting * static_cast<double>(join.edges.size());
 }
 
 bool MapMerger::join(const MapContent& added, const std::function<void()>& tell,
@@ -170,12 +159,16 @@ bool MapMerger::join(const MapContent& added, const std::function<void()>& tell,
   const int first = content_.keyframes.size();
   const int map = largest_map(added) + maps_begun(content_);
   std::ranges::copy(own, std::back_inserter(all));
-  const std::vector<PoseEdge> recognitions = recognise_in(all, map, tell, nearness);
+  const Recognitions recognitions = recognise_in(all, map, tell, nearness);
   std::vector<const PoseEdge*> edges;
-  for (const PoseEdge& edge : recognitions) edges.push_back(&edge);
+  for (const PoseEdge& edge : recognitions.sure) edges.push_back(&edge);
   nearness.agreeing = static_cast<int>(most_that_agree(edges, all, loops_).size());
-  const auto join = find_join(recognitions, map, all, loops_);
-  if (!join || contradicts(*join, all)) return false;
+  const auto join = find_join(recognitions.sure, map, all, loops_);
+  if (!join) return false;
+  const auto anywhere = [](const MapJoin&) { return true; };
+  nearness.is_ambiguous =
+      !is_certain(*join, recognitions.possible, anywhere, all, content_.camera, spacing_, loops_);
+  if (nearness.is_ambiguous) return false;
   append_rest(added, own, content_);
   content_.keyframes.join(map, map_, join->into_from_map);
   for (const PoseEdge& edge : join->edges) add_loop(content_, edge);
@@ -254,14 +247,14 @@ void check_maps(const std::vector<MapContent>& maps) {
 
 }  // namespace
 
-MergedMaps merge_maps(std::vector<MapContent> maps, const LoopOptions& loops,
-                      const RegistrationOptions& registration,
+MergedMaps merge_maps(std::vector<MapContent> maps, const KeyframeSpacing& spacing,
+                      const LoopOptions& loops, const RegistrationOptions& registration,
                       const std::function<void(std::size_t map)>& tell) {
   check_maps(maps);
   std::vector<MapNearness> nearness(maps.size());
   std::vector<bool> is_joined(maps.size(), false);
   is_joined.front() = true;
-  MapMerger merger(std::move(maps.front()), loops, registration);
+  MapMerger merger(std::move(maps.front()), spacing, loops, registration);
   for (bool has_grown = true; has_grown;) {
     has_grown = false;
     for (std::size_t i = 1; i < maps.size(); ++i) {

@@ -129,11 +129,14 @@ MapperState RoomMapper::state() const {
       {"lost_frames", lost_frames_},
       {"searched", searched_},
       {"joins", joins},
-      {"differing_keyframes", differing_keyframes_},
+      {"compared_keyframes", evidence_.compared},
+      {"differing_keyframes", evidence_.differing},
       {"joins_taken_back", joins_taken_back_},
       {"recognitions", recognitions},
-      {"compared", compared_},
-      {"ambiguous", ambiguous_},
+      {"compared", nearness_.keyframes},
+      {"recognised", nearness_.recognised},
+      {"agreeing", nearness_.agreeing},
+      {"is_ambiguous", nearness_.is_ambiguous},
       {"start", start_ ? Json{{"map", start_->map},
                               {"pose", json_of(start_->world_from_camera)},
                               {"has_rotation", start_->has_rotation}}
@@ -157,7 +160,8 @@ void RoomMapper::restore(MapContent content, const MapperState& state) {
   map_ = integer_in(json, "map", 0, begun_maps_ - 1);
   lost_frames_ = integer_in(json, "lost_frames", 0);
   searched_ = integer_in(json, "searched", 0, keyframes);
-  differing_keyframes_ = integer_in(json, "differing_keyframes", 0);
+  evidence_ = {.compared = integer_in(json, "compared_keyframes", 0),
+               .differing = integer_in(json, "differing_keyframes", 0)};
   joins_taken_back_ = integer_in(json, "joins_taken_back", 0);
   joins_.clear();
   for (const Json& join : list_in(json, "joins")) {
@@ -170,8 +174,10 @@ void RoomMapper::restore(MapContent content, const MapperState& state) {
   for (const Json& edge : list_in(json, "recognitions")) {
     recognitions_.push_back(edge_in(edge, keyframes));
   }
-  compared_ = integer_in(json, "compared", 0);
-  ambiguous_ = integer_in(json, "ambiguous", 0);
+  nearness_ = {.keyframes = integer_in(json, "compared", 0),
+               .recognised = integer_in(json, "recognised", 0),
+               .agreeing = integer_in(json, "agreeing", 0),
+               .is_ambiguous = flag_in(json, "is_ambiguous")};
   start_.reset();
   if (const Json& start = member(json, "start"); !start.is_null()) {
     start_ = MapPlace{integer_in(start, "map", 0, begun_maps_ - 1), pose_in(start, "pose"),

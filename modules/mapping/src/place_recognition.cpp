@@ -28,6 +28,28 @@ bool is_same_place(const Recognition& one, const Recognition& other,
                   recognition_reach_m / 2, recognition_reach_rad / 2);
 }
 
+/// The keyframes that look most similar. Those of other recordings are followed by as many at other
+/// places: where nothing tells how the camera came, all places that look alike must be known.
+std::vector<const Keyframe*> likely_places(const Keyframe& keyframe,
+                                           std::vector<const Keyframe*> candidates) {
+  const std::size_t count = candidates.size();
+  const std::vector<const Keyframe*> alike =
+      most_alike(keyframe.place, std::move(candidates), count);
+  std::vector<const Keyframe*> likely(
+      alike.begin(), alike.begin() + static_cast<std::ptrdiff_t>(std::min(count, most_candidates)));
+  for (const Keyframe* candidate : alike) {
+    if (likely.size() >= 2 * most_candidates) break;
+    if (candidate->recording == keyframe.recording) continue;
+    const bool is_elsewhere = std::ranges::none_of(likely, [&](const Keyframe* other) {
+      return other->map == candidate->map &&
+             are_near(other->world_from_camera, candidate->world_from_camera,
+                      2 * recognition_reach_m, 2 * recognition_reach_rad);
+    });
+    if (is_elsewhere) likely.push_back(candidate);
+  }
+  return likely;
+}
+
 }  // namespace
 
 RegistrationResult register_near(const Keyframe& keyframe, const SurfaceCloud& cloud,
@@ -48,8 +70,7 @@ std::vector<Recognition> find_places(const Keyframe& keyframe,
                                      const RegistrationOptions& registration) {
   std::vector<Recognition> found;
   const auto cloud = keyframe.cloud.load();
-  for (const Keyframe* candidate :
-       most_alike(keyframe.place, std::move(candidates), most_candidates)) {
+  for (const Keyframe* candidate : likely_places(keyframe, std::move(candidates))) {
     const RegistrationResult result =
         register_near(*candidate, *cloud, keyframes, camera, registration);
     if (is_possible(*candidate, result.world_from_camera) &&

@@ -21,9 +21,9 @@ namespace tofmap {
 void RoomMapper::close_loops() {
   if (searched_ == content_.keyframes.size()) return;
   searched_ = content_.keyframes.size();
-  if (is_joined() && differs_from_others(content_.keyframes[content_.keyframes.size() - 1]) &&
-      ++differing_keyframes_ >= least_differing_keyframes) {
-    take_join_back();
+  if (is_joined()) {
+    evidence_.add(differs_from_others(content_.keyframes[content_.keyframes.size() - 1]));
+    if (refutes_join(evidence_, map_)) take_join_back();
   }
   recognise_place();
   if (!loop_options_.close) return;

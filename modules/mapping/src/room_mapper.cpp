@@ -120,7 +120,14 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
     around = keyframes_around();
   }
   const auto before = is_joined() ? std::optional(odometry_) : std::nullopt;
+  NewFrame as_recorded = frame;
   TrackingResult result = track_with(around, frame);
+  if (result.registered() && before) {
+    if (auto undisturbed = track_undisturbed(as_recorded, around, result, *before)) {
+      result = *std::move(undisturbed);
+      frame = std::move(as_recorded);
+    }
+  }
   if (!result.registered() && before) {
     odometry_ = *before;
     result = track_apart(frame, around);

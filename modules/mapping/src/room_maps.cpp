@@ -4,6 +4,7 @@
 // How RoomMapper begins maps, joins them, and takes a join back.
 
 #include "tofmap/mapping/free_space.hpp"
+#include "tofmap/mapping/join_choice.hpp"
 #include "tofmap/mapping/keyframe_edge.hpp"
 #include "tofmap/mapping/loop_fit.hpp"
 #include "tofmap/mapping/map_join.hpp"
@@ -11,7 +12,7 @@
 #include "tofmap/mapping/room_mapper.hpp"
 
 #include <algorithm>
-#include <map>
+#include <iterator>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -21,9 +22,6 @@ namespace {
 
 /// Smallest number of frames of a map. Fewer show something that passed in front of the camera.
 constexpr std::ptrdiff_t least_frames_of_map = 3;
-
-/// Keyframes within this many keyframe spacings of each other see mostly the same.
-constexpr double steps_of_same_view = 3;
 
 /// Longest time without tracking after which the camera is still near where it was: at walking pace
 /// it has gone three metres, hardly into another room.
@@ -127,16 +125,28 @@ void RoomMapper::recognise_place() {
     return can_be_at(other, pose, travel_tolerance_m) &&
            agrees_with_start(pose * keyframe.world_from_camera.inverse());
   };
-  if (candidates.empty()) return;
-  const auto places = find_places(keyframe, std::move(candidates), is_possible,
-                                  content_.keyframes.all(), camera_, loop_options_, registration_);
-  const auto found = surest_place(places, content_.keyframes.all());
-  ++compared_;
-  ambiguous_ += !found && !places.empty() ? 1 : 0;
-  if (!found) return;
-  recognitions_.push_back(
-      loop_edge(content_.keyframes[found->from], keyframe.id, found->registration));
+  recognise_among(keyframe, std::move(candidates), is_possible);
   join_maps(travelled);
+}
+
+/// Adds the places of other maps that a keyframe recognises with certainty.
+void RoomMapper::recognise_among(const Keyframe& keyframe, std::vector<const Keyframe*> candidates,
+                                 const IsPossiblePlace& is_possible) {
+  std::vector<const Keyframe*> earlier;
+  std::ranges::copy_if(candidates, std::back_inserter(earlier), [&](const Keyframe* candidate) {
+    return candidate->recording < recording();
+  });
+  std::erase_if(candidates,
+                [&](const Keyframe* candidate) { return candidate->recording < recording(); });
+  if (!earlier.empty()) ++nearness_.keyframes;
+  for (auto& of_one_kind : {candidates, earlier}) {
+    const auto found = recognise(keyframe, of_one_kind, is_possible, content_.keyframes.all(),
+                                 camera_, loop_options_, registration_);
+    if (!found) continue;
+    recognitions_.push_back(
+        loop_edge(content_.keyframes[found->from], keyframe.id, found->registration));
+    if (content_.keyframes[found->from].recording < recording()) ++nearness_.recognised;
+  }
 }
 
 /// Whether the camera began in the direction that go_on_with() was told, if the newest map is at
@@ -165,13 +175,58 @@ std::vector<Stretch> RoomMapper::stretches() const {
   return stretches;
 }
 
+/// All places of earlier recordings that some of the keyframes of the newest map may see.
+std::vector<PoseEdge> RoomMapper::possible_places() const {
+  constexpr std::size_t most_keyframes = 8;
+  const auto all = content_.keyframes.all();
+  std::vector<const Keyframe*> own;
+  std::vector<const Keyframe*> earlier;
+  for (const Keyframe& keyframe : all) {
+    if (keyframe.recording < recording()) earlier.push_back(&keyframe);
+    if (keyframe.map == map_) own.push_back(&keyframe);
+  }
+  const auto everywhere = [](const Keyframe&, const Pose&) { return true; };
+  std::vector<PoseEdge> edges;
+  for (std::size_t i = 0; i < own.size(); i += 1 + (own.size() - 1) / most_keyframes) {
+    for (const Recognition& place :
+         find_places(*own[i], earlier, everywhere, all, camera_, loop_options_, registration_)) {
+      edges.push_back(loop_edge(content_.keyframes[place.from], own[i]->id, place.registration));
+    }
+  }
+  return edges;
+}
+
+/// The join of the newest map with one of the same recording or, if there is none, with one of
+/// earlier recordings.
+std::optional<MapJoin> RoomMapper::found_join(std::span<const Stretch> travelled) {
+  std::vector<PoseEdge> own;
+  std::vector<PoseEdge> earlier;
+  for (const PoseEdge& edge : recognitions_) {
+    (content_.keyframes[edge.from].recording < recording() ? earlier : own).push_back(edge);
+  }
+  const auto all = content_.keyframes.all();
+  if (auto join = find_join(own, map_, all, loop_options_)) return join;
+  std::vector<const PoseEdge*> edges;
+  for (const PoseEdge& edge : earlier) edges.push_back(&edge);
+  nearness_.agreeing = static_cast<int>(most_that_agree(edges, all, loop_options_).size());
+  auto join = find_join(earlier, map_, all, loop_options_);
+  if (!join) return std::nullopt;
+  const auto is_possible = [&](const MapJoin& place) {
+    return can_travel(travelled, place) && agrees_with_start(place.into_from_map);
+  };
+  nearness_.is_ambiguous = !is_certain(*join, possible_places(), is_possible, all, camera_,
+                                       keyframe_spacing(), loop_options_);
+  return nearness_.is_ambiguous ? std::nullopt : std::move(join);
+}
+
 /// Joins the newest map with another one if enough recognitions agree. `travelled` are stretches().
 void RoomMapper::join_maps(std::span<const Stretch> travelled) {
-  const auto join = find_join(recognitions_, map_, content_.keyframes.all(), loop_options_);
+  const auto join = found_join(travelled);
   if (!join) return;
-  const int differing = differing_keyframes(*join);
-  if (differing >= least_differing_keyframes) return;
-  differing_keyframes_ = std::max(differing_keyframes_, differing);
+  const JoinEvidence evidence = evidence_of(*join);
+  if (refutes_join(evidence, join->into)) return;
+  evidence_ = {.compared = evidence_.compared + evidence.compared,
+               .differing = std::max(evidence_.differing, evidence.differing)};
   const auto gap =
       std::ranges::adjacent_find(travelled, [&](const Stretch& one, const Stretch& next) {
         return next.map == map_ && next.begin_s - one.end_s > longest_blink_s;
@@ -190,25 +245,47 @@ void RoomMapper::join_maps(std::span<const Stretch> travelled) {
   fit();
 }
 
-/// Number of keyframes of a map that differ from another map if both are joined: places of
-/// one plan differ in what was put there. Counts no further than the join needs.
-int RoomMapper::differing_keyframes(const MapJoin& join) const {
-  int count = 0;
+void RoomMapper::JoinEvidence::add(std::optional<bool> differs) {
+  compared += differs ? 1 : 0;
+  differing += differs.value_or(false) ? 1 : 0;
+}
+
+/// What the keyframes of a map tell of its join with another one: places of one plan differ in what
+/// was put there.
+RoomMapper::JoinEvidence RoomMapper::evidence_of(const MapJoin& join) const {
+  JoinEvidence evidence;
   for (const Keyframe& keyframe : content_.keyframes.all()) {
-    if (keyframe.map != join.map || count == least_differing_keyframes) continue;
+    if (keyframe.map != join.map) continue;
     Keyframe moved = keyframe;
     moved.map = join.into;
     moved.world_from_camera = join.into_from_map * keyframe.world_from_camera;
-    count += differs_from_others(moved) ? 1 : 0;
+    evidence.add(differs_from_others(moved));
   }
-  return count;
+  return evidence;
+}
+
+/// Whether the newest map is not part of the map `into`: at least two of its keyframes differ from
+/// that (a single one may be wrong). Since earlier recordings, things may have been moved. Then it
+/// takes more than half of the keyframes.
+bool RoomMapper::refutes_join(const JoinEvidence& evidence, int into) const {
+  constexpr int least_differing = 2;
+  if (evidence.differing < least_differing) return false;
+  return !is_of_earlier_recording(into) || 2 * evidence.differing > evidence.compared;
+}
+
+/// Whether earlier recordings have keyframes in a map.
+bool RoomMapper::is_of_earlier_recording(int map) const {
+  return std::ranges::any_of(content_.keyframes.all(), [&](const Keyframe& keyframe) {
+    return keyframe.map == map && keyframe.recording < recording();
+  });
 }
 
 /// Whether a keyframe of the newest map sees a region that stands in free space of another one that
-/// it was joined with, or sees through one there, or contradicts it as a whole.
-bool RoomMapper::differs_from_others(const Keyframe& keyframe) const {
+/// it was joined with, or sees through one there, or contradicts it as a whole. Empty if no other
+/// one sees the same.
+std::optional<bool> RoomMapper::differs_from_others(const Keyframe& keyframe) const {
   const Keyframe* other = keyframe_near(keyframe.world_from_camera, keyframe.map);
-  if (other == nullptr) return false;
+  if (other == nullptr) return std::nullopt;
   const ComparedKeyframe compared{other, {}};
   const Motion motion = MovingRegions(camera_).find(keyframe.cloud.load(),
                                                     keyframe.world_from_camera, {&compared, 1});
@@ -232,11 +309,31 @@ TrackingResult RoomMapper::track_apart(NewFrame& frame, std::span<const Keyframe
   const Keyframe* other = keyframe_near(result.world_from_camera, map_);
   if (other != nullptr &&
       is_of_another_place({frame.cloud.get(), result.world_from_camera}, *other)) {
+    evidence_.add(true);
+    if (other->recording != recording() && !refutes_join(evidence_, map_)) return result;
     const Pose before = content_.keyframes[current_].world_from_camera;
     take_join_back();
     move(result, content_.keyframes[current_].world_from_camera * before.inverse());
   }
   return result;
+}
+
+/// Registers a frame with the keyframes of its own recording alone, after the registration with all
+/// keyframes has fitted badly: what moved between recordings is in the way. Empty, with odometry as
+/// it was, unless that fits clearly better. Takes what moves out of the frame.
+std::optional<TrackingResult> RoomMapper::track_undisturbed(NewFrame& frame,
+                                                            std::span<const Keyframe* const> around,
+                                                            const TrackingResult& disturbed,
+                                                            const StillOdometry& before) {
+  constexpr double badly = 1.5;    // residuals relative to the noise; 1 is usual
+  constexpr double better = 0.67;  // share of the residuals
+  const double scale = disturbed.registration.residual_scale;
+  if (scale < badly || !is_of_earlier_recording(map_)) return std::nullopt;
+  StillOdometry joined = std::exchange(odometry_, before);
+  TrackingResult result = track_with(own(around), frame);
+  if (result.registered() && result.registration.residual_scale < better * scale) return result;
+  odometry_ = std::move(joined);
+  return std::nullopt;
 }
 
 /// Undoes the joins that keyframes of the newest map have led to.
@@ -251,7 +348,7 @@ void RoomMapper::take_join_back() {
   content_.keyframes.assign_maps(map_of);
   drop_edges_between_maps();
   map_ = newest_map();
-  differing_keyframes_ = 0;
+  evidence_ = {};
   fit();
   for (const int map : map_of) return_to_origin(map);
 }
@@ -334,21 +431,6 @@ const Keyframe* RoomMapper::keyframe_near(const Pose& pose, int map) const {
 
 int RoomMapper::blind_joins() const {
   return static_cast<int>(std::ranges::count_if(joins_, &JoinedMaps::is_blind));
-}
-
-MapNearness RoomMapper::nearness() const {
-  MapNearness nearness{.keyframes = compared_, .ambiguous = ambiguous_};
-  std::map<int, std::vector<const PoseEdge*>> by_map;
-  for (const PoseEdge& edge : recognitions_) {
-    if (content_.keyframes[edge.from].recording == recording()) continue;
-    by_map[content_.keyframes[edge.from].map].push_back(&edge);
-    ++nearness.recognised;
-  }
-  for (const auto& [map, edges] : by_map) {
-    const auto agreeing = most_that_agree(edges, content_.keyframes.all(), loop_options_);
-    nearness.agreeing = std::max(nearness.agreeing, static_cast<int>(agreeing.size()));
-  }
-  return nearness;
 }
 
 }  // namespace tofmap

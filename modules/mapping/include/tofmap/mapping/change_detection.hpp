@@ -16,8 +16,9 @@ namespace tofmap {
 /// recording has no surface there with a similar normal. Near other surfaces, which free space
 /// cannot tell it from, what is connected with such points is gone as well. Surfaces are new if
 /// the same holds with earlier and later recordings exchanged. What no keyframe has seen before or
-/// has seen again is no change. Connected pieces of fewer than `least_points_of_change` points are
-/// left out. A piece that is gone and a new one are a thing that moved if they have the same shape.
+/// has seen again is no change. Connected pieces of fewer than `least_points_of_change` points, or
+/// of mostly points that free space does not tell about, are left out. A piece that is gone and a
+/// new one are a thing that moved if they have the same shape.
 ///
 /// In the order of recordings; those of one recording by kind, the largest first.
 std::vector<MapChange> find_changes(const MapContent& content, int map);
@@ -27,6 +28,6 @@ std::vector<MapChange> find_changes(const MapContent& content);
 
 /// Smallest number of map points of a change. Fewer are mostly edges of things, which each
 /// recording sees a bit differently.
-inline constexpr std::size_t least_points_of_change = 12;
+inline constexpr std::size_t least_points_of_change = 20;
 
 }  // namespace tofmap

@@ -25,7 +25,8 @@ struct MergedMaps {
 /// Merges maps of one building, without knowledge of their relative poses and in any order.
 ///
 /// The keyframes of each map are compared with those of the maps that are joined already. Maps are
-/// joined where places are recognised (find_join()), and do not contradict each other's free space.
+/// joined where places are recognised, and do not contradict each other's free space
+/// (choose_join()). `spacing` is the distance at which the keyframes were taken.
 /// Those that fit nowhere are tried again when others were joined. Loops between the maps then
 /// correct the poses of all keyframes. The world frame is that of the first map. Recordings are put
 /// in the order of their dates.
@@ -36,8 +37,8 @@ struct MergedMaps {
 /// `tell` is called with the index of the map that is compared, before each of its keyframes. It
 /// may be empty; an exception that it throws is passed on. Throws UsageError if there is no map, if
 /// cameras or options of surfaces differ, or if two maps have a recording in common.
-MergedMaps merge_maps(std::vector<MapContent> maps, const LoopOptions& loops,
-                      const RegistrationOptions& registration,
+MergedMaps merge_maps(std::vector<MapContent> maps, const KeyframeSpacing& spacing,
+                      const LoopOptions& loops, const RegistrationOptions& registration,
                       const std::function<void(std::size_t map)>& tell = {});
 
 }  // namespace tofmap

@@ -37,8 +37,9 @@ using IsPossiblePlace = std::function<bool(const Keyframe& candidate, const Pose
 
 /// The places among other keyframes that a keyframe may see.
 ///
-/// The keyframe is registered with each of the five candidates that look most similar, from the
-/// pose of that candidate (register_near()). A result counts if the place is possible and the
+/// The keyframe is registered with each of the five candidates that look most similar and, if these
+/// are of other recordings, with up to five at other places, from the pose of that candidate
+/// (register_near()). A result counts if the place is possible and the
 /// candidate confirms it (confirms_place()). `keyframes` are all keyframes in the order of their
 /// ids, from 0, and must outlive the candidates, which are some of them.
 std::vector<Recognition> find_places(const Keyframe& keyframe,

@@ -10,7 +10,9 @@
 #include <tofmap/mapping/camera_travel.hpp>
 #include <tofmap/mapping/loop_options.hpp>
 #include <tofmap/mapping/map_content.hpp>
+#include <tofmap/mapping/map_join.hpp>
 #include <tofmap/mapping/mapper_state.hpp>
+#include <tofmap/mapping/place_recognition.hpp>
 #include <tofmap/mapping/still_odometry.hpp>
 #include <tofmap/mapping/surface_map.hpp>
 
@@ -61,10 +63,10 @@ struct MapPlace {
 
 /// How near a recording came to being found in a map.
 struct MapNearness {
-  int keyframes = 0;   ///< number of keyframes that were compared with the map
-  int recognised = 0;  ///< number of those that recognised a place with certainty
-  int ambiguous = 0;   ///< number of those that may be at several places
-  int agreeing = 0;    ///< largest number of those that agree on where the recording is
+  int keyframes = 0;          ///< number of keyframes that were compared with the map
+  int recognised = 0;         ///< number of those that may see a place of it
+  int agreeing = 0;           ///< number of those that agree on the likeliest place
+  bool is_ambiguous = false;  ///< whether another place is as likely
 };
 
 /// Tracks the camera, closes loops, and keeps trajectory and map consistent.
@@ -111,7 +113,7 @@ class RoomMapper {
                   std::optional<MapPlace> start = std::nullopt);
 
   /// How near the frames came to being found in the finished map.
-  MapNearness nearness() const;
+  const MapNearness& nearness() const { return nearness_; }
 
   /// localised_frames_of() the map so far.
   int localised_frames() const { return localised_frames_of(content_); }
@@ -158,9 +160,14 @@ class RoomMapper {
   /// other, and are fitted together.
   static constexpr int keyframes_between_fits = 10;
 
-  /// Number of keyframes that must differ from a map before they count as showing another place. A
-  /// single one may be wrong.
-  static constexpr int least_differing_keyframes = 2;
+  /// What keyframes of the newest map tell about a join with another one.
+  struct JoinEvidence {
+    int compared = 0;   ///< number of keyframes that see what the other map sees
+    int differing = 0;  ///< number of those that differ from it
+
+    /// Adds a keyframe: whether it differs. Empty if it sees nothing of what the other map sees.
+    void add(std::optional<bool> differs);
+  };
 
   std::span<const RegisteredFrame> own_frames() const;
   bool is_of_another_place(const RegistrationTarget& frame, const Keyframe& other) const;
@@ -174,10 +181,20 @@ class RoomMapper {
   void recognise_place();
   bool agrees_with_start(const Pose& finished_from_newest) const;
   std::vector<Stretch> stretches() const;
+  void recognise_among(const Keyframe& keyframe, std::vector<const Keyframe*> candidates,
+                       const IsPossiblePlace& is_possible);
+  std::vector<PoseEdge> possible_places() const;
+  std::optional<MapJoin> found_join(std::span<const Stretch> travelled);
   void join_maps(std::span<const Stretch> travelled);
-  int differing_keyframes(const MapJoin& join) const;
-  bool differs_from_others(const Keyframe& keyframe) const;
+  JoinEvidence evidence_of(const MapJoin& join) const;
+  bool refutes_join(const JoinEvidence& evidence, int into) const;
+  std::optional<bool> differs_from_others(const Keyframe& keyframe) const;
   TrackingResult track_apart(NewFrame& frame, std::span<const Keyframe* const> around);
+  std::optional<TrackingResult> track_undisturbed(NewFrame& frame,
+                                                  std::span<const Keyframe* const> around,
+                                                  const TrackingResult& disturbed,
+                                                  const StillOdometry& before);
+  bool is_of_earlier_recording(int map) const;
   void take_join_back();
   void connect_own_keyframes();
   void drop_edges_between_maps();
@@ -212,8 +229,7 @@ class RoomMapper {
   MapContent content_;
   MapUse use_ = MapUse::extend;
   std::optional<MapPlace> start_;
-  int compared_ = 0;   ///< number of keyframes that were compared with maps of earlier recordings
-  int ambiguous_ = 0;  ///< number of those that may be at several places
+  MapNearness nearness_;
   int unfitted_loops_ = 0;
   int waiting_loop_ = -1;  ///< later keyframe of the newest loop that awaits others; −1: none
   int last_fit_ = 0;       ///< id of the newest keyframe in the last fit
@@ -226,7 +242,7 @@ class RoomMapper {
   int searched_ = 0;            ///< number of keyframes for which loops were searched
   std::vector<NewFrame> held_;  ///< frames with a surface since the last registered one
   std::vector<JoinedMaps> joins_;  ///< those not taken back, in order
-  int differing_keyframes_ = 0;    ///< of the newest map, from the map that it was joined with
+  JoinEvidence evidence_;          ///< about the join of the newest map
   int joins_taken_back_ = 0;
   std::vector<PoseEdge> recognitions_;  ///< from a keyframe of another map to one of `map_`
 };
