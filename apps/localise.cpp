@@ -10,7 +10,6 @@
 #include "input/start_place.hpp"
 #include "options/options.hpp"
 #include "output/change_report.hpp"
-#include "output/frame_report.hpp"
 #include "output/json_text.hpp"
 #include "output/output_folder.hpp"
 #include "output/refusal.hpp"
@@ -96,9 +95,7 @@ void print_summary(const Localisation& result, const std::vector<MapRecording>& 
                    const OutputFolder& out) {
   std::printf("%zu of %zu frames localised, standard deviation of the position up to %.1f mm\n",
               result.localised.size(), result.frames.size(), 1000 * largest_sigma_m(result));
-  for (const std::string& line : told_changes(result.changes, recordings)) {
-    std::printf("%s\n", line.c_str());
-  }
+  print_changes(result.changes, recordings);
   std::printf("trajectory: %s, with covariances in report.json beside it\n",
               (out.final_path() / "trajectory.txt").c_str());
 }

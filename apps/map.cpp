@@ -242,9 +242,7 @@ FinishedMap finish_map(MapRun& run, MapFile& file, OutputFolder& out, MapOutput&
   }
   if (!output.arguments.common.quiet) {
     print_summary(finished.map, out.final_path());
-    for (const std::string& line : told_changes(finished.map.changes, output.recordings)) {
-      std::printf("%s\n", line.c_str());
-    }
+    print_changes(finished.map.changes, output.recordings);
     print_warnings(output.warnings);
     const Judgement& judgement = finished.judgement;
     std::printf("verdict: %s%s\n", std::string(sentence_of(judgement.verdict)).c_str(),

@@ -103,12 +103,7 @@ void write_paths(const OutputFolder& out, const MapContent& content, int map) {
     write_trajectory(out.path() / fmt::format("trajectory_{}.txt", i + 1),
                      trajectory_of(content, map, i));
   }
-  Trajectory keyframes;
-  for (const Keyframe& keyframe : content.keyframes.all()) {
-    if (keyframe.map == map)
-      keyframes.push_back({keyframe.timestamp_s, keyframe.world_from_camera});
-  }
-  write_trajectory(out.path() / "keyframes.txt", keyframes);
+  write_trajectory(out.path() / "keyframes.txt", all_keyframes_of(content, map));
 }
 
 void write_map_file(const OutputFolder& out, const MapContent& content,
@@ -163,9 +158,7 @@ int run_merge(const MergeArguments& arguments) {
   if (!quiet) {
     std::printf("%td of %zu maps merged, %zu map points\n",
                 std::ranges::count(merged.is_joined, true), arguments.maps.size(), surface.size());
-    for (const std::string& line : told_changes(content.changes, content.recordings)) {
-      std::printf("%s\n", line.c_str());
-    }
+    print_changes(content.changes, content.recordings);
     std::printf("map: %s, map.db beside it\n", (out.final_path() / "map.ply").c_str());
   }
   return exit_status::done;

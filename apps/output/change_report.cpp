@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <limits>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -27,23 +27,11 @@ using Json = nlohmann::ordered_json;
 /// What has become of a point, as a number in the file.
 enum class PointKind { gone, appeared, moved_from, moved_to };
 
-Eigen::AlignedBox3f box_of(const MapCloud& cloud) {
-  Eigen::AlignedBox3f box;
-  for (const MapPoint& point : cloud) box.extend(Eigen::Vector3f(point.getVector3fMap()));
-  return box;
-}
-
 Json box_json(const MapCloud& cloud) {
   if (cloud.empty()) return nullptr;
   const Eigen::AlignedBox3f box = box_of(cloud);
   return {{"min_m", {box.min().x(), box.min().y(), box.min().z()}},
           {"max_m", {box.max().x(), box.max().y(), box.max().z()}}};
-}
-
-/// How far the middle of a thing has moved.
-double moved_m(const MapChange& change) {
-  const Eigen::Vector3d middle_m = box_of(change.before).center().cast<double>();
-  return (change.after_from_before * middle_m - middle_m).norm();
 }
 
 double turned_rad(const MapChange& change) {
@@ -70,10 +58,6 @@ std::string told_place(const MapChange& change) {
   return "around " + told(change.kind == ChangeKind::gone ? change.before : change.after);
 }
 
-std::size_t points_of(const MapChange& change) {
-  return change.before.size() + change.after.size();
-}
-
 }  // namespace
 
 Json changes_json(const std::vector<MapChange>& changes,
@@ -83,7 +67,7 @@ Json changes_json(const std::vector<MapChange>& changes,
     Json json{{"kind", name_of(change.kind)},
               {"recording", change.recording},
               {"since", recording_of(change, recordings).added},
-              {"points", points_of(change)},
+              {"points", point_count(change)},
               {"before", box_json(change.before)},
               {"after", box_json(change.after)}};
     if (change.kind == ChangeKind::moved) {
@@ -95,20 +79,18 @@ Json changes_json(const std::vector<MapChange>& changes,
   return list;
 }
 
-std::vector<std::string> told_changes(const std::vector<MapChange>& changes,
-                                      const std::vector<MapRecording>& recordings) {
-  constexpr std::size_t most_told = 20;
-  std::vector<std::string> lines;
-  for (std::size_t i = 0; i < std::min(most_told, changes.size()); ++i) {
+void print_changes(const std::vector<MapChange>& changes,
+                   const std::vector<MapRecording>& recordings) {
+  constexpr std::size_t most_printed = 20;
+  for (std::size_t i = 0; i < std::min(most_printed, changes.size()); ++i) {
     const MapChange& change = changes[i];
-    lines.push_back(fmt::format("{} since {}: {} {}", name_of(change.kind),
-                                recording_of(change, recordings).added,
-                                counted(points_of(change), "point"), told_place(change)));
+    std::printf("%s since %s: %s %s\n", std::string(name_of(change.kind)).c_str(),
+                recording_of(change, recordings).added.c_str(),
+                counted(point_count(change), "point").c_str(), told_place(change).c_str());
   }
-  if (changes.size() > most_told) {
-    lines.push_back(fmt::format("and {} more changes", changes.size() - most_told));
+  if (changes.size() > most_printed) {
+    std::printf("and %zu more changes\n", changes.size() - most_printed);
   }
-  return lines;
 }
 
 PageTable change_table(const std::vector<MapChange>& changes,
@@ -116,7 +98,7 @@ PageTable change_table(const std::vector<MapChange>& changes,
   PageTable table{{"", "since", "points", "where, m"}, {}};
   for (const MapChange& change : changes) {
     table.rows.push_back({std::string(name_of(change.kind)), recording_of(change, recordings).added,
-                          std::to_string(points_of(change)), told_place(change)});
+                          std::to_string(point_count(change)), told_place(change)});
   }
   return table;
 }

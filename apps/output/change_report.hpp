@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -21,10 +20,10 @@ inline constexpr const char* changes_file_name = "changes.ply";
 nlohmann::ordered_json changes_json(const std::vector<MapChange>& changes,
                                     const std::vector<MapRecording>& recordings);
 
-/// The changes in words, one line each: "gone since 2026-11-29T08:30:00Z: 340 points around
-/// (1.20, 0.35, 4.10)". Those beyond the twenty largest are only counted.
-std::vector<std::string> told_changes(const std::vector<MapChange>& changes,
-                                      const std::vector<MapRecording>& recordings);
+/// Prints the changes, one line each: "gone since 2026-11-29T08:30:00Z: 340 points around (1.20,
+/// 0.35, 4.10)". Those beyond the first twenty are only counted.
+void print_changes(const std::vector<MapChange>& changes,
+                   const std::vector<MapRecording>& recordings);
 
 /// The changes as a table of a page.
 PageTable change_table(const std::vector<MapChange>& changes,

@@ -43,13 +43,10 @@ void print_maps(const MapContent& content) {
   std::set<int> numbers;
   for (const Keyframe& keyframe : content.keyframes.all()) numbers.insert(keyframe.map);
   for (const int number : numbers) {
-    std::size_t keyframes = 0;
-    for (const Keyframe& keyframe : content.keyframes.all()) {
-      keyframes += keyframe.map == number ? 1 : 0;
-    }
+    const auto keyframes = static_cast<std::size_t>(
+        std::ranges::count(content.keyframes.all(), number, &Keyframe::map));
     const MapCloud surface = surface_of(content, number);
-    Eigen::AlignedBox3f box;
-    for (const MapPoint& point : surface) box.extend(Eigen::Vector3f(point.getVector3fMap()));
+    const Eigen::AlignedBox3f box = box_of(surface);
     Eigen::Vector3f size_m = Eigen::Vector3f::Zero();
     if (!box.isEmpty()) size_m = box.sizes();
     std::printf("map %d: %s, %zu points, %.2f x %.2f x %.2f m\n", number,
@@ -81,9 +78,7 @@ void print_map_information(const std::filesystem::path& file) {
   print_constraints(content);
   std::printf("surface: %s of %.3f m in %s\n", counted(voxel_count(content), "voxel").c_str(),
               content.surface_options.voxel_m, counted(content.submaps.size(), "submap").c_str());
-  for (const std::string& line : told_changes(content.changes, content.recordings)) {
-    std::printf("%s\n", line.c_str());
-  }
+  print_changes(content.changes, content.recordings);
 }
 
 }  // namespace tofmap::app

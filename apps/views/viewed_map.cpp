@@ -54,23 +54,13 @@ std::optional<MapDetails> details_if_there(const fs::path& file) {
   }
 }
 
-/// The poses of all keyframes of a map.
-Trajectory keyframes_of(const MapDetails& details) {
-  Trajectory poses;
-  for (const Keyframe& keyframe : details.content().keyframes.all()) {
-    if (keyframe.map != details.map()) continue;
-    poses.push_back({keyframe.timestamp_s, keyframe.world_from_camera});
-  }
-  return poses;
-}
-
 /// A map with its trajectory and keyframes.
 struct PathedMap {
   explicit PathedMap(const ViewedFile& from) : method(from.method) {
     if (from.file.extension() == ".db") {
       details.emplace(MapStore::open(from.file).content());
       map = surface_of(details->content(), details->map());
-      keyframes = keyframes_of(*details);
+      keyframes = all_keyframes_of(details->content(), details->map());
       trajectory = keyframes;
       return;
     }

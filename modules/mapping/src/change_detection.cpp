@@ -8,12 +8,9 @@
 #include "tofmap/mapping/free_space.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numeric>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -116,60 +113,82 @@ std::vector<char> without_counterpart(const MapCloud& points, const MapCloud& ot
   return is_alone;
 }
 
+/// Tells points that belong to no change.
+constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+/// The points that keyframes of another time see through: themselves, as the seeds of changes.
+/// `none` for all others. `sightings` are those of these keyframes.
+std::vector<std::size_t> seeds_of_changes(const SeenSurface& surface,
+                                          const std::vector<char>& is_alone,
+                                          const std::vector<Sightings>& sightings) {
+  std::vector<std::size_t> seed_of(surface.points.size(), none);
+  for (std::size_t i = 0; i < seed_of.size(); ++i) {
+    const bool is_seed = is_alone[i] != 0 && surface.is_sure[i] != 0 &&
+                         sightings[i].violating >= least_views &&
+                         sightings[i].violates_free_space();
+    if (is_seed) seed_of[i] = i;
+  }
+  return seed_of;
+}
+
+/// Adds what is connected with seeds and has no counterpart either. Each point gets its seed.
+void grow(const MapCloud& points, const NearPoints& search, const std::vector<char>& is_alone,
+          std::vector<std::size_t>& seed_of) {
+  std::vector<std::size_t> open;
+  std::ranges::copy_if(seed_of, std::back_inserter(open),
+                       [](std::size_t seed) { return seed != none; });
+  for (std::size_t done = 0; done < open.size(); ++done) {
+    const std::size_t seed = seed_of[open[done]];
+    search.any_near(points[open[done]], [&](std::size_t i) {
+      const float gap_m = (points[i].getVector3fMap() - points[seed].getVector3fMap()).norm();
+      if (seed_of[i] == none && is_alone[i] != 0 && gap_m <= growth_m) {
+        seed_of[i] = seed;
+        open.push_back(i);
+      }
+      return false;
+    });
+  }
+}
+
+/// Takes the points that are connected with a point and belong to a change, in ascending order.
+std::vector<std::size_t> take_piece(std::size_t first, const MapCloud& points,
+                                    const NearPoints& search,
+                                    const std::vector<std::size_t>& seed_of,
+                                    std::vector<char>& is_taken) {
+  is_taken[first] = 1;
+  std::vector<std::size_t> piece{first};
+  for (std::size_t done = 0; done < piece.size(); ++done) {
+    search.any_near(points[piece[done]], [&](std::size_t i) {
+      if (seed_of[i] != none && is_taken[i] == 0) {
+        is_taken[i] = 1;
+        piece.push_back(i);
+      }
+      return false;
+    });
+  }
+  std::ranges::sort(piece);
+  return piece;
+}
+
 /// The connected pieces of a surface that keyframes of another time see through. `other` is the
 /// surface that these saw.
 std::vector<MapCloud> pieces_seen_through(const SeenSurface& surface, const SeenSurface& other,
                                           const MapContent& content) {
   const MapCloud& points = surface.points;
   const double voxel_m = content.surface_options.voxel_m;
-  const auto step_m = static_cast<float>(2 * voxel_m);
+  const NearPoints search(points, static_cast<float>(2 * voxel_m));
   const std::vector<char> is_alone =
       without_counterpart(points, other.points, static_cast<float>(voxel_m));
-  const std::vector<Sightings> sightings =
-      sightings_of(points, other.keyframes, content.camera, voxel_m);
-  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-  std::vector<std::size_t> seed_of(points.size(), none);
-  std::vector<std::size_t> open;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (is_alone[i] == 0 || surface.is_sure[i] == 0 || sightings[i].violating < least_views ||
-        !sightings[i].violates_free_space()) {
-      continue;
-    }
-    seed_of[i] = i;
-    open.push_back(i);
-  }
-  const NearPoints search(points, step_m);
-  for (std::size_t done = 0; done < open.size(); ++done) {
-    const std::size_t from = open[done];
-    search.any_near(points[from], [&](std::size_t i) {
-      const MapPoint& seed = points[seed_of[from]];
-      if (seed_of[i] == none && is_alone[i] != 0 &&
-          (points[i].getVector3fMap() - seed.getVector3fMap()).norm() <= growth_m) {
-        seed_of[i] = seed_of[from];
-        open.push_back(i);
-      }
-      return false;
-    });
-  }
-  std::ranges::sort(open);
+  std::vector<std::size_t> seed_of = seeds_of_changes(
+      surface, is_alone, sightings_of(points, other.keyframes, content.camera, voxel_m));
+  grow(points, search, is_alone, seed_of);
   std::vector<MapCloud> pieces;
   std::vector<char> is_taken(points.size(), 0);
-  for (const std::size_t first : open) {
-    if (is_taken[first] != 0) continue;
-    is_taken[first] = 1;
-    std::vector<std::size_t> piece{first};
-    for (std::size_t done = 0; done < piece.size(); ++done) {
-      search.any_near(points[piece[done]], [&](std::size_t i) {
-        if (seed_of[i] != none && is_taken[i] == 0) {
-          is_taken[i] = 1;
-          piece.push_back(i);
-        }
-        return false;
-      });
-    }
+  for (std::size_t first = 0; first < points.size(); ++first) {
+    if (seed_of[first] == none || is_taken[first] != 0) continue;
+    const auto piece = take_piece(first, points, search, seed_of, is_taken);
     const auto seeds = std::ranges::count_if(piece, [&](std::size_t i) { return seed_of[i] == i; });
     if (2 * seeds < std::ssize(piece) || piece.size() < least_points_of_change) continue;
-    std::ranges::sort(piece);
     MapCloud& cloud = pieces.emplace_back();
     for (const std::size_t i : piece) cloud.push_back(points[i]);
   }
@@ -186,7 +205,7 @@ Eigen::Vector3d upwards(std::span<const Keyframe> keyframes) {
 /// Whether keyframes see a surface where a motion puts it, as far as they see that place.
 bool may_be_at(const MapCloud& surface, const Pose& motion, const SeenSurface& seen,
                const MapContent& content) {
-  constexpr double most_seen_through = 0.1;
+  constexpr double most_violations_when_moved = 0.1;
   MapCloud moved = surface;
   for (MapPoint& point : moved) {
     point.getVector3fMap() = motion.cast<float>() * Eigen::Vector3f(point.getVector3fMap());
@@ -194,9 +213,9 @@ bool may_be_at(const MapCloud& surface, const Pose& motion, const SeenSurface& s
   }
   const std::vector<Sightings> sightings =
       sightings_of(moved, seen.keyframes, content.camera, content.surface_options.voxel_m);
-  const auto seen_through = std::ranges::count_if(sightings, &Sightings::violates_free_space);
-  return static_cast<double>(seen_through) <=
-         most_seen_through * static_cast<double>(surface.size());
+  const auto violations = std::ranges::count_if(sightings, &Sightings::violates_free_space);
+  return static_cast<double>(violations) <=
+         most_violations_when_moved * static_cast<double>(surface.size());
 }
 
 /// Takes out the pieces that have moved, those that fit best first. `before` and `now` are what was
@@ -240,8 +259,6 @@ std::vector<MapChange> take_moved(std::vector<MapCloud>& gone, std::vector<MapCl
   return changes;
 }
 
-std::size_t size_of(const MapChange& change) { return change.before.size() + change.after.size(); }
-
 /// The changes that a recording shows, the largest of each kind first.
 std::vector<MapChange> changes_in(const MapContent& content, int map, int recording) {
   const SeenSurface before = surface_seen(content, map, 0, recording);
@@ -267,17 +284,12 @@ std::vector<MapChange> changes_in(const MapContent& content, int map, int record
     change.recording = recording;
   }
   std::ranges::stable_sort(changes, [](const MapChange& one, const MapChange& other) {
-    return std::pair(one.kind, size_of(other)) < std::pair(other.kind, size_of(one));
+    return std::pair(one.kind, point_count(other)) < std::pair(other.kind, point_count(one));
   });
   return changes;
 }
 
-constexpr std::array<NamedValue<ChangeKind>, 3> kind_names{
-    {{"gone", ChangeKind::gone}, {"new", ChangeKind::appeared}, {"moved", ChangeKind::moved}}};
-
 }  // namespace
-
-std::span<const NamedValue<ChangeKind>> named_values(ChangeKind /*kind*/) { return kind_names; }
 
 std::vector<MapChange> find_changes(const MapContent& content, int map) {
   std::vector<MapChange> changes;

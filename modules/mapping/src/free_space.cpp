@@ -66,8 +66,7 @@ double free_space_violation_share(const RegistrationTarget& one, const Registrat
 
 bool contradicts_free_space(const RegistrationTarget& placed, const RegistrationTarget& target,
                             const CameraModel& camera, double most_share) {
-  constexpr double pose_error_m = 0.03;
-  return free_space_violation_share(placed, target, camera, pose_error_m) >= most_share;
+  return free_space_violation_share(placed, target, camera, tolerated_pose_error_m) >= most_share;
 }
 
 std::vector<Sightings> sightings_of(const MapCloud& map, std::span<const Keyframe> keyframes,

@@ -9,7 +9,6 @@
 #include "tofmap/mapping/place_recognition.hpp"
 
 #include <algorithm>
-#include <set>
 #include <vector>
 
 namespace tofmap {
@@ -18,11 +17,8 @@ namespace {
 /// By how much the share of violations at another place must be larger.
 constexpr double least_difference = 0.02;
 
-/// Errors of the poses of both maps that are tolerated in the comparison.
-constexpr double pose_error_m = 0.03;
-
-/// Number of keyframes that make a rival.
-constexpr std::size_t least_of_rival = 2;
+/// Number of keyframes that make a runner-up.
+constexpr std::size_t least_of_runner_up = 2;
 
 class JoinSearch {
  public:
@@ -34,14 +30,13 @@ class JoinSearch {
     }
   }
 
-  std::vector<MapJoin> rivals(const MapJoin& join, std::span<const PoseEdge> recognitions) const;
+  std::vector<MapJoin> runners_up(const MapJoin& join,
+                                  std::span<const PoseEdge> recognitions) const;
   double violations_at(const MapJoin& join) const;
 
  private:
   const Keyframe& at(int id) const { return keyframes_[static_cast<std::size_t>(id)]; }
-  Pose into_from_map(const PoseEdge& edge) const;
   bool is_at(const PoseEdge& edge, const MapJoin& join) const;
-  const Keyframe* nearest(const Pose& pose, int map) const;
 
   int map_;
   std::span<const Keyframe> keyframes_;
@@ -50,11 +45,6 @@ class JoinSearch {
   const LoopOptions& options_;
   std::vector<const Keyframe*> own_;  ///< those of the map
 };
-
-Pose JoinSearch::into_from_map(const PoseEdge& edge) const {
-  return at(edge.from).world_from_camera * edge.from_from_to *
-         at(edge.to).world_from_camera.inverse();
-}
 
 /// Whether a recognition puts its keyframe about where a join does.
 bool JoinSearch::is_at(const PoseEdge& edge, const MapJoin& join) const {
@@ -65,42 +55,22 @@ bool JoinSearch::is_at(const PoseEdge& edge, const MapJoin& join) const {
 }
 
 /// Other places that keyframes agree on.
-std::vector<MapJoin> JoinSearch::rivals(const MapJoin& join,
-                                        std::span<const PoseEdge> recognitions) const {
+std::vector<MapJoin> JoinSearch::runners_up(const MapJoin& join,
+                                            std::span<const PoseEdge> recognitions) const {
   std::vector<const PoseEdge*> edges;
   for (const PoseEdge& edge : recognitions) {
     if (at(edge.to).map == map_ && !is_at(edge, join)) edges.push_back(&edge);
   }
-  std::vector<MapJoin> rivals;
-  while (edges.size() >= least_of_rival) {
+  std::vector<MapJoin> runners_up;
+  while (edges.size() >= least_of_runner_up) {
     const auto agreeing = most_that_agree(edges, keyframes_, options_);
-    std::set<int> recognising;
-    for (const PoseEdge* edge : agreeing) recognising.insert(edge->to);
-    if (recognising.size() < least_of_rival) break;
-    const PoseEdge& first = *agreeing.front();
-    rivals.push_back({.into = at(first.from).map,
-                      .map = map_,
-                      .into_from_map = into_from_map(first),
-                      .edges = {}});
+    if (recognising_keyframes(agreeing) < least_of_runner_up) break;
+    runners_up.push_back(join_by(agreeing, map_, keyframes_));
     std::erase_if(edges, [&](const PoseEdge* edge) {
-      return is_at(*edge, rivals.back()) || std::ranges::count(agreeing, edge) > 0;
+      return is_at(*edge, runners_up.back()) || std::ranges::count(agreeing, edge) > 0;
     });
   }
-  return rivals;
-}
-
-/// The keyframe of another map that sees mostly the same from a pose. Null if there is none.
-const Keyframe* JoinSearch::nearest(const Pose& pose, int map) const {
-  const Keyframe* nearest = nullptr;
-  double least_steps = steps_of_same_view;
-  for (const Keyframe& keyframe : keyframes_) {
-    if (keyframe.map != map) continue;
-    const double steps = spacing_.between(keyframe.world_from_camera, pose);
-    if (steps >= least_steps) continue;
-    nearest = &keyframe;
-    least_steps = steps;
-  }
-  return nearest;
+  return runners_up;
 }
 
 /// The mean share of free-space violations of the keyframes at a place. 1 if they see nothing there
@@ -112,17 +82,33 @@ double JoinSearch::violations_at(const MapJoin& join) const {
   int compared = 0;
   for (std::size_t i = 0; i < own_.size(); i += step) {
     const Pose pose = join.into_from_map * own_[i]->world_from_camera;
-    const Keyframe* other = nearest(pose, join.into);
+    const Keyframe* other = nearest_view(pose, keyframes_, spacing_,
+                                         [&](const Keyframe& one) { return one.map == join.into; });
     if (other == nullptr) continue;
     const auto cloud = own_[i]->cloud.load();
-    sum +=
-        free_space_violation_share({cloud.get(), pose}, target_of(*other), camera_, pose_error_m);
+    sum += free_space_violation_share({cloud.get(), pose}, target_of(*other), camera_,
+                                      tolerated_pose_error_m);
     ++compared;
   }
   return compared > 0 ? sum / compared : 1;
 }
 
 }  // namespace
+
+const Keyframe* nearest_view(const Pose& pose, std::span<const Keyframe> keyframes,
+                             const KeyframeSpacing& spacing,
+                             const std::function<bool(const Keyframe&)>& counts) {
+  const Keyframe* nearest = nullptr;
+  double least_steps = steps_of_same_view;
+  for (const Keyframe& keyframe : keyframes) {
+    if (!counts(keyframe)) continue;
+    const double steps = spacing.between(keyframe.world_from_camera, pose);
+    if (steps >= least_steps) continue;
+    nearest = &keyframe;
+    least_steps = steps;
+  }
+  return nearest;
+}
 
 bool is_certain(const MapJoin& join, std::span<const PoseEdge> recognitions,
                 const std::function<bool(const MapJoin&)>& is_possible,
@@ -131,8 +117,9 @@ bool is_certain(const MapJoin& join, std::span<const PoseEdge> recognitions,
   const JoinSearch search(join.map, keyframes, camera, spacing, options);
   const double violations = search.violations_at(join);
   if (violations >= most_violations_since) return false;
-  return std::ranges::none_of(search.rivals(join, recognitions), [&](const MapJoin& rival) {
-    return is_possible(rival) && search.violations_at(rival) < violations + least_difference;
+  return std::ranges::none_of(search.runners_up(join, recognitions), [&](const MapJoin& runner_up) {
+    return is_possible(runner_up) &&
+           search.violations_at(runner_up) < violations + least_difference;
   });
 }
 

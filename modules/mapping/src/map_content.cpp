@@ -124,6 +124,15 @@ Trajectory keyframe_trajectory_of(const MapContent& content, int map) {
   return trajectory;
 }
 
+Trajectory all_keyframes_of(const MapContent& content, int map) {
+  Trajectory trajectory;
+  for (const Keyframe& keyframe : content.keyframes.all()) {
+    if (keyframe.map != map) continue;
+    trajectory.push_back({keyframe.timestamp_s, keyframe.world_from_camera});
+  }
+  return trajectory;
+}
+
 PoseCertainty least_certain_of(const MapContent& content, int map) {
   const MapGraph graph(content, map);
   const std::vector<ExpectedError> errors = expected_errors(graph.poses, graph.edges);

@@ -9,15 +9,26 @@
 #include <set>
 
 namespace tofmap {
-namespace {
 
-std::size_t recognised_keyframes(const std::vector<const PoseEdge*>& edges) {
+std::size_t recognising_keyframes(const std::vector<const PoseEdge*>& recognitions) {
   std::set<int> keyframes;
-  for (const PoseEdge* edge : edges) keyframes.insert(edge->to);
+  for (const PoseEdge* edge : recognitions) keyframes.insert(edge->to);
   return keyframes.size();
 }
 
-}  // namespace
+MapJoin join_by(const std::vector<const PoseEdge*>& recognitions, int map,
+                std::span<const Keyframe> keyframes) {
+  const PoseEdge& first = *recognitions.front();
+  const Keyframe& from = keyframes[static_cast<std::size_t>(first.from)];
+  const Keyframe& to = keyframes[static_cast<std::size_t>(first.to)];
+  MapJoin join{
+      .into = from.map,
+      .map = map,
+      .into_from_map = from.world_from_camera * first.from_from_to * to.world_from_camera.inverse(),
+      .edges = {}};
+  for (const PoseEdge* edge : recognitions) join.edges.push_back(*edge);
+  return join;
+}
 
 std::optional<MapJoin> find_join(std::span<const PoseEdge> recognitions, int map,
                                  std::span<const Keyframe> keyframes, const LoopOptions& options) {
@@ -31,16 +42,10 @@ std::optional<MapJoin> find_join(std::span<const PoseEdge> recognitions, int map
   std::optional<MapJoin> best;
   for (const auto& [into, edges] : by_map) {
     const auto agreeing = most_that_agree(edges, keyframes, options);
-    const bool is_sure = recognised_keyframes(agreeing) >= least_agreeing_keyframes &&
+    const bool is_sure = recognising_keyframes(agreeing) >= least_agreeing_keyframes &&
                          2 * agreeing.size() > edges.size();
     if (!is_sure || (best && agreeing.size() <= best->edges.size())) continue;
-    const PoseEdge& first = *agreeing.front();
-    best = MapJoin{.into = into,
-                   .map = map,
-                   .into_from_map = at(first.from).world_from_camera * first.from_from_to *
-                                    at(first.to).world_from_camera.inverse(),
-                   .edges = {}};
-    for (const PoseEdge* edge : agreeing) best->edges.push_back(*edge);
+    best = join_by(agreeing, map, keyframes);
   }
   return best;
 }

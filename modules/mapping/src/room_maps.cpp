@@ -139,7 +139,8 @@ void RoomMapper::recognise_among(const Keyframe& keyframe, std::vector<const Key
   std::erase_if(candidates,
                 [&](const Keyframe* candidate) { return candidate->recording < recording(); });
   if (!earlier.empty()) ++nearness_.keyframes;
-  for (auto& of_one_kind : {candidates, earlier}) {
+  for (const auto& of_one_kind : {candidates, earlier}) {
+    if (of_one_kind.empty()) continue;
     const auto found = recognise(keyframe, of_one_kind, is_possible, content_.keyframes.all(),
                                  camera_, loop_options_, registration_);
     if (!found) continue;
@@ -417,16 +418,9 @@ void RoomMapper::return_to_origin(int map) {
 /// The keyframe of a map that is nearest to a pose, among those of maps that the newest one was
 /// joined with. Null if none sees mostly the same.
 const Keyframe* RoomMapper::keyframe_near(const Pose& pose, int map) const {
-  const Keyframe* nearest = nullptr;
-  double least_steps = steps_of_same_view;
-  for (const Keyframe& keyframe : content_.keyframes.all()) {
-    if (keyframe.map != map || is_own(keyframe)) continue;
-    const double steps = keyframe_spacing().between(keyframe.world_from_camera, pose);
-    if (steps >= least_steps) continue;
-    nearest = &keyframe;
-    least_steps = steps;
-  }
-  return nearest;
+  return nearest_view(
+      pose, content_.keyframes.all(), keyframe_spacing(),
+      [&](const Keyframe& keyframe) { return keyframe.map == map && !is_own(keyframe); });
 }
 
 int RoomMapper::blind_joins() const {

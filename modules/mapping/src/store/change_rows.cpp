@@ -6,11 +6,9 @@
 #include "../state_json.hpp"
 #include "rows.hpp"
 
-#include <array>
 #include <limits>
 #include <string>
 
-#include <Eigen/Geometry>
 #include <zlib.h>
 
 #include <tofmap/core/bytes.hpp>
@@ -19,8 +17,9 @@ namespace tofmap {
 namespace {
 
 /// The columns of the table `changes`.
-enum Column { id, map, recording, kind, points, first_of_box, moved = 11, motion, before, after };
-constexpr int columns = after + 1;
+struct Column {
+  enum { id, map, recording, kind, points, box, moved = 11, motion, before, after, count };
+};
 
 constexpr int numbers_per_point = 7;
 constexpr std::size_t bytes_per_point =
@@ -55,26 +54,6 @@ MapCloud cloud_in(std::string_view bytes, int recordings) {
   return cloud;
 }
 
-Eigen::AlignedBox3f box_of(const MapChange& change) {
-  Eigen::AlignedBox3f box;
-  for (const MapCloud* cloud : {&change.before, &change.after}) {
-    for (const MapPoint& point : *cloud) box.extend(Eigen::Vector3f(point.getVector3fMap()));
-  }
-  return box;
-}
-
-Eigen::Vector3d centroid_of(const MapCloud& cloud) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const MapPoint& point : cloud) sum += point.getVector3fMap().cast<double>();
-  return sum / static_cast<double>(cloud.size());
-}
-
-/// How far the middle of what was there before has moved.
-double moved_m(const MapChange& change) {
-  const Eigen::Vector3d middle_m = centroid_of(change.before);
-  return (change.after_from_before * middle_m - middle_m).norm();
-}
-
 }  // namespace
 
 std::uint32_t checksum_of(std::span<const MapChange> changes) {
@@ -99,27 +78,27 @@ std::uint32_t checksum_of(std::span<const MapChange> changes) {
 void write_changes(std::span<const MapChange> changes, SQLite::Database& database) {
   database.exec("DELETE FROM changes");
   std::string sql = "INSERT INTO changes VALUES (?";
-  for (int i = 1; i < columns; ++i) sql += ", ?";
+  for (int i = 1; i < Column::count; ++i) sql += ", ?";
   SQLite::Statement row(database, sql + ")");
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const MapChange& change = changes[i];
     // Parameters count from 1, columns from 0.
-    row.bind(1 + id, static_cast<int>(i));
-    row.bind(1 + map, change.map);
-    row.bind(1 + recording, change.recording);
-    row.bind(1 + kind, std::string(name_of(change.kind)));
-    row.bind(1 + points, static_cast<int>(change.before.size() + change.after.size()));
-    const Eigen::AlignedBox3f box = box_of(change);
+    row.bind(1 + Column::id, static_cast<int>(i));
+    row.bind(1 + Column::map, change.map);
+    row.bind(1 + Column::recording, change.recording);
+    row.bind(1 + Column::kind, std::string(name_of(change.kind)));
+    row.bind(1 + Column::points, static_cast<int>(point_count(change)));
+    const Eigen::AlignedBox3f box = box_of(change.before).merged(box_of(change.after));
     for (int axis = 0; axis < 3; ++axis) {
-      row.bind(1 + first_of_box + 2 * axis, static_cast<double>(box.min()[axis]));
-      row.bind(2 + first_of_box + 2 * axis, static_cast<double>(box.max()[axis]));
+      row.bind(1 + Column::box + 2 * axis, static_cast<double>(box.min()[axis]));
+      row.bind(2 + Column::box + 2 * axis, static_cast<double>(box.max()[axis]));
     }
-    if (change.kind == ChangeKind::moved) row.bind(1 + moved, moved_m(change));
-    bind_numbers(row, 1 + motion, change.after_from_before.data(), 16);
+    if (change.kind == ChangeKind::moved) row.bind(1 + Column::moved, moved_m(change));
+    bind_numbers(row, 1 + Column::motion, change.after_from_before.data(), 16);
     const std::string before_bytes = bytes_of(change.before);
     const std::string after_bytes = bytes_of(change.after);
-    bind_bytes(row, 1 + before, before_bytes);
-    bind_bytes(row, 1 + after, after_bytes);
+    bind_bytes(row, 1 + Column::before, before_bytes);
+    bind_bytes(row, 1 + Column::after, after_bytes);
     row.exec();
     row.reset();
     row.clearBindings();
@@ -128,18 +107,18 @@ void write_changes(std::span<const MapChange> changes, SQLite::Database& databas
 
 MapChange change_in(SQLite::Statement& row, int recordings) {
   MapChange change;
-  change.map = integer_in(row, map, 0, std::numeric_limits<int>::max());
-  change.recording = integer_in(row, recording, 1, recordings - 1);
-  const auto named = find_named<ChangeKind>(row.getColumn(kind).getString());
+  change.map = integer_in(row, Column::map, 0, std::numeric_limits<int>::max());
+  change.recording = integer_in(row, Column::recording, 1, recordings - 1);
+  const auto named = find_named<ChangeKind>(row.getColumn(Column::kind).getString());
   if (!named) throw InputError("a change is neither 'gone', 'new' nor 'moved'");
   change.kind = *named;
   Eigen::Matrix4d matrix;
-  read_numbers(row, motion, matrix.data(), static_cast<int>(matrix.size()));
+  read_numbers(row, Column::motion, matrix.data(), static_cast<int>(matrix.size()));
   check_rotation(matrix.topLeftCorner<3, 3>());
   if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) throw InputError("a motion is none");
   change.after_from_before = Pose(matrix);
-  const SQLite::Column before_bytes = row.getColumn(before);
-  const SQLite::Column after_bytes = row.getColumn(after);
+  const SQLite::Column before_bytes = row.getColumn(Column::before);
+  const SQLite::Column after_bytes = row.getColumn(Column::after);
   change.before = cloud_in(bytes_in(before_bytes), recordings);
   change.after = cloud_in(bytes_in(after_bytes), recordings);
   if (change.before.empty() != (change.kind == ChangeKind::appeared) ||

@@ -47,6 +47,9 @@ MapCloud without_free_space_violations(const MapCloud& map, std::span<const Keyf
 double free_space_violation_share(const RegistrationTarget& one, const RegistrationTarget& other,
                                   const CameraModel& camera, double margin_m);
 
+/// Errors of poses that are tolerated where clouds are compared.
+inline constexpr double tolerated_pose_error_m = 0.03;
+
 /// Share of free-space violations from which on two clouds of one recording contradict each other.
 inline constexpr double most_violations = 0.05;
 
@@ -55,7 +58,7 @@ inline constexpr double most_violations_since = 0.3;
 
 /// Whether a cloud at the pose that registration has found contradicts the free space of a target:
 /// of what both see of each other, they see through at least `most_share`
-/// (free_space_violation_share()). Errors of the pose of 3 cm are tolerated.
+/// (free_space_violation_share()). Errors of the pose of `tolerated_pose_error_m` are tolerated.
 bool contradicts_free_space(const RegistrationTarget& placed, const RegistrationTarget& target,
                             const CameraModel& camera, double most_share = most_violations);
 

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <span>
+
+#include <Eigen/Geometry>
 
 #include <tofmap/cloud/cloud_file.hpp>
 #include <tofmap/core/named_value.hpp>
@@ -29,5 +32,14 @@ struct MapChange {
   MapCloud after;     ///< what is there since, in the world of the map; empty if `gone`
   Pose after_from_before = Pose::Identity();  ///< the motion, in the world of the map, if `moved`
 };
+
+/// The box around the points of a cloud. Empty if there are none.
+Eigen::AlignedBox3f box_of(const MapCloud& cloud);
+
+/// Number of points before and after.
+std::size_t point_count(const MapChange& change);
+
+/// How far the middle of a thing has moved, that is, of the box around what was there before.
+double moved_m(const MapChange& change);
 
 }  // namespace tofmap

@@ -110,6 +110,9 @@ std::vector<int> frames_of(const MapContent& content, int map);
 /// Current poses of the keyframes of the last recording that belong to a map.
 Trajectory keyframe_trajectory_of(const MapContent& content, int map);
 
+/// Current poses of all keyframes of a map.
+Trajectory all_keyframes_of(const MapContent& content, int map);
+
 /// The frame of the last recording in a map whose position is least certain: that of its keyframe
 /// is as certain as the covariances of the edges of odometry and of the loops that are used say
 /// (expected_errors()), and that relative to the keyframe as when it was registered. The map must

@@ -25,6 +25,14 @@ struct MapJoin {
 /// alike.
 inline constexpr std::size_t least_agreeing_keyframes = 3;
 
+/// Number of keyframes that recognitions are of.
+std::size_t recognising_keyframes(const std::vector<const PoseEdge*>& recognitions);
+
+/// The join of `map` that recognitions agree on: the relative pose is that of the first one.
+/// `keyframes` are in the order of their ids, from 0.
+MapJoin join_by(const std::vector<const PoseEdge*>& recognitions, int map,
+                std::span<const Keyframe> keyframes);
+
 /// Searches for a map that `map` can be joined with. `recognitions` are edges between keyframes of
 /// different maps, from the map that was there first.
 ///
