@@ -24,6 +24,8 @@ except ImportError as missing:
 
 SOURCE, TOFMAP = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
 SMALL = ["--set", "simulator.width_px=44", "--set", "simulator.height_px=36"]
+# Large and long enough for a recording to be found in the map of another.
+KNOWN = ["--frames", "60", "--set", "simulator.width_px=88", "--set", "simulator.height_px=72"]
 FAST = ["--set", "simulator.subpixels=1"]  # for packets of a Kinect v2, which have one size
 
 # Two frames of correlation images of 4 x 3 pixels.
@@ -109,14 +111,22 @@ class DocumentedCommands(unittest.TestCase):
                       ["map", cls.sequence, "--out", cls.map, "--pcd", "--set",
                        "map.min_observations=1"]):
             run([TOFMAP, *words], cls.common).check_returncode()
+        cls.recordings = [cls.common / f"recording-{seed}" for seed in (1, 2)]
+        cls.maps = [cls.common / f"map-{seed}" for seed in (1, 2)]
+        for seed, (recording, of_it) in enumerate(zip(cls.recordings, cls.maps), 1):
+            for words in (["simulate", "room", "--seed", str(seed), "--out", recording, *KNOWN],
+                          ["map", recording, "--out", of_it]):
+                run([TOFMAP, *words], cls.common).check_returncode()
 
     def replaced(self, words, folder):
         """The command with what is there in place of names, and smaller."""
-        numbers = itertools.count()
+        numbers, maps = itertools.count(), itertools.cycle(self.maps)
         inputs = {"SEQ": self.sequence, "DIR": self.map, "SCENE": "wall", "map.ply": "map.ply",
                   "URI": f"tofmap://{self.sequence}?speed=-1", "shop.ply": self.common / "room.ply",
                   "FORMAT": "correlation", "PATH": self.common / "images.yaml",
                   "out/demo/map": self.map, "out/demo/recording": self.sequence}
+        if "MAP" in words:  # the map of one recording, and another recording of that room
+            inputs["SEQ"] = self.recordings[1]
         out = [TOFMAP]
         for before, word in zip(words, words[1:]):
             is_output = before in ("--out", "--oni", "--screenshot")
@@ -126,6 +136,8 @@ class DocumentedCommands(unittest.TestCase):
             elif word == "CLOUDS":
                 out += [self.map / "map.ply", self.map / "map.pcd"]
                 continue
+            elif word == "MAP":
+                word = next(maps)
             elif not is_output:
                 word = inputs.get(word, word)
             out.append(word)
