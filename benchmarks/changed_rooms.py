@@ -12,7 +12,9 @@ in it. For each scene, a line has
 
     found    share of the frames of the second recording that were localised, %
     right    share of its frames that were localised within 1 cm and 0.5 degrees, %
-    mm, deg  largest error of a localised pose, in the frame of the map and without alignment
+    mm, deg  largest error of a localised pose. The frame of the map is aligned with the truth by
+             the path of the first recording, from which it was made; the second one has no part
+             in that
     prec     share of the points of changes that are on surfaces that changed, %
     recall   share of the surfaces that changed, and that both recordings tell of, that have a
              point of a change nearby, %
@@ -62,11 +64,21 @@ def poses(file):
     return matrices
 
 
-def localisation(map_sequence, sequence, result):
+def world_of(sequence, result):
+    """The pose of the true world in that of a map: the mean over the poses of its recording."""
+    truth, path = poses(sequence / "groundtruth.txt"), poses(result / "trajectory.txt")
+    there = numpy.array(list(path.values()))
+    true = numpy.array([truth[stamp] for stamp in path])
+    turned = there[:, :3, :3] @ true[:, :3, :3].transpose(0, 2, 1)
+    world = numpy.eye(4)
+    world[:3, :3] = Rotation.from_matrix(turned).mean().as_matrix()
+    world[:3, 3] = there[:, :3, 3].mean(axis=0) - world[:3, :3] @ true[:, :3, 3].mean(axis=0)
+    return world
+
+
+def localisation(world, sequence, result):
     """The shares of frames that are localised, and rightly so, and the largest errors."""
     truth = poses(sequence / "groundtruth.txt")
-    first = poses(map_sequence / "groundtruth.txt")
-    world = numpy.linalg.inv(first[min(first)])
     errors_m, errors_deg = [], []
     for stamp, pose in poses(result / "trajectory.txt").items():
         right = world @ truth[stamp]
@@ -189,10 +201,8 @@ class Side:
         return numpy.count_nonzero(scipy.spatial.cKDTree(points).query(self.points)[0] <= NEAR_M)
 
 
-def changes(first, second, maps):
+def changes(first, second, maps, world):
     """Numbers of points: of changes, of these the right ones, of the truth, of these those found."""
-    truth = poses(first / "groundtruth.txt")
-    world = numpy.linalg.inv(truth[min(truth)])
     points, is_now = changed_points(maps["onto"] / "changes.ply")
     gone = Side(first, second, maps["first"], world)
     new = Side(second, first, maps["onto"], world)
@@ -226,8 +236,9 @@ def evaluate(tofmap, folder, scene, seed, arguments):
     make(maps["first"], tofmap, "map", first)
     make(maps["onto"], tofmap, "map", second, "--onto", maps["first"])
     make(maps["found"], tofmap, "localise", second, "--in", maps["first"])
-    found = localisation(first, second, maps["found"])
-    points, right, truth, recalled = changes(first, second, maps)
+    world = world_of(first, maps["first"])
+    found = localisation(world, second, maps["found"])
+    points, right, truth, recalled = changes(first, second, maps, world)
     moved = moved_pieces(second, maps["onto"])
     print(f"{scene:9} {seed:4} {found[0]:6.1f} {found[1]:6.1f} {found[2]:6.1f} {found[3]:5.2f} "
           f"{percent(right, points):6.1f} {percent(recalled, truth):6.1f} {points:7} {truth:7} "

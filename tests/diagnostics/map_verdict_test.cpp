@@ -96,7 +96,7 @@ TEST(Verdict, GoesByFramesThatWereRegisteredSlowly) {
 
 TEST(Verdict, SaysToCheckAMapThatRecognisedPlacesContradict) {
   MapEvidence evidence = good_evidence();
-  evidence.unused_loops = 1;
+  evidence.contradicted_loops = 1;
   EXPECT_EQ(verdict_on(evidence), Verdict::check);
   EXPECT_EQ(told_reasons(judge(evidence)), " Reasons: the map contradicts 1 recognised place.");
 }

@@ -83,7 +83,8 @@ TEST_F(KnownMap, StaysAsItIsForALocalisedCamera) {
         << keyframe.id;
   }
   for (std::size_t i = 0; i < map_.submaps.size(); ++i) {
-    EXPECT_EQ(mapper.content().submaps[i].surface.to_bytes(), map_.submaps[i].surface.to_bytes());
+    EXPECT_EQ(mapper.content().submaps[i].surface.load()->to_bytes(),
+              map_.submaps[i].surface.load()->to_bytes());
   }
 }
 

@@ -172,6 +172,23 @@ TEST_F(StoredMap, NeedsNoCloudInMemoryThatIsInTheFile) {
   }
 }
 
+TEST_F(StoredMap, NeedsNoSubmapInMemoryThatIsNotChangedAnyMore) {
+  const std::vector<Submap>& submaps = mapper_.content().submaps;
+  MapStore made = MapStore::create(file());
+  store(made);
+  EXPECT_FALSE(submaps[0].surface.is_aside());
+  const std::string before = submaps[0].surface.load()->to_bytes();
+  store(made);
+  EXPECT_TRUE(submaps[0].surface.is_aside());
+  EXPECT_EQ(submaps[0].surface.load()->to_bytes(), before);
+  add(frames);
+  EXPECT_FALSE(
+      submaps[static_cast<std::size_t>(mapper_.content().submap_of.back())].surface.is_aside());
+  store(made);
+  made.settle();
+  expect_same(MapStore::open(file()).content(), mapper_.content());
+}
+
 TEST_F(StoredMap, KeepsEntriesByTheirNames) {
   MapStore made = MapStore::create(file());
   MapStore::Commit commit(made);

@@ -102,9 +102,9 @@ void Judge::judge_places() {
                     "by the look of the place ({}), and another place may look the same",
                     number_of(evidence_.blind_joins, "time")));
   }
-  if (evidence_.unused_loops > 0) {
-    hold_against(Verdict::check,
-                 "the map contradicts " + number_of(evidence_.unused_loops, "recognised place"));
+  if (evidence_.contradicted_loops > 0) {
+    hold_against(Verdict::check, "the map contradicts " +
+                                     number_of(evidence_.contradicted_loops, "recognised place"));
   }
   if (evidence_.joins > 0) {
     judgement_.remarks.push_back(

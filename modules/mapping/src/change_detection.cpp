@@ -68,12 +68,7 @@ SeenSurface surface_seen(const MapContent& content, int map, int first, int end)
   };
   std::ranges::copy_if(content.keyframes.all(), std::back_inserter(seen.keyframes), is_seen);
   std::ranges::stable_sort(seen.keyframes, {}, &Keyframe::recording);
-  SurfaceMap whole(content.surface_options);
-  for (const Submap& submap : content.submaps) {
-    const Keyframe& anchor = content.keyframes[submap.anchor];
-    if (is_seen(anchor)) whole.add(submap.surface, anchor.world_from_camera, anchor.recording);
-  }
-  const MapCloud points = whole.extract();
+  const MapCloud points = merged_submaps(content, is_seen);
   const std::vector<Sightings> sightings =
       sightings_of(points, seen.keyframes, content.camera, content.surface_options.voxel_m);
   const std::vector<int> resolving = resolving_views(points, seen.keyframes, content.camera);

@@ -5,6 +5,7 @@
 
 #include "registration_choice.hpp"
 #include "tofmap/mapping/free_space.hpp"
+#include "tofmap/mapping/keyframe_edge.hpp"
 #include "tofmap/mapping/loop_fit.hpp"
 #include "tofmap/mapping/place_recognition.hpp"
 
@@ -17,32 +18,32 @@ namespace {
 /// By how much the share of violations at another place must be larger.
 constexpr double least_difference = 0.02;
 
-/// Number of keyframes that make a runner-up.
-constexpr std::size_t least_of_runner_up = 2;
+/// Number of keyframes that must agree on a place for it to be tried, or to be a runner-up.
+constexpr std::size_t least_of_place = 2;
 
 class JoinSearch {
  public:
-  JoinSearch(int map, std::span<const Keyframe> keyframes, const CameraModel& camera,
-             const KeyframeSpacing& spacing, const LoopOptions& options)
-      : map_(map), keyframes_(keyframes), camera_(camera), spacing_(spacing), options_(options) {
-    for (const Keyframe& keyframe : keyframes) {
+  JoinSearch(int map, const JoinContext& context) : map_(map), context_(context) {
+    for (const Keyframe& keyframe : context.keyframes) {
       if (keyframe.map == map) own_.push_back(&keyframe);
     }
   }
 
+  std::vector<MapJoin> places(std::span<const PoseEdge> recognitions) const;
   std::vector<MapJoin> runners_up(const MapJoin& join,
                                   std::span<const PoseEdge> recognitions) const;
   double violations_at(const MapJoin& join) const;
+  std::optional<MapJoin> confirmed(const MapJoin& join) const;
 
  private:
-  const Keyframe& at(int id) const { return keyframes_[static_cast<std::size_t>(id)]; }
+  const Keyframe& at(int id) const { return context_.keyframes[static_cast<std::size_t>(id)]; }
   bool is_at(const PoseEdge& edge, const MapJoin& join) const;
+  std::vector<MapJoin> places_among(std::vector<const PoseEdge*> recognitions) const;
+  const Keyframe* nearest_of_others(const Pose& pose, const MapJoin& join) const;
+  std::optional<PoseEdge> registered(const Keyframe& keyframe, const MapJoin& join) const;
 
   int map_;
-  std::span<const Keyframe> keyframes_;
-  const CameraModel& camera_;
-  const KeyframeSpacing& spacing_;
-  const LoopOptions& options_;
+  const JoinContext& context_;
   std::vector<const Keyframe*> own_;  ///< those of the map
 };
 
@@ -54,6 +55,28 @@ bool JoinSearch::is_at(const PoseEdge& edge, const MapJoin& join) const {
                   recognition_reach_rad);
 }
 
+/// The places that keyframes agree on, those of most recognitions first.
+std::vector<MapJoin> JoinSearch::places_among(std::vector<const PoseEdge*> recognitions) const {
+  std::vector<MapJoin> places;
+  while (recognitions.size() >= least_of_place) {
+    const auto agreeing = most_that_agree(recognitions, context_.keyframes, context_.loops);
+    if (recognising_keyframes(agreeing) < least_of_place) break;
+    places.push_back(join_by(agreeing, map_, context_.keyframes));
+    std::erase_if(recognitions, [&](const PoseEdge* edge) {
+      return is_at(*edge, places.back()) || std::ranges::count(agreeing, edge) > 0;
+    });
+  }
+  return places;
+}
+
+std::vector<MapJoin> JoinSearch::places(std::span<const PoseEdge> recognitions) const {
+  std::vector<const PoseEdge*> edges;
+  for (const PoseEdge& edge : recognitions) {
+    if (at(edge.to).map == map_) edges.push_back(&edge);
+  }
+  return places_among(std::move(edges));
+}
+
 /// Other places that keyframes agree on.
 std::vector<MapJoin> JoinSearch::runners_up(const MapJoin& join,
                                             std::span<const PoseEdge> recognitions) const {
@@ -61,16 +84,49 @@ std::vector<MapJoin> JoinSearch::runners_up(const MapJoin& join,
   for (const PoseEdge& edge : recognitions) {
     if (at(edge.to).map == map_ && !is_at(edge, join)) edges.push_back(&edge);
   }
-  std::vector<MapJoin> runners_up;
-  while (edges.size() >= least_of_runner_up) {
-    const auto agreeing = most_that_agree(edges, keyframes_, options_);
-    if (recognising_keyframes(agreeing) < least_of_runner_up) break;
-    runners_up.push_back(join_by(agreeing, map_, keyframes_));
-    std::erase_if(edges, [&](const PoseEdge* edge) {
-      return is_at(*edge, runners_up.back()) || std::ranges::count(agreeing, edge) > 0;
-    });
+  return places_among(std::move(edges));
+}
+
+const Keyframe* JoinSearch::nearest_of_others(const Pose& pose, const MapJoin& join) const {
+  return nearest_view(pose, context_.keyframes, context_.spacing,
+                      [&](const Keyframe& one) { return one.map == join.into; });
+}
+
+/// Registers a keyframe from where a join puts it. Empty if it does not fit there.
+std::optional<PoseEdge> JoinSearch::registered(const Keyframe& keyframe,
+                                               const MapJoin& join) const {
+  const MotionPrior prior{.world_from_camera = join.into_from_map * keyframe.world_from_camera,
+                          .rotation_sigma_rad = recognition_reach_rad / 4,
+                          .translation_sigma_m = recognition_reach_m / 4};
+  const Keyframe* other = nearest_of_others(prior.world_from_camera, join);
+  if (other == nullptr) return std::nullopt;
+  const auto cloud = keyframe.cloud.load();
+  const RegistrationResult result =
+      register_to_targets(*cloud, targets_around(*other, context_.keyframes), context_.camera,
+                          prior, context_.registration);
+  // What a flat surface leaves open, the join tells.
+  const bool fits = result.status == RegistrationStatus::converged &&
+                    result.overlap >= context_.loops.min_overlap &&
+                    result.inlier_ratio >= context_.loops.min_inlier_ratio;
+  if (!fits || contradicts_free_space({cloud.get(), result.world_from_camera}, target_of(*other),
+                                      context_.camera, most_violations_since)) {
+    return std::nullopt;
   }
-  return runners_up;
+  return loop_edge(*other, keyframe.id, result);
+}
+
+/// The join with the other keyframes of the map that confirm it. Empty if they are too few.
+std::optional<MapJoin> JoinSearch::confirmed(const MapJoin& join) const {
+  std::vector<PoseEdge> edges = join.edges;
+  for (const Keyframe* keyframe : own_) {
+    if (std::ranges::count(join.edges, keyframe->id, &PoseEdge::to) > 0) continue;
+    if (const auto edge = registered(*keyframe, join)) edges.push_back(*edge);
+  }
+  std::vector<const PoseEdge*> all;
+  for (const PoseEdge& edge : edges) all.push_back(&edge);
+  const auto agreeing = most_that_agree(all, context_.keyframes, context_.loops);
+  if (recognising_keyframes(agreeing) < least_agreeing_keyframes) return std::nullopt;
+  return join_by(agreeing, map_, context_.keyframes);
 }
 
 /// The mean share of free-space violations of the keyframes at a place. 1 if they see nothing there
@@ -82,11 +138,10 @@ double JoinSearch::violations_at(const MapJoin& join) const {
   int compared = 0;
   for (std::size_t i = 0; i < own_.size(); i += step) {
     const Pose pose = join.into_from_map * own_[i]->world_from_camera;
-    const Keyframe* other = nearest_view(pose, keyframes_, spacing_,
-                                         [&](const Keyframe& one) { return one.map == join.into; });
+    const Keyframe* other = nearest_of_others(pose, join);
     if (other == nullptr) continue;
     const auto cloud = own_[i]->cloud.load();
-    sum += free_space_violation_share({cloud.get(), pose}, target_of(*other), camera_,
+    sum += free_space_violation_share({cloud.get(), pose}, target_of(*other), context_.camera,
                                       tolerated_pose_error_m);
     ++compared;
   }
@@ -111,16 +166,26 @@ const Keyframe* nearest_view(const Pose& pose, std::span<const Keyframe> keyfram
 }
 
 bool is_certain(const MapJoin& join, std::span<const PoseEdge> recognitions,
-                const std::function<bool(const MapJoin&)>& is_possible,
-                std::span<const Keyframe> keyframes, const CameraModel& camera,
-                const KeyframeSpacing& spacing, const LoopOptions& options) {
-  const JoinSearch search(join.map, keyframes, camera, spacing, options);
+                const IsPossibleJoin& is_possible, const JoinContext& context) {
+  const JoinSearch search(join.map, context);
   const double violations = search.violations_at(join);
   if (violations >= most_violations_since) return false;
   return std::ranges::none_of(search.runners_up(join, recognitions), [&](const MapJoin& runner_up) {
     return is_possible(runner_up) &&
            search.violations_at(runner_up) < violations + least_difference;
   });
+}
+
+std::optional<MapJoin> find_certain_join(int map, std::span<const PoseEdge> recognitions,
+                                         const IsPossibleJoin& is_possible,
+                                         const JoinContext& context) {
+  const JoinSearch search(map, context);
+  for (const MapJoin& place : search.places(recognitions)) {
+    if (!is_possible(place)) continue;
+    auto join = search.confirmed(place);
+    if (join && is_certain(*join, recognitions, is_possible, context)) return join;
+  }
+  return std::nullopt;
 }
 
 }  // namespace tofmap

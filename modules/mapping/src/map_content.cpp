@@ -178,19 +178,24 @@ std::size_t voxel_count(const MapContent& content) {
   return count;
 }
 
-MapCloud surface_of(const MapContent& content, int map) {
+MapCloud merged_submaps(const MapContent& content,
+                        const std::function<bool(const Keyframe& anchor)>& is_wanted) {
   SurfaceMap whole(content.surface_options);
   for (const Submap& submap : content.submaps) {
     const Keyframe& anchor = content.keyframes[submap.anchor];
-    if (anchor.map == map) {
-      whole.add(submap.surface, anchor.world_from_camera, anchor.recording);
+    if (is_wanted(anchor)) {
+      whole.add(*submap.surface.load(), anchor.world_from_camera, anchor.recording);
     }
   }
-  MapCloud surface = whole.extract();
+  return whole.extract();
+}
+
+MapCloud surface_of(const MapContent& content, int map) {
+  const auto is_of_map = [&](const Keyframe& keyframe) { return keyframe.map == map; };
+  MapCloud surface = merged_submaps(content, is_of_map);
   if (!content.surface_options.drop_free_space_violations) return surface;
   std::vector<Keyframe> seen_by;
-  std::ranges::copy_if(content.keyframes.all(), std::back_inserter(seen_by),
-                       [&](const Keyframe& keyframe) { return keyframe.map == map; });
+  std::ranges::copy_if(content.keyframes.all(), std::back_inserter(seen_by), is_of_map);
   std::ranges::stable_sort(seen_by, {}, &Keyframe::recording);
   return without_free_space_violations(surface, seen_by, content.camera,
                                        content.surface_options.voxel_m);

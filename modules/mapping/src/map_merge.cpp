@@ -163,12 +163,13 @@ bool MapMerger::join(const MapContent& added, const std::function<void()>& tell,
   std::vector<const PoseEdge*> edges;
   for (const PoseEdge& edge : recognitions.sure) edges.push_back(&edge);
   nearness.agreeing = static_cast<int>(most_that_agree(edges, all, loops_).size());
-  const auto join = find_join(recognitions.sure, map, all, loops_);
-  if (!join) return false;
   const auto anywhere = [](const MapJoin&) { return true; };
-  nearness.is_ambiguous =
-      !is_certain(*join, recognitions.possible, anywhere, all, content_.camera, spacing_, loops_);
+  const JoinContext context{all, content_.camera, spacing_, loops_, registration_};
+  auto join = find_join(recognitions.sure, map, all, loops_);
+  nearness.is_ambiguous = join && !is_certain(*join, recognitions.possible, anywhere, context);
   if (nearness.is_ambiguous) return false;
+  if (!join) join = find_certain_join(map, recognitions.possible, anywhere, context);
+  if (!join) return false;
   append_rest(added, own, content_);
   content_.keyframes.join(map, map_, join->into_from_map);
   for (const PoseEdge& edge : join->edges) add_loop(content_, edge);

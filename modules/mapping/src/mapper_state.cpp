@@ -109,8 +109,11 @@ MapperState RoomMapper::state() const {
                      {"found_in", join.found_in},
                      {"is_blind", join.is_blind}});
   }
-  Json recognitions = Json::array();
-  for (const PoseEdge& edge : recognitions_) recognitions.push_back(json_of(edge));
+  const auto list_of = [](std::span<const PoseEdge> edges) {
+    Json list = Json::array();
+    for (const PoseEdge& edge : edges) list.push_back(json_of(edge));
+    return list;
+  };
   Json held = Json::array();
   MapperState state;
   for (const NewFrame& frame : held_) {
@@ -132,7 +135,8 @@ MapperState RoomMapper::state() const {
       {"compared_keyframes", evidence_.compared},
       {"differing_keyframes", evidence_.differing},
       {"joins_taken_back", joins_taken_back_},
-      {"recognitions", recognitions},
+      {"recognitions", list_of(recognitions_)},
+      {"possible_places", list_of(possible_places_)},
       {"compared", nearness_.keyframes},
       {"recognised", nearness_.recognised},
       {"agreeing", nearness_.agreeing},
@@ -170,10 +174,12 @@ void RoomMapper::restore(MapContent content, const MapperState& state) {
                       .found_in = integer_in(join, "found_in", 0, begun_maps_ - 1),
                       .is_blind = flag_in(join, "is_blind")});
   }
-  recognitions_.clear();
-  for (const Json& edge : list_in(json, "recognitions")) {
-    recognitions_.push_back(edge_in(edge, keyframes));
-  }
+  const auto read_edges = [&](const char* name, std::vector<PoseEdge>& edges) {
+    edges.clear();
+    for (const Json& edge : list_in(json, name)) edges.push_back(edge_in(edge, keyframes));
+  };
+  read_edges("recognitions", recognitions_);
+  read_edges("possible_places", possible_places_);
   nearness_ = {.keyframes = integer_in(json, "compared", 0),
                .recognised = integer_in(json, "recognised", 0),
                .agreeing = integer_in(json, "agreeing", 0),

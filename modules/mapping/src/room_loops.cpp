@@ -68,6 +68,7 @@ bool RoomMapper::loop_awaits_others() const {
 }
 
 void RoomMapper::finish() {
+  join_afterwards();
   if (unfitted_loops_ > 0) fit();
   content_.changes = find_changes(content_);
 }
@@ -114,7 +115,7 @@ void RoomMapper::rebuild_submaps(int at) {
       const Pose anchor_from_world =
           content_.keyframes[content_.submaps[static_cast<std::size_t>(submap)].anchor]
               .world_from_camera.inverse();
-      content_.submaps[static_cast<std::size_t>(submap)].surface.integrate(
+      content_.submaps[static_cast<std::size_t>(submap)].surface.change().integrate(
           *keyframe.cloud.load(), anchor_from_world * keyframe.world_from_camera);
     }
   }

@@ -196,8 +196,8 @@ void RoomMapper::integrate(const SurfaceCloud& cloud) {
       content_.submap_of[static_cast<std::size_t>(current_)])];
   const Pose anchor_from_keyframe = content_.keyframes[submap.anchor].world_from_camera.inverse() *
                                     content_.keyframes[current_].world_from_camera;
-  submap.surface.integrate(cloud,
-                           anchor_from_keyframe * content_.frames.back().keyframe_from_camera);
+  submap.surface.change().integrate(
+      cloud, anchor_from_keyframe * content_.frames.back().keyframe_from_camera);
 }
 
 bool RoomMapper::wants_keyframe(const TrackingResult& result,

@@ -6,6 +6,7 @@
 #include "tofmap/mapping/free_space.hpp"
 #include "tofmap/mapping/join_choice.hpp"
 #include "tofmap/mapping/keyframe_edge.hpp"
+#include "tofmap/mapping/loop_closure.hpp"
 #include "tofmap/mapping/loop_fit.hpp"
 #include "tofmap/mapping/map_join.hpp"
 #include "tofmap/mapping/place_recognition.hpp"
@@ -86,6 +87,7 @@ std::vector<LateFrame> RoomMapper::drop_fragment() {
   unfitted_loops_ = std::max(0, unfitted_loops_ - dropped_loops);  // the newest ones
   content_.loops.resize(static_cast<std::size_t>(kept_loops));
   std::erase_if(recognitions_, refers_to_dropped);
+  std::erase_if(possible_places_, refers_to_dropped);
   std::erase_if(content_.submaps, [&](const Submap& submap) { return submap.anchor >= kept; });
   content_.submap_of.resize(static_cast<std::size_t>(kept));
   content_.keyframes.shrink(kept);
@@ -101,13 +103,11 @@ void RoomMapper::recognise_place() {
   if (std::ranges::all_of(content_.keyframes.all(), is_of_this)) return;
   const Keyframe& keyframe = content_.keyframes[content_.keyframes.size() - 1];
   const std::vector<Stretch> travelled = stretches();
-  const auto can_be_at = [&](const Keyframe& other, const Pose& pose, double tolerance_m) {
-    return can_travel(travelled,
-                      {.into = other.map,
-                       .map = map_,
-                       .into_from_map = pose * keyframe.world_from_camera.inverse(),
-                       .edges = {}},
-                      tolerance_m);
+  const auto join_at = [&](const Keyframe& other, const Pose& pose) {
+    return MapJoin{.into = other.map,
+                   .map = map_,
+                   .into_from_map = pose * keyframe.world_from_camera.inverse(),
+                   .edges = {}};
   };
   // The camera may be some way from the keyframe that recognises it, and turned, which moves the
   // beginning of its map.
@@ -117,13 +117,14 @@ void RoomMapper::recognise_place() {
       travel_tolerance_m + recognition_reach_m + recognition_reach_rad * since_begin_m;
   std::vector<const Keyframe*> candidates;
   for (const Keyframe& other : content_.keyframes.all()) {
-    if (!is_of_this(other) && can_be_at(other, other.world_from_camera, near_m)) {
+    if (!is_of_this(other) &&
+        can_travel(travelled, join_at(other, other.world_from_camera), near_m)) {
       candidates.push_back(&other);
     }
   }
   const auto is_possible = [&](const Keyframe& other, const Pose& pose) {
-    return can_be_at(other, pose, travel_tolerance_m) &&
-           agrees_with_start(pose * keyframe.world_from_camera.inverse());
+    const MapJoin place = join_at(other, pose);
+    return can_travel(travelled, place) && agrees_with_start(place);
   };
   recognise_among(keyframe, std::move(candidates), is_possible);
   join_maps(travelled);
@@ -141,23 +142,31 @@ void RoomMapper::recognise_among(const Keyframe& keyframe, std::vector<const Key
   if (!earlier.empty()) ++nearness_.keyframes;
   for (const auto& of_one_kind : {candidates, earlier}) {
     if (of_one_kind.empty()) continue;
-    const auto found = recognise(keyframe, of_one_kind, is_possible, content_.keyframes.all(),
-                                 camera_, loop_options_, registration_);
+    const auto all = content_.keyframes.all();
+    const auto places =
+        find_places(keyframe, of_one_kind, is_possible, all, camera_, loop_options_, registration_);
+    const auto edge_of_place = [&](const Recognition& place) {
+      return loop_edge(content_.keyframes[place.from], keyframe.id, place.registration);
+    };
+    const bool is_of_earlier = of_one_kind.front()->recording < recording();
+    for (const Recognition& place : places) {
+      if (is_of_earlier) possible_places_.push_back(edge_of_place(place));
+    }
+    const auto found = surest_place(places, all);
     if (!found) continue;
-    recognitions_.push_back(
-        loop_edge(content_.keyframes[found->from], keyframe.id, found->registration));
-    if (content_.keyframes[found->from].recording < recording()) ++nearness_.recognised;
+    recognitions_.push_back(edge_of_place(*found));
+    if (is_of_earlier) ++nearness_.recognised;
   }
 }
 
-/// Whether the camera began in the direction that go_on_with() was told, if the newest map is at
-/// this pose in a finished one.
-bool RoomMapper::agrees_with_start(const Pose& finished_from_newest) const {
+/// Whether a join puts the beginning of the recording into the direction that go_on_with() was
+/// told.
+bool RoomMapper::agrees_with_start(const MapJoin& join) const {
   constexpr double most_rad = M_PI / 4;
   if (!start_ || !start_->has_rotation) return true;
   const RegisteredFrame& first = own_frames().front();
-  if (content_.keyframes[first.keyframe].map != map_) return true;
-  const Pose placed = finished_from_newest * pose_of(first, content_.keyframes);
+  if (content_.keyframes[first.keyframe].map != join.map) return true;
+  const Pose placed = join.into_from_map * pose_of(first, content_.keyframes);
   return Eigen::AngleAxisd(start_->world_from_camera.linear().transpose() * placed.linear())
              .angle() <= most_rad;
 }
@@ -176,27 +185,6 @@ std::vector<Stretch> RoomMapper::stretches() const {
   return stretches;
 }
 
-/// All places of earlier recordings that some of the keyframes of the newest map may see.
-std::vector<PoseEdge> RoomMapper::possible_places() const {
-  constexpr std::size_t most_keyframes = 8;
-  const auto all = content_.keyframes.all();
-  std::vector<const Keyframe*> own;
-  std::vector<const Keyframe*> earlier;
-  for (const Keyframe& keyframe : all) {
-    if (keyframe.recording < recording()) earlier.push_back(&keyframe);
-    if (keyframe.map == map_) own.push_back(&keyframe);
-  }
-  const auto everywhere = [](const Keyframe&, const Pose&) { return true; };
-  std::vector<PoseEdge> edges;
-  for (std::size_t i = 0; i < own.size(); i += 1 + (own.size() - 1) / most_keyframes) {
-    for (const Recognition& place :
-         find_places(*own[i], earlier, everywhere, all, camera_, loop_options_, registration_)) {
-      edges.push_back(loop_edge(content_.keyframes[place.from], own[i]->id, place.registration));
-    }
-  }
-  return edges;
-}
-
 /// The join of the newest map with one of the same recording or, if there is none, with one of
 /// earlier recordings.
 std::optional<MapJoin> RoomMapper::found_join(std::span<const Stretch> travelled) {
@@ -213,10 +201,11 @@ std::optional<MapJoin> RoomMapper::found_join(std::span<const Stretch> travelled
   auto join = find_join(earlier, map_, all, loop_options_);
   if (!join) return std::nullopt;
   const auto is_possible = [&](const MapJoin& place) {
-    return can_travel(travelled, place) && agrees_with_start(place.into_from_map);
+    return can_travel(travelled, place) && agrees_with_start(place);
   };
-  nearness_.is_ambiguous = !is_certain(*join, possible_places(), is_possible, all, camera_,
-                                       keyframe_spacing(), loop_options_);
+  const KeyframeSpacing spacing = keyframe_spacing();
+  nearness_.is_ambiguous = !is_certain(*join, possible_places_, is_possible,
+                                       {all, camera_, spacing, loop_options_, registration_});
   return nearness_.is_ambiguous ? std::nullopt : std::move(join);
 }
 
@@ -228,22 +217,60 @@ void RoomMapper::join_maps(std::span<const Stretch> travelled) {
   if (refutes_join(evidence, join->into)) return;
   evidence_ = {.compared = evidence_.compared + evidence.compared,
                .differing = std::max(evidence_.differing, evidence.differing)};
+  this->join(*join, travelled);
+}
+
+void RoomMapper::join(const MapJoin& join, std::span<const Stretch> travelled) {
   const auto gap =
       std::ranges::adjacent_find(travelled, [&](const Stretch& one, const Stretch& next) {
-        return next.map == map_ && next.begin_s - one.end_s > longest_blink_s;
+        return next.map == join.map && next.begin_s - one.end_s > longest_blink_s;
       });
-  joins_.push_back({.map = map_,
-                    .into = join->into,
+  joins_.push_back({.map = join.map,
+                    .into = join.into,
                     .found_in = newest_map(),
                     .is_blind = gap != travelled.end()});
-  content_.keyframes.join(join->map, join->into, join->into_from_map);
-  odometry_.move(join->into_from_map);
-  map_ = join->into;
-  for (const PoseEdge& edge : join->edges) add_loop(edge);
-  std::erase_if(recognitions_, [&](const PoseEdge& edge) {
+  content_.keyframes.join(join.map, join.into, join.into_from_map);
+  if (map_ == join.map) {
+    odometry_.move(join.into_from_map);
+    map_ = join.into;
+  }
+  for (const PoseEdge& edge : join.edges) add_loop(edge);
+  const auto is_joined_now = [&](const PoseEdge& edge) {
     return content_.keyframes[edge.from].map == content_.keyframes[edge.to].map;
-  });
+  };
+  std::erase_if(recognitions_, is_joined_now);
+  std::erase_if(possible_places_, is_joined_now);
   fit();
+}
+
+/// Joins maps of the recording with those of earlier ones, now that all of their keyframes are
+/// known, and closes the loops between them.
+void RoomMapper::join_afterwards() {
+  const std::vector<Stretch> travelled = stretches();
+  const KeyframeSpacing spacing = keyframe_spacing();
+  const auto is_possible = [&](const MapJoin& place) {
+    return can_travel(travelled, place) && agrees_with_start(place);
+  };
+  std::set<int> maps;
+  for (const PoseEdge& edge : possible_places_) maps.insert(content_.keyframes[edge.to].map);
+  for (const int map : maps) {
+    const auto found = find_certain_join(
+        map, possible_places_, is_possible,
+        {content_.keyframes.all(), camera_, spacing, loop_options_, registration_});
+    if (!found || refutes_join(evidence_of(*found), found->into)) continue;
+    std::vector<int> joined;
+    for (const Keyframe& keyframe : content_.keyframes.all()) {
+      if (keyframe.map == map) joined.push_back(keyframe.id);
+    }
+    join(*found, travelled);
+    if (!loop_options_.close) continue;
+    for (const int id : joined) {
+      const LoopCandidate loop =
+          find_loop(content_.keyframes[id], content_.keyframes.all(),
+                    content_.keyframes.spreads_from(id), camera_, loop_options_, registration_);
+      if (loop.edge && !loop.needs_slip) add_loop(*loop.edge);
+    }
+  }
 }
 
 void RoomMapper::JoinEvidence::add(std::optional<bool> differs) {

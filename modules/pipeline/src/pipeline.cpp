@@ -17,6 +17,7 @@
 
 #include <tofmap/core/error.hpp>
 #include <tofmap/core/timed.hpp>
+#include <tofmap/mapping/contradicted_loops.hpp>
 
 namespace tofmap {
 namespace {
@@ -351,6 +352,7 @@ RoomMap MapRun::finish() {
                converged_slowly(record.tracking.registration, options_.registration);
       }));
   map.loops = content.loops;
+  map.contradicted_loops = contradicted_loops(content);
   if (content.recordings.size() > 1) map.localised = mapper_.localised_frames();
   map.has_moved_map = has_moved_map(content);
   map.nearness = mapper_.nearness();

@@ -36,11 +36,6 @@ int RoomMap::degenerate() const {
   }));
 }
 
-int RoomMap::unused_loops() const {
-  return static_cast<int>(
-      std::ranges::count_if(loops, [](const Loop& loop) { return !loop.is_used; }));
-}
-
 int RoomMap::separate() const {
   return std::accumulate(separate_maps.begin(), separate_maps.end(), 0,
                          [](int sum, const SeparateMap& one) {
@@ -81,7 +76,7 @@ MapEvidence evidence_of(const RoomMap& map, const PipelineOptions& options,
           .joins = map.joins,
           .blind_joins = map.blind_joins,
           .joins_taken_back = map.joins_taken_back,
-          .unused_loops = map.unused_loops(),
+          .contradicted_loops = map.contradicted_loops,
           .position_sigma_m = map.least_certain.error.position_m,
           .least_certain_frame = map.least_certain.frame,
           .registered_slowly = map.registered_slowly,

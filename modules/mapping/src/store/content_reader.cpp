@@ -63,12 +63,17 @@ int count_rows(SQLite::Database& database, const std::string& table) {
   return database.execAndGet("SELECT COUNT(*) FROM " + table).getInt();
 }
 
-void read_submaps(SQLite::Database& database, int keyframes, MapContent& content) {
+void read_submaps(SQLite::Database& database, int keyframes, const PartReaders& readers,
+                  MapContent& content) {
   for_each_row(database, "submaps", "id", [&](SQLite::Statement& row, int number) {
     expect_id(row, number);
     const SQLite::Column surface = row.getColumn(3);
     content.submaps.push_back({integer_in(row, 1, 0, keyframes - 1),
                                surface_from_bytes(bytes_in(surface), content.surface_options)});
+    content.submaps.back().surface.put_aside(
+        [read = readers.surface, number, options = content.surface_options] {
+          return read(number, options);
+        });
   });
 }
 
@@ -173,13 +178,12 @@ void read_frames(SQLite::Database& database, MapContent& content) {
 
 }  // namespace
 
-MapContent read_content(SQLite::Database& database,
-                        const std::function<CompactCloud(int keyframe)>& read_cloud) {
+MapContent read_content(SQLite::Database& database, const PartReaders& readers) {
   std::vector<MapRecording> recordings = read_recordings(database);
   MapContent content(recordings.front().sensor.camera, read_surface_options(database));
   content.recordings = std::move(recordings);
-  read_submaps(database, count_rows(database, "keyframes"), content);
-  read_keyframes(database, read_cloud, content);
+  read_submaps(database, count_rows(database, "keyframes"), readers, content);
+  read_keyframes(database, readers.cloud, content);
   read_links(database, content);
   read_constraints(database, content);
   read_frames(database, content);

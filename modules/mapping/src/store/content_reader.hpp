@@ -10,9 +10,14 @@
 
 namespace tofmap {
 
-/// Reads a map, but for the clouds of its keyframes, which `read_cloud` reads by the id of the
-/// keyframe when they are needed. Throws InputError if what the tables hold is no map.
-MapContent read_content(SQLite::Database& database,
-                        const std::function<CompactCloud(int keyframe)>& read_cloud);
+/// How the parts of a map are read that are read when they are needed.
+struct PartReaders {
+  std::function<CompactCloud(int keyframe)> cloud;
+  std::function<SurfaceMap(int submap, const SurfaceMapOptions& options)> surface;
+};
+
+/// Reads a map, but for the clouds of its keyframes and the surfaces of its submaps. Throws
+/// InputError if what the tables hold is no map. Surfaces are checked, but clouds are not.
+MapContent read_content(SQLite::Database& database, const PartReaders& readers);
 
 }  // namespace tofmap

@@ -87,17 +87,20 @@ void write_recordings(const MapContent& content, SQLite::Database& database) {
   }
 }
 
-void write_submaps(const MapContent& content, const WrittenContent& before,
-                   SQLite::Database& database) {
+/// Returns the ids of the submaps that need not be written.
+std::vector<int> write_submaps(const MapContent& content, const WrittenContent& before,
+                               SQLite::Database& database) {
   const std::size_t known = before.submap_revisions.size();
+  std::vector<int> unchanged;
   Insertion row(database, "submaps", 4);
   for (std::size_t i = 0; i < content.submaps.size(); ++i) {
     const Submap& submap = content.submaps[i];
     if (i < known && before.submap_revisions[i] == submap.surface.revision() &&
         before.submap_anchors[i] == submap.anchor) {
+      unchanged.push_back(static_cast<int>(i));
       continue;
     }
-    const std::string bytes = submap.surface.to_bytes();
+    const std::string bytes = submap.surface.load()->to_bytes();
     row.statement.bind(1, static_cast<int>(i));
     row.statement.bind(2, submap.anchor);
     row.statement.bind(3, static_cast<std::int64_t>(submap.surface.size()));
@@ -105,6 +108,7 @@ void write_submaps(const MapContent& content, const WrittenContent& before,
     row.execute();
   }
   remove_from(database, "submaps", "id", content.submaps.size());
+  return unchanged;
 }
 
 void write_cloud(const Keyframe& keyframe, Insertion& row) {
@@ -249,17 +253,18 @@ WrittenContent written(const MapContent& content) {
   return written;
 }
 
-std::vector<int> write_content(const MapContent& content, const WrittenContent& before,
-                               SQLite::Database& database) {
+StoredParts write_content(const MapContent& content, const WrittenContent& before,
+                          SQLite::Database& database) {
   write_properties(content, database);
   write_recordings(content, database);
-  write_submaps(content, before, database);
-  std::vector<int> clouds = write_keyframes(content, before, database);
+  StoredParts stored;
+  stored.submaps = write_submaps(content, before, database);
+  stored.clouds = write_keyframes(content, before, database);
   write_links(content, before, database);
   write_constraints(content, database);
   write_frames(content, before, database);
   if (checksum_of(content.changes) != before.changes) write_changes(content.changes, database);
-  return clouds;
+  return stored;
 }
 
 }  // namespace tofmap

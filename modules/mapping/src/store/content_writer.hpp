@@ -35,9 +35,14 @@ struct WrittenContent {
 /// The same of a map that was just read from the file or written to it.
 WrittenContent written(const MapContent& content);
 
-/// Brings the tables up to date with a map, given what they hold. Returns the keyframes whose
-/// clouds were written. Must be called in a transaction.
-std::vector<int> write_content(const MapContent& content, const WrittenContent& before,
-                               SQLite::Database& database);
+/// What need not stay in memory once the tables are committed.
+struct StoredParts {
+  std::vector<int> clouds;   ///< ids of the keyframes whose clouds were written
+  std::vector<int> submaps;  ///< ids of the submaps that have not changed since they were written
+};
+
+/// Brings the tables up to date with a map, given what they hold. Must be called in a transaction.
+StoredParts write_content(const MapContent& content, const WrittenContent& before,
+                          SQLite::Database& database);
 
 }  // namespace tofmap

@@ -18,6 +18,7 @@ struct MapStore::File {
   File(fs::path of, SQLite::Database opened) : path(std::move(of)), database(std::move(opened)) {}
 
   CompactCloud read_cloud(int keyframe) const;
+  SurfaceMap read_surface(int submap, const SurfaceMapOptions& options) const;
 
   fs::path path;
   mutable SQLite::Database database;
@@ -44,6 +45,16 @@ CompactCloud MapStore::File::read_cloud(int keyframe) const {
   });
 }
 
+SurfaceMap MapStore::File::read_surface(int submap, const SurfaceMapOptions& options) const {
+  return naming_file(path, [&] {
+    SQLite::Statement row(database, "SELECT surface FROM submaps WHERE id = ?");
+    row.bind(1, submap);
+    if (!row.executeStep()) throw InputError("has no submap " + std::to_string(submap));
+    const SQLite::Column surface = row.getColumn(0);
+    return surface_from_bytes(bytes_in(surface), options);
+  });
+}
+
 MapStore::MapStore(std::shared_ptr<File> file) : file_(std::move(file)) {}
 MapStore::MapStore(MapStore&&) noexcept = default;
 MapStore& MapStore::operator=(MapStore&&) noexcept = default;
@@ -62,9 +73,14 @@ MapStore MapStore::open(const fs::path& file, Access access) {
 
 MapContent MapStore::content() const {
   return naming_file(file_->path, [&] {
-    // Keyframes keep the file open as long as their clouds may have to be read.
-    MapContent content = read_content(
-        file_->database, [file = file_](int keyframe) { return file->read_cloud(keyframe); });
+    // Clouds and surfaces keep the file open as long as they may have to be read.
+    MapContent content =
+        read_content(file_->database,
+                     {.cloud = [file = file_](int keyframe) { return file->read_cloud(keyframe); },
+                      .surface =
+                          [file = file_](int submap, const SurfaceMapOptions& options) {
+                            return file->read_surface(submap, options);
+                          }});
     file_->written = written(content);
     return content;
   });
@@ -118,8 +134,10 @@ struct MapStore::Commit::Open {
 
   SQLite::Transaction transaction;
   std::optional<WrittenContent> written;
-  std::vector<std::pair<int, KeyframeCloud>>
-      clouds;  ///< written ones, by the ids of their keyframes
+  // What can be read from the file after the commit, by its id.
+  std::vector<std::pair<int, KeyframeCloud>> clouds;
+  std::vector<std::pair<int, SubmapSurface>> surfaces;
+  SurfaceMapOptions surface_options;
 };
 
 MapStore::Commit::Commit(MapStore& store) : store_(store) {
@@ -134,9 +152,14 @@ MapStore::Commit::~Commit() = default;
 void MapStore::Commit::write(const MapContent& content) {
   naming_file(store_.file_->path, [&] {
     File& file = *store_.file_;
-    for (const int id : write_content(content, file.written, file.database)) {
+    const StoredParts stored = write_content(content, file.written, file.database);
+    for (const int id : stored.clouds) {
       open_->clouds.emplace_back(id, content.keyframes[id].cloud);
     }
+    for (const int id : stored.submaps) {
+      open_->surfaces.emplace_back(id, content.submaps[static_cast<std::size_t>(id)].surface);
+    }
+    open_->surface_options = content.surface_options;
     open_->written = written(content);
   });
 }
@@ -180,6 +203,11 @@ void MapStore::Commit::finish() {
   if (open_->written) store_.file_->written = std::move(*open_->written);
   for (const auto& [id, cloud] : open_->clouds) {
     cloud.put_aside([file = store_.file_, keyframe = id] { return file->read_cloud(keyframe); });
+  }
+  for (const auto& [id, surface] : open_->surfaces) {
+    surface.put_aside([file = store_.file_, submap = id, options = open_->surface_options] {
+      return file->read_surface(submap, options);
+    });
   }
 }
 

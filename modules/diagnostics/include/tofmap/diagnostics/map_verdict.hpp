@@ -28,7 +28,7 @@ struct MapEvidence {
   int joins = 0;               ///< how often maps were joined after tracking was lost
   int blind_joins = 0;         ///< joins after the camera was not tracked for two seconds
   int joins_taken_back = 0;    ///< joins that later frames contradicted
-  int unused_loops = 0;        ///< recognised places that the map does not agree with
+  int contradicted_loops = 0;  ///< recognised places that the map does not agree with
   /// Standard deviation of the least certain position after the best alignment of the path, by what
   /// surfaces constrain, and the frame at that position.
   double position_sigma_m = 0;

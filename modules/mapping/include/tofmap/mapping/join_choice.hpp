@@ -20,6 +20,18 @@ const Keyframe* nearest_view(const Pose& pose, std::span<const Keyframe> keyfram
                              const KeyframeSpacing& spacing,
                              const std::function<bool(const Keyframe&)>& counts);
 
+/// What the search for a join knows of all maps.
+struct JoinContext {
+  std::span<const Keyframe> keyframes;  ///< in the order of their ids, from 0
+  const CameraModel& camera;
+  const KeyframeSpacing& spacing;
+  const LoopOptions& loops;
+  const RegistrationOptions& registration;
+};
+
+/// Tells joins that are possible by what is known of the camera's path.
+using IsPossibleJoin = std::function<bool(const MapJoin&)>;
+
 /// Whether the map of a recording can be joined with one of earlier recordings, if nothing tells
 /// how the camera came there: places look alike. `recognitions` are edges from keyframes of earlier
 /// recordings to some of the map: all places that each of these may see, right and wrong ones.
@@ -28,10 +40,18 @@ const Keyframe* nearest_view(const Pose& pose, std::span<const Keyframe> keyfram
 /// keyframes of the map are put there, and compared with the free space of the nearest ones of the
 /// other map (free_space_violation_share()). The join is certain if they contradict each runner-up
 /// clearly more than the place of the join, and that by less than 30 % of what both see.
-/// `keyframes` are in the order of their ids, from 0.
 bool is_certain(const MapJoin& join, std::span<const PoseEdge> recognitions,
-                const std::function<bool(const MapJoin&)>& is_possible,
-                std::span<const Keyframe> keyframes, const CameraModel& camera,
-                const KeyframeSpacing& spacing, const LoopOptions& options);
+                const IsPossibleJoin& is_possible, const JoinContext& context);
+
+/// Searches for the place of a finished map in others, where it may share little with them.
+/// `recognitions` are as for is_certain().
+///
+/// Each place where at least two keyframes agree is tried. The other keyframes of the map are put
+/// there; those that overlap are registered from there. Together with them, at least
+/// `least_agreeing_keyframes` must agree, and the join must be certain (is_certain()). Empty if
+/// there is no such place.
+std::optional<MapJoin> find_certain_join(int map, std::span<const PoseEdge> recognitions,
+                                         const IsPossibleJoin& is_possible,
+                                         const JoinContext& context);
 
 }  // namespace tofmap

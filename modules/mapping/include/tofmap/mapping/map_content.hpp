@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include <tofmap/core/trajectory.hpp>
 #include <tofmap/mapping/keyframe_graph.hpp>
 #include <tofmap/mapping/map_change.hpp>
+#include <tofmap/mapping/submap.hpp>
 #include <tofmap/mapping/surface_map.hpp>
 #include <tofmap/registration/path_uncertainty.hpp>
 #include <tofmap/registration/pose_graph.hpp>
@@ -42,12 +44,6 @@ struct RegisteredFrame {
   /// vector in radians, then translation in metres, along the axes of `keyframe`. Zero for the
   /// frame of the keyframe itself.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-};
-
-/// A submap: the surface seen from near one keyframe, the anchor, in the frame of the anchor.
-struct Submap {
-  int anchor = 0;  ///< id of a keyframe
-  SurfaceMap surface;
 };
 
 /// A recording that a map was made from.
@@ -123,6 +119,11 @@ PoseCertainty least_certain_of(const MapContent& content, int map);
 /// keyframes of earlier recordings are exact: rotation vector in radians, then translation in
 /// metres, along the axes of the world. Of the first recording, relative to the first keyframe.
 std::vector<Eigen::Matrix<double, 6, 6>> covariances_of(const MapContent& content, int map);
+
+/// The surface of the submaps whose anchors are wanted, in the world frame. The anchors must be of
+/// one map.
+MapCloud merged_submaps(const MapContent& content,
+                        const std::function<bool(const Keyframe& anchor)>& is_wanted);
 
 /// The surface of a map: all of its submaps in its world frame, without free-space violations if
 /// the options say so.

@@ -125,8 +125,10 @@ class RoomMapper {
   /// Otherwise copies of one image would count as independent observations of its points.
   AddedFrame add_frame(const NewFrame& frame);
 
-  /// Fits the pose graph if it has loop constraints that were not fitted yet, and finds what has
-  /// changed between recordings. Must be called after the last frame.
+  /// Joins maps of the recording with the finished one that share too little with it to be joined
+  /// on the way (find_certain_join()), fits the pose graph if it has loop constraints that were not
+  /// fitted yet, and finds what has changed between recordings. Must be called after the last
+  /// frame.
   void finish();
 
   /// The map so far. Keyframes and what refers to them may still move.
@@ -179,13 +181,14 @@ class RoomMapper {
   void integrate(const SurfaceCloud& cloud);
   void close_loops();
   void recognise_place();
-  bool agrees_with_start(const Pose& finished_from_newest) const;
+  bool agrees_with_start(const MapJoin& join) const;
   std::vector<Stretch> stretches() const;
   void recognise_among(const Keyframe& keyframe, std::vector<const Keyframe*> candidates,
                        const IsPossiblePlace& is_possible);
-  std::vector<PoseEdge> possible_places() const;
   std::optional<MapJoin> found_join(std::span<const Stretch> travelled);
   void join_maps(std::span<const Stretch> travelled);
+  void join(const MapJoin& join, std::span<const Stretch> travelled);
+  void join_afterwards();
   JoinEvidence evidence_of(const MapJoin& join) const;
   bool refutes_join(const JoinEvidence& evidence, int into) const;
   std::optional<bool> differs_from_others(const Keyframe& keyframe) const;
@@ -245,6 +248,8 @@ class RoomMapper {
   JoinEvidence evidence_;          ///< about the join of the newest map
   int joins_taken_back_ = 0;
   std::vector<PoseEdge> recognitions_;  ///< from a keyframe of another map to one of `map_`
+  /// All places of earlier recordings that keyframes of maps not joined yet may see.
+  std::vector<PoseEdge> possible_places_;
 };
 
 }  // namespace tofmap

@@ -90,6 +90,7 @@ struct RoomMap {
   MapCloud surface;                        ///< in world coordinates
   std::vector<SeparateMap> separate_maps;  ///< the other maps, that with the most frames first
   std::vector<Loop> loops;                 ///< all loops that were found, used or not
+  int contradicted_loops = 0;              ///< number of those that tell against the map
   int joins = 0;                           ///< RoomMapper::joins()
   int blind_joins = 0;                     ///< RoomMapper::blind_joins()
   int joins_taken_back = 0;                ///< RoomMapper::joins_taken_back()
@@ -106,11 +107,10 @@ struct RoomMap {
   ErrorSurvey errors;               ///< MapRun::errors at the end of the run
   bool interrupted = false;         ///< a hook ended the run early
 
-  int damaged() const;       ///< number of frames that could not be read
-  int repeated() const;      ///< number of frames that repeat the frame before them
-  int degenerate() const;    ///< number of frames with a degenerate direction of motion
-  int separate() const;      ///< number of frames that are registered in separate maps
-  int unused_loops() const;  ///< number of loops that the poses of the keyframes do not follow
+  int damaged() const;     ///< number of frames that could not be read
+  int repeated() const;    ///< number of frames that repeat the frame before them
+  int degenerate() const;  ///< number of frames with a degenerate direction of motion
+  int separate() const;    ///< number of frames that are registered in separate maps
   /// Indices of the frames that are registered in a map (FrameRecord::map), in order.
   std::vector<int> frames_in(int number) const;
 };

@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Finished maps are used again: localise, map --onto, merge, info and view.
+
+#include "program.hpp"
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tofmap/core/trajectory.hpp>
+
+namespace tofmap {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsSupersetOf;
+using testing::Not;
+
+/// Recordings and maps by their names, which are made when they are needed: "first" and "second" of
+/// one room, between which much was rearranged, and "elsewhere"; "map_first" and "map_second"; the
+/// first map with the second recording, "extended".
+class ReusedMap : public testing::Test {
+ protected:
+  static constexpr std::size_t frames = 36;
+
+  std::string at(const std::string& name) const { return folder_.path() / name; }
+
+  std::string made(const std::string& name) const {
+    if (fs::exists(at(name))) return at(name);
+    if (name == "first") {
+      simulate("room", name, {});
+    } else if (name == "second") {
+      simulate("room", name, {"simulator.rearranged=12"});
+    } else if (name == "elsewhere") {
+      simulate("flat", name, {});
+    } else if (name == "extended") {
+      expect_success(run(
+          {"map", made("second"), "--onto", made("map_first"), "--set", "map.voxel_m=0.2"}, name));
+    } else {
+      expect_success(run({"map", made(name.substr(4)), "--set", "map.voxel_m=0.2"}, name));
+    }
+    return at(name);
+  }
+
+  void simulate(const std::string& scene, const std::string& name,
+                const std::vector<std::string>& options) const {
+    std::vector<std::string> arguments{"simulate",
+                                       scene,
+                                       "--frames",
+                                       std::to_string(frames),
+                                       "--set",
+                                       "simulator.width_px=64",
+                                       "simulator.height_px=52"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    expect_success(run(arguments, name));
+  }
+
+  test::Finished run(std::vector<std::string> arguments, const std::string& out) const {
+    arguments.insert(arguments.end(), {"--out", at(out)});
+    return test::run_program(arguments);
+  }
+
+  static void expect_success(const test::Finished& finished) {
+    EXPECT_EQ(finished.status, 0) << finished.err;
+  }
+
+  /// The rows that the sqlite3 shell prints for a query of a map.
+  std::string query(const std::string& map, const std::string& sql) const {
+    const std::string file = at(map) + "/map.db";
+    const std::string command = "sqlite3 -readonly '" + file + "' \"" + sql + "\" 2>&1";
+    const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
+    std::string rows;
+    for (std::array<char, 256> part; fgets(part.data(), part.size(), pipe.get()) != nullptr;) {
+      rows += part.data();
+    }
+    return rows;
+  }
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ReusedMap, TellsWhereACameraIs) {
+  const test::Finished found =
+      run({"localise", made("second"), "--in", made("map_first")}, "found");
+  ASSERT_EQ(found.status, 0) << found.err;
+  EXPECT_THAT(found.out, HasSubstr("36 of 36 frames localised"));
+  EXPECT_EQ(read_trajectory(at("found/trajectory.txt")).size(), frames);
+  const auto report = test::read_json(at("found/report.json"));
+  ASSERT_EQ(report["frames"].size(), frames);
+  for (const auto& frame : report["frames"]) {
+    EXPECT_EQ(frame["status"], "localised");
+    EXPECT_EQ(frame["covariance"].size(), 36U);
+    EXPECT_GT(frame["covariance"][35], 0);
+  }
+}
+
+TEST_F(ReusedMap, IsExtendedByAnotherRecording) {
+  made("extended");
+  EXPECT_THAT(test::names_in(made("extended")),
+              IsSupersetOf({"map.db", "map.ply", "trajectory.txt", "report.html", "changes.ply"}));
+  const auto report = test::read_json(at("extended/report.json"));
+  EXPECT_EQ(report["judgement"]["verdict"], "good");
+  ASSERT_FALSE(report["changes"].empty());
+  const std::string page = test::read_text(at("extended/report.html"));
+  EXPECT_THAT(page, HasSubstr("What has changed"));
+  EXPECT_EQ(query("map_first", "SELECT COUNT(*) FROM recordings"), "1\n");
+  EXPECT_EQ(query("extended", "SELECT COUNT(*) FROM recordings"), "2\n");
+}
+
+TEST_F(ReusedMap, IsMergedWithAnotherOneInAnyOrder) {
+  for (const auto& [one, other] :
+       {std::pair("map_first", "map_second"), std::pair("map_second", "map_first")}) {
+    const std::string out = std::string("merged_") + one;
+    const test::Finished merged = run({"merge", made(one), made(other)}, out);
+    ASSERT_EQ(merged.status, 0) << merged.err;
+    EXPECT_THAT(merged.out, HasSubstr("2 of 2 maps merged"));
+    EXPECT_THAT(test::names_in(at(out)),
+                IsSupersetOf({"map.db", "map.ply", "trajectory_1.txt", "trajectory_2.txt"}));
+    EXPECT_EQ(query(out, "SELECT source FROM recordings ORDER BY id"),
+              made("first") + "\n" + made("second") + "\n");
+  }
+}
+
+TEST_F(ReusedMap, IsNotThatOfAnotherPlace) {
+  for (const auto& [command, option] :
+       {std::pair("localise", "--in"), std::pair("map", "--onto")}) {
+    const test::Finished refused =
+        run({command, made("elsewhere"), option, made("map_first")}, "refused");
+    EXPECT_EQ(refused.status, 3);
+    EXPECT_THAT(refused.err, AllOf(HasSubstr("none of 36 frames could be found in the map"),
+                                   HasSubstr("keyframes that were compared")));
+    EXPECT_FALSE(fs::exists(at("refused")));
+  }
+}
+
+TEST_F(ReusedMap, MayBeToldWhereTheCameraBegins) {
+  const auto localise = [&](const std::string& start, const std::string& out) {
+    return run({"localise", made("second"), "--in", made("map_first"), "--start", start}, out);
+  };
+  expect_success(localise("0", "started_at_keyframe"));
+  expect_success(localise("0.1,0,0.1", "started_at_position"));
+  EXPECT_EQ(localise("20,0,20", "started_elsewhere").status, 3);
+  EXPECT_EQ(localise("0,0,0,0,1,0,0", "started_backwards").status, 3);
+  const test::Finished unknown = localise("1000", "started_nowhere");
+  EXPECT_NE(unknown.status, 0);
+  EXPECT_THAT(unknown.err, HasSubstr("1000"));
+}
+
+TEST_F(ReusedMap, IsToldWhatIsInIt) {
+  const test::Finished told = test::run_program({"info", made("extended")});
+  ASSERT_EQ(told.status, 0) << told.err;
+  EXPECT_THAT(told.out, AllOf(HasSubstr("recording 0: " + made("first")),
+                              HasSubstr("recording 1: " + made("second")), HasSubstr("36 frames"),
+                              HasSubstr("new since ")));
+}
+
+TEST_F(ReusedMap, ShowsItsKeyframes) {
+  const std::string picture = at("keyframe.png");
+  const test::Finished shown =
+      test::run_program({"view", made("extended"), "--keyframe", "3", "--screenshot", picture});
+  ASSERT_EQ(shown.status, 0) << shown.err;
+  EXPECT_GT(fs::file_size(picture), 1000U);
+}
+
+TEST_F(ReusedMap, AnswersTheQueriesOfItsDocumentation) {
+  made("extended");
+  if (query("extended", "SELECT 1") != "1\n") GTEST_SKIP() << "the sqlite3 shell is missing";
+  const std::string text = test::read_text(fs::path(TOFMAP_SOURCE_DIR) / "docs/map-format.md");
+  const std::regex block("```sql\n([^`]*)```");
+  int queries = 0;
+  for (auto match = std::sregex_iterator(text.begin(), text.end(), block);
+       match != std::sregex_iterator(); ++match) {
+    const std::string rows = query("extended", (*match)[1]);
+    EXPECT_THAT(rows, AllOf(HasSubstr("|"), Not(HasSubstr("rror")))) << (*match)[1];
+    ++queries;
+  }
+  EXPECT_EQ(queries, 3);
+}
+
+TEST_F(ReusedMap, IsRefusedIfItIsDamaged) {
+  fs::create_directory(at("damaged"));
+  std::ofstream(at("damaged/map.db"))
+      << test::read_text(made("extended") + "/map.db").substr(0, 200000);
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"localise", made("second"), "--in", at("damaged"), "--out", at("of_damaged")},
+           {"map", made("second"), "--onto", at("damaged"), "--out", at("of_damaged")},
+           {"merge", made("map_second"), at("damaged"), "--out", at("of_damaged")},
+           {"info", at("damaged")}}) {
+    const test::Finished refused = test::run_program(arguments);
+    EXPECT_EQ(refused.status, 3) << arguments[0];
+    EXPECT_THAT(refused.err, HasSubstr("damaged/map.db")) << arguments[0];
+    EXPECT_FALSE(fs::exists(at("of_damaged")));
+  }
+}
+
+/// A map that an earlier version wrote (tests/mapping/maps).
+TEST_F(ReusedMap, MayBeOfAnEarlierVersion) {
+  for (const auto& kept :
+       fs::directory_iterator(fs::path(TOFMAP_SOURCE_DIR) / "tests/mapping/maps")) {
+    if (kept.path().extension() != ".db") continue;
+    const std::string out = kept.path().stem();
+    const test::Finished found = run({"localise", made("first"), "--in", kept.path()}, out);
+    ASSERT_EQ(found.status, 0) << kept.path() << ": " << found.err;
+    EXPECT_THAT(found.out, HasSubstr("36 of 36 frames localised"));
+  }
+}
+
+}  // namespace
+}  // namespace tofmap
