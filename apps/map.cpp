@@ -224,13 +224,13 @@ FinishedMap finish_map(MapRun& run, MapFile& file, OutputFolder& out, MapOutput&
   finished.judgement = judge(
       evidence_of(finished.map, output.options.pipeline, finished.consistency, output.warnings));
   finished.is_taken_back = is_to_be_taken_back(finished, file, output.arguments);
-  if (finished.is_taken_back) {
-    file.discard();
-  } else {
+  if (finished.is_taken_back) file.discard();
+  keeping_map(out, [&] { write_report(out, finished, output); });
+  if (!finished.is_taken_back) {
+    // Last, since a run that is killed afterwards cannot be resumed.
     run.note_verdict(finished.judgement.verdict);
     output.failures.attempt(map_file_name, [&] { file.complete(run, finished.map.interrupted); });
   }
-  keeping_map(out, [&] { write_report(out, finished, output); });
   const auto interrupted =
       output.arguments.resume ? Completeness::resumable : Completeness::interrupted;
   out.commit(finished.map.interrupted ? interrupted

@@ -5,9 +5,9 @@
 
     benchmarks/map_memory.py BUILD_DIR RECORDING MAP [--set OPTION=VALUE ...]
 
-MAP is the folder of the result. A line for each tenth of the frames has the number of frames that are done, the memory that the process takes (resident), and the size
-of the file of the map with its log. The last line has the largest memory of the whole run,
-including surface, mesh and report.
+MAP is the folder of the result. A line for each tenth of the frames has the number of frames that
+are done, the memory that the process takes (resident), and the size of the file of the map with its
+log. The last line has the largest memory of the whole run, including surface, mesh and report.
 """
 import argparse
 import os

@@ -41,17 +41,24 @@ std::vector<fs::path> left_folders(const fs::path& folder) {
   return left;
 }
 
-/// The folder that a killed run has left. Empty if there is none.
-std::optional<fs::path> killed_run(const fs::path& folder, const OutputFolder& own) {
-  for (const fs::path& left : left_folders(folder)) {
-    if (left != own.path()) return left;
-  }
-  return std::nullopt;
+/// The folders that killed runs have left, the newest first.
+std::vector<fs::path> killed_runs(const fs::path& folder, const OutputFolder& own) {
+  std::vector<fs::path> killed = left_folders(folder);
+  std::erase(killed, own.path());
+  return killed;
 }
 
-/// The map file of an interrupted or killed run.
-fs::path interrupted_file(const fs::path& folder, const std::optional<fs::path>& killed) {
-  if (killed) return *killed / map_file_name;
+/// Merges what a killed program has left beside its file, and checks that it does not run any more.
+/// Returns whether it was killed between its first commit and its last one.
+bool can_continue(const fs::path& killed) {
+  MapStore store = MapStore::open(killed / map_file_name, MapStore::Access::extend);
+  const bool holds = holds_run(store);
+  store.settle();
+  return holds;
+}
+
+/// The map file of an interrupted run.
+fs::path interrupted_file(const fs::path& folder) {
   const fs::path file = folder / map_file_name;
   if (!fs::is_regular_file(file)) {
     throw InputError(
@@ -71,12 +78,6 @@ fs::path copied(const fs::path& file, const fs::path& copy) {
   return copy;
 }
 
-/// Merges what a killed program has left beside its file, and checks that it does not run any more.
-std::optional<fs::path> settled(std::optional<fs::path> killed) {
-  if (killed) MapStore::open(*killed / map_file_name, MapStore::Access::extend).settle();
-  return killed;
-}
-
 std::optional<Verdict> verdict_named(const std::string& name) {
   for (const Verdict verdict : {Verdict::good, Verdict::check, Verdict::bad}) {
     if (name_of(verdict) == name) return verdict;
@@ -86,7 +87,7 @@ std::optional<Verdict> verdict_named(const std::string& name) {
 
 }  // namespace
 
-MapFile::MapFile(OutputFolder& out, std::optional<MapStore> store, std::optional<fs::path> killed,
+MapFile::MapFile(OutputFolder& out, std::optional<MapStore> store, std::vector<fs::path> killed,
                  Origin origin)
     : out_(&out),
       killed_(std::move(killed)),
@@ -95,7 +96,7 @@ MapFile::MapFile(OutputFolder& out, std::optional<MapStore> store, std::optional
       is_stored_(origin == Origin::interrupted),
       due_(Clock::now() + shortest_interval) {}
 
-MapFile::MapFile(OutputFolder& out) : MapFile(out, std::nullopt, std::nullopt, Origin::fresh) {
+MapFile::MapFile(OutputFolder& out) : MapFile(out, std::nullopt, {}, Origin::fresh) {
   try {
     store_ = MapStore::create(out.path() / map_file_name);
   } catch (const InputError&) {
@@ -104,9 +105,16 @@ MapFile::MapFile(OutputFolder& out) : MapFile(out, std::nullopt, std::nullopt, O
 }
 
 MapFile MapFile::resumed(OutputFolder& out, const fs::path& folder) {
-  auto killed = settled(killed_run(folder, out));
-  if (!killed && !fs::exists(folder)) return MapFile(out);
-  const fs::path copy = copied(interrupted_file(folder, killed), out.path() / map_file_name);
+  std::vector<fs::path> killed = killed_runs(folder, out);
+  const auto newest = std::ranges::find_if(killed, can_continue);
+  if (newest == killed.end() && !fs::exists(folder)) {
+    MapFile file(out);
+    file.killed_ = std::move(killed);
+    return file;
+  }
+  const fs::path interrupted =
+      newest != killed.end() ? *newest / map_file_name : interrupted_file(folder);
+  const fs::path copy = copied(interrupted, out.path() / map_file_name);
   try {
     return {out, MapStore::open(copy, MapStore::Access::extend), std::move(killed),
             Origin::interrupted};
@@ -119,7 +127,7 @@ MapFile MapFile::extending(OutputFolder& out, const fs::path& map) {
   const fs::path file = map_file_in(map);
   MapStore::open(file);  // with messages that name it, not its copy
   const fs::path copy = copied(file, out.path() / map_file_name);
-  return {out, MapStore::open(copy, MapStore::Access::extend), std::nullopt, Origin::finished};
+  return {out, MapStore::open(copy, MapStore::Access::extend), {}, Origin::finished};
 }
 
 std::optional<MapContent> MapFile::to_extend() {
@@ -138,8 +146,8 @@ void MapFile::store(MapRun& run, FrameSample& sample, MapInput& input,
   }
   is_stored_ = true;
   std::error_code ignored;
-  if (killed_) fs::remove_all(*killed_, ignored);
-  killed_.reset();
+  for (const fs::path& killed : killed_) fs::remove_all(killed, ignored);
+  killed_.clear();
 }
 
 void MapFile::store_if_due(MapRun& run, FrameSample& sample, MapInput& input,

@@ -9,6 +9,7 @@
 #include <exception>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include <tofmap/mapping/map_store.hpp>
 #include <tofmap/pipeline/frame_sample.hpp>
@@ -69,14 +70,14 @@ class MapFile {
   enum class Origin { fresh, interrupted, finished };
 
   MapFile(OutputFolder& out, std::optional<MapStore> store,
-          std::optional<std::filesystem::path> killed, Origin origin);
+          std::vector<std::filesystem::path> killed, Origin origin);
 
   void store(MapRun& run, FrameSample& sample, MapInput& input, const PipelineOptions& options);
   void give_up();
 
   OutputFolder* out_;
-  /// Folder that a killed run left, until its map is stored in the new file.
-  std::optional<std::filesystem::path> killed_;
+  /// Folders that killed runs left, until the map is stored in the new file.
+  std::vector<std::filesystem::path> killed_;
   std::optional<MapStore> store_;  ///< empty if it could not be written
   std::exception_ptr failure_;     ///< why
   std::optional<Verdict> verdict_before_;

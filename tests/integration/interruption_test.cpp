@@ -311,6 +311,17 @@ TEST_F(InterruptedMap, ThatIsFinishedOrNotBegunIsNoneToGoOnWith) {
   EXPECT_EQ(resume().status, 0) << "the first run of a script that always says --resume";
 }
 
+TEST_F(InterruptedMap, BeginsAnewWhereAKilledRunHasLeftNothingToGoOnWith) {
+  fs::remove_all(out_);
+  // A map without a run, as of a process that was killed just before or after it stored one.
+  const fs::path left = out_.string() + ".partial-1";
+  fs::create_directory(left);
+  fs::copy_file(fs::path(TOFMAP_SOURCE_DIR) / "tests/mapping/maps/version_1.db", left / "map.db");
+  const Finished resumed = resume();
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_FALSE(fs::exists(left));
+}
+
 TEST_F(Interruption, ByKillLeavesNoResultAndAnotherRunWorks) {
   {
     RunningProgram program(unwrap_arguments());

@@ -125,6 +125,8 @@ void complete_map(MapStore& store, MapRun& run) {
   store.shrink();
 }
 
+bool holds_run(const MapStore& store) { return store.entry(version_entry).has_value(); }
+
 void resume_run(const MapStore& store, MapRun& run, FrameSample& sample, SequenceReader& source,
                 const PipelineOptions& options) {
   const auto version = store.entry(version_entry);

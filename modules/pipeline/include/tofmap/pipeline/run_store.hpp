@@ -22,6 +22,10 @@ void store_map(MapStore& store, MapRun& run);
 /// Stores the map of a run that has ended, removes what resume_run() needs, and shrinks the file.
 void complete_map(MapStore& store, MapRun& run);
 
+/// Whether a file holds a run that resume_run() may continue: it was stored at least once, and not
+/// completed.
+bool holds_run(const MapStore& store);
+
 /// Resumes the run of a file: fills `run` and `sample`, and moves `source` to the first frame that
 /// is not processed yet. Throws InputError if the file holds no interrupted run, if it is damaged
 /// or written by another version of the program, or if the run is of another recording. Throws
