@@ -229,7 +229,11 @@ FinishedMap finish_map(MapRun& run, MapFile& file, OutputFolder& out, MapOutput&
   if (!finished.is_taken_back) {
     // Last, since a run that is killed afterwards cannot be resumed.
     run.note_verdict(finished.judgement.verdict);
+    const std::size_t failures = output.failures.texts().size();
     output.failures.attempt(map_file_name, [&] { file.complete(run, finished.map.interrupted); });
+    if (output.failures.texts().size() > failures) {
+      keeping_map(out, [&] { write_report(out, finished, output); });
+    }
   }
   const auto interrupted =
       output.arguments.resume ? Completeness::resumable : Completeness::interrupted;

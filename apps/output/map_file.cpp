@@ -145,6 +145,11 @@ void MapFile::store(MapRun& run, FrameSample& sample, MapInput& input,
     store_map(*store_, run);
   }
   is_stored_ = true;
+  remove_killed();
+}
+
+/// Removes what killed runs have left, now that the file holds more.
+void MapFile::remove_killed() {
   std::error_code ignored;
   for (const fs::path& killed : killed_) fs::remove_all(killed, ignored);
   killed_.clear();
@@ -185,6 +190,7 @@ void MapFile::complete(MapRun& run, bool is_interrupted) {
   try {
     if (!is_interrupted) complete_map(*store_, run);
     store_->settle();
+    remove_killed();
   } catch (const std::exception&) {
     give_up();
     throw;

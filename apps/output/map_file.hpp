@@ -73,6 +73,7 @@ class MapFile {
           std::vector<std::filesystem::path> killed, Origin origin);
 
   void store(MapRun& run, FrameSample& sample, MapInput& input, const PipelineOptions& options);
+  void remove_killed();
   void give_up();
 
   OutputFolder* out_;
