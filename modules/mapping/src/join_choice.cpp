@@ -29,16 +29,14 @@ class JoinSearch {
     }
   }
 
-  std::vector<MapJoin> places(std::span<const PoseEdge> recognitions) const;
-  std::vector<MapJoin> runners_up(const MapJoin& join,
-                                  std::span<const PoseEdge> recognitions) const;
+  std::vector<MapJoin> places(std::span<const PoseEdge> recognitions,
+                              const MapJoin* but = nullptr) const;
   double violations_at(const MapJoin& join) const;
   std::optional<MapJoin> confirmed(const MapJoin& join) const;
 
  private:
   const Keyframe& at(int id) const { return context_.keyframes[static_cast<std::size_t>(id)]; }
   bool is_at(const PoseEdge& edge, const MapJoin& join) const;
-  std::vector<MapJoin> places_among(std::vector<const PoseEdge*> recognitions) const;
   const Keyframe* nearest_of_others(const Pose& pose, const MapJoin& join) const;
   std::optional<PoseEdge> registered(const Keyframe& keyframe, const MapJoin& join) const;
 
@@ -55,36 +53,25 @@ bool JoinSearch::is_at(const PoseEdge& edge, const MapJoin& join) const {
                   recognition_reach_rad);
 }
 
-/// The places that keyframes agree on, those of most recognitions first.
-std::vector<MapJoin> JoinSearch::places_among(std::vector<const PoseEdge*> recognitions) const {
+/// The places that keyframes agree on, those of most recognitions first; without that of a join, if
+/// one is given.
+std::vector<MapJoin> JoinSearch::places(std::span<const PoseEdge> recognitions,
+                                        const MapJoin* but) const {
+  std::vector<const PoseEdge*> edges;
+  for (const PoseEdge& edge : recognitions) {
+    const bool is_left_out = but != nullptr && is_at(edge, *but);
+    if (at(edge.to).map == map_ && !is_left_out) edges.push_back(&edge);
+  }
   std::vector<MapJoin> places;
-  while (recognitions.size() >= least_of_place) {
-    const auto agreeing = most_that_agree(recognitions, context_.keyframes, context_.loops);
+  while (edges.size() >= least_of_place) {
+    const auto agreeing = most_that_agree(edges, context_.keyframes, context_.loops);
     if (recognising_keyframes(agreeing) < least_of_place) break;
     places.push_back(join_by(agreeing, map_, context_.keyframes));
-    std::erase_if(recognitions, [&](const PoseEdge* edge) {
+    std::erase_if(edges, [&](const PoseEdge* edge) {
       return is_at(*edge, places.back()) || std::ranges::count(agreeing, edge) > 0;
     });
   }
   return places;
-}
-
-std::vector<MapJoin> JoinSearch::places(std::span<const PoseEdge> recognitions) const {
-  std::vector<const PoseEdge*> edges;
-  for (const PoseEdge& edge : recognitions) {
-    if (at(edge.to).map == map_) edges.push_back(&edge);
-  }
-  return places_among(std::move(edges));
-}
-
-/// Other places that keyframes agree on.
-std::vector<MapJoin> JoinSearch::runners_up(const MapJoin& join,
-                                            std::span<const PoseEdge> recognitions) const {
-  std::vector<const PoseEdge*> edges;
-  for (const PoseEdge& edge : recognitions) {
-    if (at(edge.to).map == map_ && !is_at(edge, join)) edges.push_back(&edge);
-  }
-  return places_among(std::move(edges));
 }
 
 const Keyframe* JoinSearch::nearest_of_others(const Pose& pose, const MapJoin& join) const {
@@ -170,7 +157,7 @@ bool is_certain(const MapJoin& join, std::span<const PoseEdge> recognitions,
   const JoinSearch search(join.map, context);
   const double violations = search.violations_at(join);
   if (violations >= most_violations_since) return false;
-  return std::ranges::none_of(search.runners_up(join, recognitions), [&](const MapJoin& runner_up) {
+  return std::ranges::none_of(search.places(recognitions, &join), [&](const MapJoin& runner_up) {
     return is_possible(runner_up) &&
            search.violations_at(runner_up) < violations + least_difference;
   });

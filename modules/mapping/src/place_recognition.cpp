@@ -94,15 +94,4 @@ std::optional<Recognition> surest_place(std::vector<Recognition> places,
   return is_ambiguous ? std::nullopt : std::optional(best);
 }
 
-std::optional<Recognition> recognise(const Keyframe& keyframe,
-                                     std::vector<const Keyframe*> candidates,
-                                     const IsPossiblePlace& is_possible,
-                                     std::span<const Keyframe> keyframes, const CameraModel& camera,
-                                     const LoopOptions& options,
-                                     const RegistrationOptions& registration) {
-  return surest_place(find_places(keyframe, std::move(candidates), is_possible, keyframes, camera,
-                                  options, registration),
-                      keyframes);
-}
-
 }  // namespace tofmap

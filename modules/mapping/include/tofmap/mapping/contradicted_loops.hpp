@@ -10,8 +10,8 @@ namespace tofmap {
 /// that changes explain. Between recordings, a keyframe may fit to what was moved, or to a wall
 /// instead of the cupboard that stood before it. A change explains a loop if at least 5 % of the
 /// surface of one of its keyframes is within two voxels of what has changed between them. Changes
-/// explain nothing if the fit rejects at least half of the loops between recordings: then the
-/// changes are as doubtful as the loops.
+/// explain nothing if the fit rejects at least half of the loops between recordings: then a wrong
+/// join may have made the changes.
 int contradicted_loops(const MapContent& content);
 
 }  // namespace tofmap

@@ -35,7 +35,7 @@ struct LoopCandidate {
 ///
 /// First, `keyframe` is registered with the three candidates that overlap it most, together, from
 /// its current pose with a prior of drift. If that is wider than ICP reaches, or if the result is
-/// not verified, the place is recognised (recognise()) among those keyframes with an id that is
+/// not verified, the place is recognised (find_places()) among those keyframes with an id that is
 /// smaller by at least `min_keyframes` that look alike, and the result is accepted if it is within
 /// two standard deviations of drift; if there is none, also if it is at most `farthest_slip_m` and
 /// `max_rotation_rad` away. A loop is found if the candidate confirms the result

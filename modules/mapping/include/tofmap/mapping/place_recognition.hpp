@@ -54,12 +54,4 @@ std::vector<Recognition> find_places(const Keyframe& keyframe,
 std::optional<Recognition> surest_place(std::vector<Recognition> places,
                                         std::span<const Keyframe> keyframes);
 
-/// Recognises the place that a keyframe sees: the surest_place() of find_places().
-std::optional<Recognition> recognise(const Keyframe& keyframe,
-                                     std::vector<const Keyframe*> candidates,
-                                     const IsPossiblePlace& is_possible,
-                                     std::span<const Keyframe> keyframes, const CameraModel& camera,
-                                     const LoopOptions& options,
-                                     const RegistrationOptions& registration);
-
 }  // namespace tofmap
