@@ -247,7 +247,7 @@ class WalkSearch {
     std::vector<Waypoint> waypoints = walk.waypoints();
     const int count = static_cast<int>(waypoints.size());
     const int first = static_cast<int>(draw_.between(0.2, 0.8) * count);
-    std::ranges::rotate(waypoints, waypoints.begin() + first);
+    std::rotate(waypoints.begin(), waypoints.begin() + first, waypoints.end());
     return {std::move(waypoints), true};
   }
 
