@@ -141,9 +141,8 @@ TEST(TwistBetween, TakesOnePoseToTheOther) {
   from.translation() << 1, 2, 3;
   Eigen::Matrix<double, 6, 1> twist;
   twist << 0.3, -0.2, 0.1, 4, 5, 6;
-  Pose to = from;
-  to.linear() = pose_from_twist(twist).linear() * from.linear();
-  to.translation() += twist.tail<3>();
+  const Pose to = moved_by(twist, from);
+  EXPECT_LT((to.translation() - Eigen::Vector3d(5, 7, 9)).norm(), 1e-12);
   EXPECT_LT((twist_between(from, to) - twist).norm(), 1e-12);
   EXPECT_TRUE(twist_between(from, from).isZero(1e-12));
 }

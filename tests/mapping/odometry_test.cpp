@@ -109,6 +109,25 @@ TEST(Odometry, KnowsWhichKeyframeHoldsTheCamera) {
   // the change of motion, and this change.
   EXPECT_NEAR(sideways_m(1 - of_older), std::sqrt(10) * OdometryOptions{}.prior_translation_sigma_m,
               0.005);
+  ASSERT_TRUE(result.since_keyframe);
+  EXPECT_EQ(result.since_keyframe->keyframe, 1);
+  EXPECT_NEAR(std::sqrt(result.since_keyframe->covariance(3, 3)), sideways_m(1 - of_older), 0.001);
+}
+
+TEST(Odometry, KnowsTheMotionSinceTheLatestKeyframeWithoutSeeingIt) {
+  const CameraModel camera = test::small_camera();
+  const auto corner = view(0);
+  const Keyframe older{0, 0, 0, Pose::Identity(), corner};
+  const std::vector<const Keyframe*> around{&older};
+  Odometry odometry(camera, {}, {}, {});
+  odometry.track(0, *corner, {});
+  EXPECT_FALSE(odometry.track(1 / 15.0, *view(0), around).since_keyframe) << "none is noted yet";
+  odometry.note_keyframe(1);
+  const TrackingResult result = odometry.track(2 / 15.0, *view(1), around);
+  ASSERT_EQ(result.status, TrackingStatus::tracked);
+  ASSERT_TRUE(result.since_keyframe);
+  EXPECT_EQ(result.since_keyframe->keyframe, 1);
+  EXPECT_GT(result.since_keyframe->covariance(3, 3), 100 * result.target_covariances[0](3, 3));
 }
 
 TEST(Odometry, FollowsWithPclsMethods) {

@@ -34,6 +34,13 @@ Eigen::Matrix<double, 6, 1> twist_between(const Pose& from, const Pose& to) {
   return twist;
 }
 
+Pose moved_by(const Eigen::Matrix<double, 6, 1>& twist, const Pose& from) {
+  Pose moved = pose_from_twist(twist);
+  moved.linear() = (moved.linear() * from.linear()).eval();
+  moved.translation() += from.translation();
+  return moved;
+}
+
 Pose interpolate(const Pose& a, const Pose& b, double share) {
   const Eigen::Quaterniond qa(a.linear());
   const Eigen::AngleAxisd step(qa.conjugate() * Eigen::Quaterniond(b.linear()));

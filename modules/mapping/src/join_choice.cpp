@@ -10,13 +10,20 @@
 #include "tofmap/mapping/place_recognition.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
 namespace tofmap {
 namespace {
 
-/// By how much the share of violations at another place must be larger.
+/// Largest share of violations at the place of a join. It is more than furniture that was moved
+/// causes (up to 0.14), and less than places that look alike in some views.
+constexpr double most_violations_of_join = 0.2;
+
+/// By how much the share of violations at another place must be larger, as a difference and as a
+/// ratio: at places with many changes, it varies more.
 constexpr double least_difference = 0.02;
+constexpr double least_ratio = 1.5;
 
 /// Number of keyframes that must agree on a place for it to be tried, or to be a runner-up.
 constexpr std::size_t least_of_place = 2;
@@ -31,7 +38,7 @@ class JoinSearch {
 
   std::vector<MapJoin> places(std::span<const PoseEdge> recognitions,
                               const MapJoin* but = nullptr) const;
-  double violations_at(const MapJoin& join) const;
+  std::vector<double> violations_at(const MapJoin& join) const;
   std::optional<MapJoin> confirmed(const MapJoin& join) const;
 
  private:
@@ -116,23 +123,33 @@ std::optional<MapJoin> JoinSearch::confirmed(const MapJoin& join) const {
   return join_by(agreeing, map_, context_.keyframes);
 }
 
-/// The mean share of free-space violations of the keyframes at a place. 1 if they see nothing there
-/// that was seen before.
-double JoinSearch::violations_at(const MapJoin& join) const {
+/// The shares of free-space violations of the keyframes at a place, the least first. Empty if they
+/// see nothing there that was seen before.
+std::vector<double> JoinSearch::violations_at(const MapJoin& join) const {
   constexpr std::size_t most_compared = 20;
   const std::size_t step = 1 + (own_.size() - 1) / most_compared;
-  double sum = 0;
-  int compared = 0;
+  std::vector<double> shares;
   for (std::size_t i = 0; i < own_.size(); i += step) {
     const Pose pose = join.into_from_map * own_[i]->world_from_camera;
     const Keyframe* other = nearest_of_others(pose, join);
     if (other == nullptr) continue;
     const auto cloud = own_[i]->cloud.load();
-    sum += free_space_violation_share({cloud.get(), pose}, target_of(*other), context_.camera,
-                                      tolerated_pose_error_m);
-    ++compared;
+    shares.push_back(free_space_violation_share({cloud.get(), pose}, target_of(*other),
+                                                context_.camera, tolerated_pose_error_m));
   }
-  return compared > 0 ? sum / compared : 1;
+  std::ranges::sort(shares);
+  return shares;
+}
+
+double mean_of(std::span<const double> shares) {
+  if (shares.empty()) return 1;
+  return std::reduce(shares.begin(), shares.end()) / static_cast<double>(shares.size());
+}
+
+/// The mean of the less half of shares: what was moved since is in sight of some keyframes, a place
+/// that looks alike contradicts all of them.
+double mean_of_half(std::span<const double> shares) {
+  return mean_of(shares.first((shares.size() + 1) / 2));
 }
 
 }  // namespace
@@ -155,11 +172,12 @@ const Keyframe* nearest_view(const Pose& pose, std::span<const Keyframe> keyfram
 bool is_certain(const MapJoin& join, std::span<const PoseEdge> recognitions,
                 const IsPossibleJoin& is_possible, const JoinContext& context) {
   const JoinSearch search(join.map, context);
-  const double violations = search.violations_at(join);
-  if (violations >= most_violations_since) return false;
+  const std::vector<double> violations = search.violations_at(join);
+  if (mean_of(violations) >= most_violations_of_join) return false;
+  const double half = mean_of_half(violations);
   return std::ranges::none_of(search.places(recognitions, &join), [&](const MapJoin& runner_up) {
-    return is_possible(runner_up) &&
-           search.violations_at(runner_up) < violations + least_difference;
+    return is_possible(runner_up) && mean_of_half(search.violations_at(runner_up)) <
+                                         std::max(half + least_difference, half * least_ratio);
   });
 }
 

@@ -53,6 +53,8 @@ struct SavedState {
             {"last_timestamp_s", odometry.last_timestamp_s_},
             {"uncertainty", of(odometry.uncertainty_)},
             {"reference", odometry.reference_},
+            {"since_keyframe", of(odometry.since_keyframe_)},
+            {"latest", odometry.latest_},
             {"usual_support", odometry.usual_support_},
             {"usual_inlier_ratio", odometry.usual_inlier_ratio_}};
   }
@@ -68,6 +70,8 @@ struct SavedState {
     odometry.last_timestamp_s_ = number_in(state, "last_timestamp_s");
     restore(member(state, "uncertainty"), odometry.uncertainty_);
     odometry.reference_ = integer_in(state, "reference", -1, keyframes - 1);
+    restore(member(state, "since_keyframe"), odometry.since_keyframe_);
+    odometry.latest_ = integer_in(state, "latest", -1, keyframes - 1);
     odometry.usual_support_ = number_in(state, "usual_support");
     odometry.usual_inlier_ratio_ = number_in(state, "usual_inlier_ratio");
   }

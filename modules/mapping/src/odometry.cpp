@@ -116,7 +116,8 @@ Odometry::Odometry(const CameraModel& camera, const OdometryOptions& options,
       options_(options),
       registration_(registration),
       recognition_(recognition),
-      uncertainty_(options.prior_rotation_sigma_rad, options.prior_translation_sigma_m) {}
+      uncertainty_(options.prior_rotation_sigma_rad, options.prior_translation_sigma_m),
+      since_keyframe_(uncertainty_) {}
 
 TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
                                std::span<const Keyframe* const> around, bool may_contradict) {
@@ -129,6 +130,7 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
   if (!last_) {
     result.status = TrackingStatus::first;
     uncertainty_.forget_velocity();
+    since_keyframe_.forget_velocity();
     accept({timestamp_s, result.world_from_camera});
     return result;
   }
@@ -366,33 +368,47 @@ void Odometry::note_change(double timestamp_s, const RegistrationResult& found) 
   const MotionUncertainty::Twist change =
       twist_between(predict(timestamp_s).world_from_camera, found.world_from_camera);
   const long frames = std::max(1L, std::lround(periods_since_registered(timestamp_s)));
-  uncertainty_.note_change(change, found.covariance, static_cast<int>(frames));
+  for (MotionUncertainty* motion : {&uncertainty_, &since_keyframe_}) {
+    motion->note_change(change, found.covariance, static_cast<int>(frames));
+  }
 }
 
-/// Finds the covariances of the pose relative to each target, and the spread relative to all of
-/// them. Frames since the reference tell of the motion since then, where its own surfaces do not.
+/// Finds the covariances of the pose relative to each target and to the latest keyframe, and the
+/// spread relative to all targets. Frames since the reference tell of the motion since then, where
+/// its own surfaces do not.
 void Odometry::learn_covariances(double periods, const Attempt& attempt, TrackingResult& result) {
   using Covariance = MotionUncertainty::Covariance;
   const auto& information = attempt.registration.target_information;
-  const auto reference = std::ranges::find(attempt.targets, reference_, &Keyframe::id);
-  const bool sees_reference = reference != attempt.targets.end();
-  const auto place = static_cast<std::size_t>(reference - attempt.targets.begin());
-  uncertainty_.learn(static_cast<int>(std::lround(periods)),
-                     sees_reference ? information[place] : Covariance(Covariance::Zero()));
+  const auto place_of = [&](int id) {
+    return static_cast<std::size_t>(std::ranges::find(attempt.targets, id, &Keyframe::id) -
+                                    attempt.targets.begin());
+  };
+  const auto information_from = [&](std::size_t place) -> Covariance {
+    return place < information.size() ? information[place] : Covariance::Zero();
+  };
   for (const Covariance& of_target : information) {
     result.target_covariances.push_back(covariance_of(of_target));
   }
-  Covariance& by_motion = result.target_covariances[sees_reference ? place : 0];
-  if (sees_reference) {
-    by_motion = uncertainty_.of_pose();
+  const int frames = static_cast<int>(std::lround(periods));
+  const std::size_t latest = place_of(latest_);
+  since_keyframe_.learn(frames, information_from(latest));
+  if (latest < information.size()) result.target_covariances[latest] = since_keyframe_.of_pose();
+  if (latest_ >= 0) {
+    result.since_keyframe = {latest_, covariance_of(since_keyframe_.of_pose().inverse())};
+  }
+  const std::size_t reference = place_of(reference_);
+  uncertainty_.learn(frames, information_from(reference));
+  std::vector<Covariance> covariances = result.target_covariances;
+  if (reference < information.size()) {
+    covariances[reference] = uncertainty_.of_pose();
   } else {
     // The pose of the reference relative to the targets is known well.
-    by_motion = (by_motion.inverse() + uncertainty_.of_pose().inverse()).inverse();
+    covariances[0] = (covariances[0].inverse() + uncertainty_.of_pose().inverse()).inverse();
     reference_ = attempt.targets.front()->id;
-    uncertainty_.restart(by_motion);
+    uncertainty_.restart(covariances[0]);
   }
   Covariance sum = Covariance::Zero();
-  for (const Covariance& covariance : result.target_covariances) sum += covariance.inverse();
+  for (const Covariance& covariance : covariances) sum += covariance.inverse();
   result.covariance = sum.inverse();
   result.spread = spread_of(result.covariance);
 }
@@ -400,6 +416,8 @@ void Odometry::learn_covariances(double periods, const Attempt& attempt, Trackin
 void Odometry::note_keyframe(int id) {
   reference_ = id;
   uncertainty_.restart();
+  latest_ = id;
+  since_keyframe_.restart();
 }
 
 void Odometry::start_anew() {
@@ -407,6 +425,8 @@ void Odometry::start_anew() {
   before_last_.reset();
   uncertainty_.reset();
   reference_ = -1;
+  since_keyframe_.reset();
+  latest_ = -1;
   usual_support_ = expected_support;
   usual_inlier_ratio_ = expected_inlier_ratio;
   frames_since_registered_ = 0;
@@ -417,6 +437,7 @@ void Odometry::move(const Pose& new_from_old_world) {
     if (*pose) (*pose)->world_from_camera = new_from_old_world * (*pose)->world_from_camera;
   }
   uncertainty_.rotate(new_from_old_world.linear());
+  since_keyframe_.rotate(new_from_old_world.linear());
 }
 
 void Odometry::accept(const StampedPose& pose) {

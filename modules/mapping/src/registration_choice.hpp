@@ -3,6 +3,8 @@
 #pragma once
 
 #include <tofmap/core/camera.hpp>
+#include <tofmap/mapping/odometry.hpp>
+#include <tofmap/mapping/pose_spread.hpp>
 #include <tofmap/mapping/verification.hpp>
 
 namespace tofmap {
@@ -17,6 +19,13 @@ inline bool are_near(const Pose& one, const Pose& other, double distance_m, doub
 inline bool is_clearly_better(const RegistrationResult& one, const RegistrationResult& other) {
   constexpr double clear_factor = 1.1;
   return support(one) > clear_factor * support(other);
+}
+
+/// Whether a pose relative to the keyframes around it is so uncertain that its frame should become
+/// a keyframe: between keyframes that see more, the path is corrected only at keyframes.
+inline bool is_uncertain(const PoseSpread& spread, const OdometryOptions& options) {
+  constexpr double most_share = 0.2;
+  return spread.translation_sigma_m() > most_share * options.keyframe_translation_m;
 }
 
 }  // namespace tofmap

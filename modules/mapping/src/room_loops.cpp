@@ -7,8 +7,10 @@
 #include "tofmap/mapping/loop_closure.hpp"
 #include "tofmap/mapping/loop_fit.hpp"
 #include "tofmap/mapping/map_fit.hpp"
+#include "tofmap/mapping/path_smoothing.hpp"
 #include "tofmap/mapping/room_mapper.hpp"
 #include "tofmap/mapping/slip_search.hpp"
+#include "tofmap/mapping/uncertain_start.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -68,8 +70,12 @@ bool RoomMapper::loop_awaits_others() const {
 }
 
 void RoomMapper::finish() {
+  if (unfitted_loops_ > 0) fit();
+  mend_uncertain_starts();
   join_afterwards();
   if (unfitted_loops_ > 0) fit();
+  smooth_path(content_, recording(), odometry_options_.prior_rotation_sigma_rad,
+              odometry_options_.prior_translation_sigma_m);
   content_.changes = find_changes(content_);
 }
 
@@ -90,13 +96,12 @@ void RoomMapper::mend(const Slip& slip) {
   const Pose before = content_.keyframes[current_].world_from_camera;
   fit_poses(content_, loop_options_, held_keyframes());
   follow_keyframe(before);
-  rebuild_submaps(slip.at);
+  separate_submaps(slip.at);
 }
 
 /// Separates the submaps that have keyframes on both sides of a slip, which have moved relative to
-/// each other. Their surface is rebuilt from the keyframes: that of other frames cannot be told
-/// apart any more.
-void RoomMapper::rebuild_submaps(int at) {
+/// each other.
+void RoomMapper::separate_submaps(int at) {
   std::map<int, int> later_half;  // by the index of the submap
   for (int id = at; id < content_.keyframes.size(); ++id) {
     int& submap = content_.submap_of[static_cast<std::size_t>(id)];
@@ -106,18 +111,51 @@ void RoomMapper::rebuild_submaps(int at) {
     if (is_new) content_.submaps.push_back({id, SurfaceMap(content_.surface_options)});
     submap = half->second;
   }
-  for (const auto& [earlier, later] : later_half) {
-    content_.submaps[static_cast<std::size_t>(earlier)].surface =
-        SurfaceMap(content_.surface_options);
+  std::set<int> changed;
+  for (const auto& [earlier, later] : later_half) changed.insert({earlier, later});
+  rebuild_submaps(changed);
+}
+
+/// Rebuilds the surface of submaps from their keyframes: that of other frames cannot be told apart
+/// any more.
+void RoomMapper::rebuild_submaps(const std::set<int>& submaps) {
+  for (const int index : submaps) {
+    Submap& submap = content_.submaps[static_cast<std::size_t>(index)];
+    submap.surface = SurfaceMap(content_.surface_options);
+    const Pose anchor_from_world = content_.keyframes[submap.anchor].world_from_camera.inverse();
     for (const Keyframe& keyframe : content_.keyframes.all()) {
-      const int submap = content_.submap_of[static_cast<std::size_t>(keyframe.id)];
-      if (submap != earlier && submap != later) continue;
-      const Pose anchor_from_world =
-          content_.keyframes[content_.submaps[static_cast<std::size_t>(submap)].anchor]
-              .world_from_camera.inverse();
-      content_.submaps[static_cast<std::size_t>(submap)].surface.change().integrate(
-          *keyframe.cloud.load(), anchor_from_world * keyframe.world_from_camera);
+      if (content_.submap_of[static_cast<std::size_t>(keyframe.id)] != index) continue;
+      submap.surface.change().integrate(*keyframe.cloud.load(),
+                                        anchor_from_world * keyframe.world_from_camera);
     }
+  }
+}
+
+/// Mends the starts of the maps of this recording, and searches loops for their keyframes again.
+void RoomMapper::mend_uncertain_starts() {
+  std::set<int> maps;
+  for (const Keyframe& keyframe : content_.keyframes.all()) {
+    if (keyframe.recording == recording()) maps.insert(keyframe.taken_in);
+  }
+  for (const int map : maps) {
+    const std::vector<int> mended =
+        mend_uncertain_start(content_, map, odometry_options_, registration_, loop_options_);
+    if (mended.empty()) continue;
+    std::set<int> submaps;
+    for (const int id : mended) submaps.insert(content_.submap_of[static_cast<std::size_t>(id)]);
+    rebuild_submaps(submaps);
+    return_to_origin(content_.keyframes[mended.front()].map);
+    if (loop_options_.close) close_loops_of(mended);
+  }
+}
+
+/// Searches loops for keyframes whose poses were not known well when they were taken.
+void RoomMapper::close_loops_of(std::span<const int> keyframes) {
+  for (const int id : keyframes) {
+    const LoopCandidate loop =
+        find_loop(content_.keyframes[id], content_.keyframes.all(),
+                  content_.keyframes.spreads_from(id), camera_, loop_options_, registration_);
+    if (loop.edge && !loop.needs_slip) add_loop(*loop.edge);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "tofmap/mapping/room_mapper.hpp"
 
+#include "registration_choice.hpp"
 #include "tofmap/mapping/free_space.hpp"
 #include "tofmap/mapping/keyframe_edge.hpp"
 
@@ -153,10 +154,13 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
                              keyframe_from_world * result.world_from_camera, frame.index,
                              recording()});
   if (!result.is_keyframe) {
+    Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+    for (const auto& of_target : result.registration.target_information) information += of_target;
     content_.frames.back().covariance =
-        with_shared_errors(rotated(result.covariance, keyframe_from_world.linear()));
+        with_shared_errors(rotated(covariance_of(information), keyframe_from_world.linear()));
   }
   result.target_covariances.clear();
+  result.since_keyframe.reset();
   result.registration.target_information.clear();
   return result;
 }
@@ -203,11 +207,7 @@ void RoomMapper::integrate(const SurfaceCloud& cloud) {
 bool RoomMapper::wants_keyframe(const TrackingResult& result,
                                 std::span<const Keyframe* const> around) const {
   const Pose& pose = result.world_from_camera;
-  // Between keyframes that see more, the path is corrected only at keyframes.
-  constexpr double most_share = 0.2;
-  if (result.spread.translation_sigma_m() > most_share * odometry_options_.keyframe_translation_m) {
-    return true;
-  }
+  if (is_uncertain(result.spread, odometry_options_)) return true;
   // Behind a column or a person who moves, much may come into view without much motion.
   constexpr double least_overlap = 0.7;
   if (result.registration.overlap < least_overlap) return true;
@@ -243,10 +243,16 @@ void RoomMapper::add_keyframe(const NewFrame& frame, std::span<const Keyframe* c
                           .map = map_,
                           .taken_in = newest_map(),
                           .recording = recording()});
+  if (const auto& latest = result.since_keyframe) {
+    content_.edges.push_back(edge_of(content_.keyframes[latest->keyframe], id,
+                                     result.world_from_camera, latest->covariance));
+  }
   for (std::size_t i = 0; i < result.targets.size(); ++i) {
     const int target = result.targets[i];
-    content_.edges.push_back(edge_of(content_.keyframes[target], id, result.world_from_camera,
-                                     result.target_covariances[i]));
+    if (!result.since_keyframe || target != result.since_keyframe->keyframe) {
+      content_.edges.push_back(edge_of(content_.keyframes[target], id, result.world_from_camera,
+                                       result.target_covariances[i]));
+    }
     // Targets are well connected, and may constrain different directions.
     content_.keyframes.connect(target, id, result.spread);
   }

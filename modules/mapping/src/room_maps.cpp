@@ -6,7 +6,6 @@
 #include "tofmap/mapping/free_space.hpp"
 #include "tofmap/mapping/join_choice.hpp"
 #include "tofmap/mapping/keyframe_edge.hpp"
-#include "tofmap/mapping/loop_closure.hpp"
 #include "tofmap/mapping/loop_fit.hpp"
 #include "tofmap/mapping/map_join.hpp"
 #include "tofmap/mapping/place_recognition.hpp"
@@ -39,6 +38,7 @@ void move(TrackingResult& result, const Pose& new_from_old_world) {
   rotate(result.covariance);
   rotate(result.registration.covariance);
   for (auto& covariance : result.target_covariances) rotate(covariance);
+  if (result.since_keyframe) rotate(result.since_keyframe->covariance);
   for (auto& information : result.registration.target_information) rotate(information);
 }
 
@@ -204,9 +204,11 @@ std::optional<MapJoin> RoomMapper::found_join(std::span<const Stretch> travelled
     return can_travel(travelled, place) && agrees_with_start(place);
   };
   const KeyframeSpacing spacing = keyframe_spacing();
-  nearness_.is_ambiguous = !is_certain(*join, possible_places_, is_possible,
-                                       {all, camera_, spacing, loop_options_, registration_});
-  return nearness_.is_ambiguous ? std::nullopt : std::move(join);
+  const JoinContext context{all, camera_, spacing, loop_options_, registration_};
+  if (is_certain(*join, possible_places_, is_possible, context)) return join;
+  join = find_certain_join(map_, possible_places_, is_possible, context);
+  nearness_.is_ambiguous = !join;
+  return join;
 }
 
 /// Joins the newest map with another one if enough recognitions agree. `travelled` are stretches().
@@ -263,13 +265,7 @@ void RoomMapper::join_afterwards() {
       if (keyframe.map == map) joined.push_back(keyframe.id);
     }
     join(*found, travelled);
-    if (!loop_options_.close) continue;
-    for (const int id : joined) {
-      const LoopCandidate loop =
-          find_loop(content_.keyframes[id], content_.keyframes.all(),
-                    content_.keyframes.spreads_from(id), camera_, loop_options_, registration_);
-      if (loop.edge && !loop.needs_slip) add_loop(*loop.edge);
-    }
+    if (loop_options_.close) close_loops_of(joined);
   }
 }
 

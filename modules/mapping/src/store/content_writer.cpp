@@ -35,7 +35,8 @@ WrittenKeyframe row_of(const Keyframe& keyframe, const MapContent& content) {
 bool is_same(const RegisteredFrame& one, const RegisteredFrame& other) {
   return one.index == other.index && one.recording == other.recording &&
          one.keyframe == other.keyframe &&
-         is_same(one.keyframe_from_camera, other.keyframe_from_camera);
+         is_same(one.keyframe_from_camera, other.keyframe_from_camera) &&
+         one.covariance == other.covariance;
 }
 
 /// A reusable statement.
@@ -215,12 +216,11 @@ void write_constraints(const MapContent& content, SQLite::Database& database) {
 
 void write_frames(const MapContent& content, const WrittenContent& before,
                   SQLite::Database& database) {
-  std::size_t same = std::min(content.frames.size(), before.frames.size());
-  while (same > 0 && !is_same(content.frames[same - 1], before.frames[same - 1])) --same;
-  remove_from(database, "frames", "id", same);
+  remove_from(database, "frames", "id", content.frames.size());
   Insertion row(database, "frames", 6 + pose_columns);
-  for (std::size_t i = same; i < content.frames.size(); ++i) {
+  for (std::size_t i = 0; i < content.frames.size(); ++i) {
     const RegisteredFrame& frame = content.frames[i];
+    if (i < before.frames.size() && is_same(frame, before.frames[i])) continue;
     int column = 1;
     row.statement.bind(column++, static_cast<std::int64_t>(i));
     row.statement.bind(column++, frame.recording);

@@ -36,6 +36,9 @@ Pose pose_from_twist(const Eigen::Matrix<double, 6, 1>& twist);
 /// between their orientations, and the difference of their translations.
 Eigen::Matrix<double, 6, 1> twist_between(const Pose& from, const Pose& to);
 
+/// The pose that is a twist away: twist_between(from, moved_by(twist, from)) is `twist`.
+Pose moved_by(const Eigen::Matrix<double, 6, 1>& twist, const Pose& from);
+
 /// Interpolates between two poses: linearly in translation, spherically in rotation. `share` 0
 /// gives `a`, 1 gives `b`; values outside 0 … 1 extrapolate.
 Pose interpolate(const Pose& a, const Pose& b, double share);

@@ -38,8 +38,10 @@ using IsPossibleJoin = std::function<bool(const MapJoin&)>;
 ///
 /// Another place where at least two keyframes agree, and which is possible, is a runner-up. The
 /// keyframes of the map are put there, and compared with the free space of the nearest ones of the
-/// other map (free_space_violation_share()). The join is certain if they contradict each runner-up
-/// clearly more than the place of the join, and that by less than 30 % of what both see.
+/// other map (free_space_violation_share()). The join is certain if they contradict its place by
+/// less than 20 % of what both see, and each runner-up clearly more. For that, only the half of the
+/// keyframes counts that contradicts a place least: furniture that was moved is in sight of some of
+/// them, while at a place that looks alike all see something else.
 bool is_certain(const MapJoin& join, std::span<const PoseEdge> recognitions,
                 const IsPossibleJoin& is_possible, const JoinContext& context);
 

@@ -42,7 +42,7 @@ struct RegisteredFrame {
   int recording = 0;  ///< index in MapContent::recordings
   /// Of the error of the pose relative to all keyframes that it was registered with: rotation
   /// vector in radians, then translation in metres, along the axes of `keyframe`. Zero for the
-  /// frame of the keyframe itself.
+  /// frame of the keyframe itself. By the surfaces alone until smooth_path() adds the motion.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 

@@ -69,6 +69,14 @@ enum class TrackingStatus {
 
 std::span<const NamedValue<TrackingStatus>> named_values(TrackingStatus);
 
+/// What the motion since the latest keyframe, and the surfaces of that keyframe, tell of a pose.
+struct SinceKeyframe {
+  int keyframe = 0;  ///< id of the latest keyframe
+  /// Of the error of the pose relative to this keyframe: rotation vector in radians, then
+  /// translation in metres, along the axes of the world.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+};
+
 /// How a frame was tracked.
 struct TrackingResult {
   TrackingStatus status = TrackingStatus::lost;
@@ -79,11 +87,12 @@ struct TrackingResult {
   /// Covariance of the error of the pose relative to each target if the status is `tracked`, else
   /// empty: rotation vector in radians, then translation in metres, along the axes of the world.
   /// Each comes from the surfaces of that target alone, so it is large in directions that these do
-  /// not constrain, even if other targets do. One of them also includes what the motion model knows
-  /// since the latest keyframe: that of this keyframe or, once it is no longer a target, of another
-  /// target.
-  /// RoomMapper::add_frame() makes edges of the covariances and removes them.
+  /// not constrain, even if other targets do. RoomMapper::add_frame() makes edges of the
+  /// covariances and removes them.
   std::vector<Eigen::Matrix<double, 6, 6>> target_covariances;
+  /// If the status is `tracked` and there is a keyframe. RoomMapper::add_frame() removes it as
+  /// well.
+  std::optional<SinceKeyframe> since_keyframe;
   /// Whether frame and keyframes see through each other where they should not. It is tested only if
   /// the pose is unlikely.
   bool contradicts_targets = false;
@@ -197,6 +206,8 @@ class Odometry {
   /// Id of the keyframe that `uncertainty_` refers to: the latest one, or, once that is no target
   /// any more, another one; −1 before the first one.
   int reference_ = -1;
+  MotionUncertainty since_keyframe_;  ///< of the last registered pose relative to `latest_`
+  int latest_ = -1;                   ///< id of the latest keyframe; −1 before the first one
   static constexpr double expected_support = 0.8;  ///< before any frame was registered
   static constexpr double expected_inlier_ratio = 0.9;
   /// Share of a frame's points that fit the surfaces, averaged over recent registered frames.

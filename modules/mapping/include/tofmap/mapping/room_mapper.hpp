@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -221,7 +222,10 @@ class RoomMapper {
   int submap_for(int id, const Pose& pose, std::span<const Keyframe* const> around);
   void follow_keyframe(const Pose& before);
   void mend_slips();
-  void rebuild_submaps(int at);
+  void separate_submaps(int at);
+  void rebuild_submaps(const std::set<int>& submaps);
+  void mend_uncertain_starts();
+  void close_loops_of(std::span<const int> keyframes);
   void fit();
 
   CameraModel camera_;

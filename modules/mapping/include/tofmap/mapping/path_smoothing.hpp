@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <tofmap/mapping/map_content.hpp>
+
+namespace tofmap {
+
+/// Smooths the path of a recording between its keyframes, whose poses are held: a frame that the
+/// surfaces leave uncertain in some direction is moved there so that the camera moves steadily
+/// through the frames before and after it. When frames were tracked, only the motion before them
+/// was known, and keyframes may have been moved by loops since.
+///
+/// RegisteredFrame::covariance must be what the surfaces alone tell; it becomes that of the
+/// smoothed pose. The sigmas are the largest standard deviations of MotionUncertainty. A
+/// fixed-interval smoother (Rauch, Tung and Striebel, AIAA Journal 1965) for constant velocity,
+/// linear about the poses as they are.
+void smooth_path(MapContent& content, int recording, double rotation_sigma_rad,
+                 double translation_sigma_m);
+
+}  // namespace tofmap

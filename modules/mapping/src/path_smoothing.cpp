@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/mapping/path_smoothing.hpp"
+
+#include "tofmap/mapping/motion_uncertainty.hpp"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+namespace tofmap {
+namespace {
+
+using Twist = MotionUncertainty::Twist;
+using Covariance = MotionUncertainty::Covariance;
+/// What is to be found: the correction of a frame, and that of the frame before it.
+using State = Eigen::Matrix<double, 12, 1>;
+using Joint = Eigen::Matrix<double, 12, 12>;
+
+/// Standard deviation, in metres and radians, to which the poses of keyframes are held.
+constexpr double held_sigma = 1e-4;
+
+/// A camera that has gone for this many frame periods without a registered frame may have changed
+/// its motion.
+constexpr double most_periods = 3.5;
+
+/// Frames are smoothed together with this many before and after them, and so many at once, since
+/// estimates take 2.5 KB a frame.
+constexpr std::size_t frames_beside = 100;
+constexpr std::size_t frames_at_once = 1000;
+
+/// A frame of the path.
+struct Step {
+  RegisteredFrame* frame = nullptr;
+  Pose world_from_camera = Pose::Identity();
+  bool is_held = false;
+  Covariance by_surfaces = Covariance::Zero();  ///< along the axes of the world
+};
+
+/// What is known of a frame and of the one before it.
+struct Estimate {
+  double share = 0;  ///< time since the frame before, as a share of the time before that
+  State expected = State::Zero();  ///< from the frames before
+  Joint of_expected = Joint::Zero();
+  State known = State::Zero();  ///< from this frame, in the end also from those after it
+  Joint of_known = Joint::Zero();
+
+  /// Adds that the surfaces know of no correction.
+  void use(const Covariance& by_surfaces);
+};
+
+void make_symmetric(Joint& covariance) {
+  covariance = (0.5 * (covariance + covariance.transpose())).eval();
+}
+
+void Estimate::use(const Covariance& by_surfaces) {
+  const Covariance sum = of_expected.topLeftCorner<6, 6>() + by_surfaces;
+  const Eigen::Matrix<double, 6, 12> transposed_gain =
+      sum.ldlt().solve(Eigen::Matrix<double, 6, 12>(of_expected.topRows<6>()));
+  known = expected - transposed_gain.transpose() * expected.head<6>();
+  of_known = of_expected - transposed_gain.transpose() * sum * transposed_gain;
+  make_symmetric(of_known);
+}
+
+/// The state of a frame from that of the one before it, with constant velocity.
+Joint constant_velocity(double share) {
+  Joint next = Joint::Zero();
+  next.topLeftCorner<6, 6>().diagonal().setConstant(1 + share);
+  next.topRightCorner<6, 6>().diagonal().setConstant(-share);
+  next.bottomLeftCorner<6, 6>().setIdentity();
+  return next;
+}
+
+/// The estimate of the first frame of a path. The camera may already move.
+Estimate first_estimate(const Step& step) {
+  Estimate estimate;
+  estimate.of_expected.setIdentity();  // metres and radians
+  estimate.use(step.by_surfaces);
+  return estimate;
+}
+
+/// The estimate of the second frame, or of the last of three. Learns of the motion.
+Estimate next_estimate(const Estimate& before, std::span<const Step> steps,
+                       MotionUncertainty& motion) {
+  const Step& step = steps.back();
+  Estimate estimate;
+  Twist change = Twist::Zero();
+  Twist sigmas = Twist::Ones();
+  if (steps.size() > 2) {
+    const Pose& last = steps[1].world_from_camera;
+    const double last_step_s = steps[1].frame->timestamp_s - steps[0].frame->timestamp_s;
+    estimate.share = (step.frame->timestamp_s - steps[1].frame->timestamp_s) / last_step_s;
+    const Pose motion_before = steps[0].world_from_camera.inverse() * last;
+    change = twist_between(last * interpolate(Pose::Identity(), motion_before, estimate.share),
+                           step.world_from_camera);
+    sigmas = std::max(1.0, estimate.share) * motion.change_sigmas();
+    motion.note_change(change, step.by_surfaces, 1);
+  }
+  const Joint next = constant_velocity(estimate.share);
+  estimate.expected = next * before.known;
+  estimate.expected.head<6>() -= change;
+  estimate.of_expected = next * before.of_known * next.transpose();
+  estimate.of_expected.topLeftCorner<6, 6>().diagonal() += sigmas.cwiseAbs2();
+  estimate.use(step.by_surfaces);
+  return estimate;
+}
+
+/// Adds what the frames after it tell to an estimate.
+void smooth(Estimate& estimate, const Estimate& after) {
+  const Joint transposed_gain =
+      after.of_expected.ldlt().solve(Joint(constant_velocity(after.share) * estimate.of_known));
+  estimate.known += transposed_gain.transpose() * (after.known - after.expected);
+  estimate.of_known +=
+      transposed_gain.transpose() * (after.of_known - after.of_expected) * transposed_gain;
+  make_symmetric(estimate.of_known);
+}
+
+std::vector<Estimate> smoothed(std::span<const Step> steps, MotionUncertainty motion) {
+  std::vector<Estimate> estimates{first_estimate(steps.front())};
+  for (std::size_t i = 1; i < steps.size(); ++i) {
+    const std::size_t first = i - std::min<std::size_t>(i, 2);
+    estimates.push_back(
+        next_estimate(estimates.back(), steps.subspan(first, i + 1 - first), motion));
+  }
+  for (std::size_t i = estimates.size() - 1; i-- > 0;) smooth(estimates[i], estimates[i + 1]);
+  return estimates;
+}
+
+/// Whether the camera can have kept its motion from the end of a path to a frame.
+bool goes_on(std::span<const Step> path, const RegisteredFrame& frame) {
+  const double step_s = frame.timestamp_s - path.back().frame->timestamp_s;
+  if (step_s <= 0) return false;
+  if (path.size() < 2) return true;
+  const RegisteredFrame& before_last = *path[path.size() - 2].frame;
+  return step_s <= most_periods * (path.back().frame->timestamp_s - before_last.timestamp_s);
+}
+
+/// The paths of a recording: frames of one map that follow each other without a gap.
+std::vector<std::vector<Step>> paths_of(MapContent& content, int recording) {
+  std::vector<std::vector<Step>> paths;
+  int map = -1;
+  for (RegisteredFrame& frame : content.frames) {
+    if (frame.recording != recording) continue;
+    const Keyframe& keyframe = content.keyframes[frame.keyframe];
+    if (keyframe.map != map || !goes_on(paths.back(), frame)) paths.emplace_back();
+    map = keyframe.map;
+    Step& step = paths.back().emplace_back();
+    step.frame = &frame;
+    step.world_from_camera = pose_of(frame, content.keyframes);
+    step.is_held = keyframe.recording == recording && keyframe.frame_index == frame.index;
+    step.by_surfaces = step.is_held
+                           ? Covariance(held_sigma * held_sigma * Covariance::Identity())
+                           : rotated(frame.covariance, keyframe.world_from_camera.linear());
+  }
+  return paths;
+}
+
+void correct(const Step& step, const Estimate& estimate, const KeyframeGraph& keyframes) {
+  if (step.is_held) return;
+  const Pose keyframe_from_world = keyframes[step.frame->keyframe].world_from_camera.inverse();
+  step.frame->keyframe_from_camera =
+      keyframe_from_world * moved_by(estimate.known.head<6>(), step.world_from_camera);
+  step.frame->covariance =
+      rotated(estimate.of_known.topLeftCorner<6, 6>(), keyframe_from_world.linear());
+}
+
+}  // namespace
+
+void smooth_path(MapContent& content, int recording, double rotation_sigma_rad,
+                 double translation_sigma_m) {
+  const MotionUncertainty motion(rotation_sigma_rad, translation_sigma_m);
+  for (const std::vector<Step>& path : paths_of(content, recording)) {
+    for (std::size_t begin = 0; begin < path.size(); begin += frames_at_once) {
+      const std::size_t end = std::min(begin + frames_at_once, path.size());
+      const std::size_t before = begin - std::min(begin, frames_beside);
+      const std::size_t after = std::min(end + frames_beside, path.size());
+      const std::vector<Estimate> estimates =
+          smoothed(std::span(path).subspan(before, after - before), motion);
+      for (std::size_t i = begin; i < end; ++i) {
+        correct(path[i], estimates[i - before], content.keyframes);
+      }
+    }
+  }
+}
+
+}  // namespace tofmap
