@@ -26,7 +26,7 @@ constexpr double held_sigma = 1e-4;
 
 /// A camera that has gone for this many frame periods without a registered frame may have changed
 /// its motion.
-constexpr double most_periods = 3.5;
+constexpr double longest_gap_periods = 3.5;
 
 /// Frames are smoothed together with this many before and after them, and so many at once, since
 /// estimates take 2.5 KB a frame.
@@ -136,7 +136,7 @@ bool goes_on(std::span<const Step> path, const RegisteredFrame& frame) {
   if (step_s <= 0) return false;
   if (path.size() < 2) return true;
   const RegisteredFrame& before_last = *path[path.size() - 2].frame;
-  return step_s <= most_periods * (path.back().frame->timestamp_s - before_last.timestamp_s);
+  return step_s <= longest_gap_periods * (path.back().frame->timestamp_s - before_last.timestamp_s);
 }
 
 /// The paths of a recording: frames of one map that follow each other without a gap.
