@@ -355,10 +355,8 @@ MotionPrior Odometry::predict(double timestamp_s) const {
   const double last_step_s = before_last_ ? last_->timestamp_s - before_last_->timestamp_s : 0;
   if (last_step_s > 0 && frames_since_registered_ <= frames_of_steady_motion) {
     const double share = (timestamp_s - last_->timestamp_s) / last_step_s;
-    const Pose step = before_last_->world_from_camera.inverse() * last_->world_from_camera;
-    // The motion is repeated along the axes of the camera, not along those of the world.
-    prior.world_from_camera = last_->world_from_camera *
-                              interpolate(Pose::Identity(), step, std::min(share, most_periods));
+    prior.world_from_camera = at_constant_velocity(
+        before_last_->world_from_camera, last_->world_from_camera, std::min(share, most_periods));
   }
   return prior;
 }

@@ -3,11 +3,11 @@
 
 #include "tofmap/mapping/path_smoothing.hpp"
 
+#include "registration_choice.hpp"
 #include "tofmap/mapping/motion_uncertainty.hpp"
 
 #include <algorithm>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -91,11 +91,10 @@ Estimate next_estimate(const Estimate& before, std::span<const Step> steps,
   Twist change = Twist::Zero();
   Twist sigmas = Twist::Ones();
   if (steps.size() > 2) {
-    const Pose& last = steps[1].world_from_camera;
     const double last_step_s = steps[1].frame->timestamp_s - steps[0].frame->timestamp_s;
     estimate.share = (step.frame->timestamp_s - steps[1].frame->timestamp_s) / last_step_s;
-    const Pose motion_before = steps[0].world_from_camera.inverse() * last;
-    change = twist_between(last * interpolate(Pose::Identity(), motion_before, estimate.share),
+    change = twist_between(at_constant_velocity(steps[0].world_from_camera,
+                                                steps[1].world_from_camera, estimate.share),
                            step.world_from_camera);
     sigmas = std::max(1.0, estimate.share) * motion.change_sigmas();
     motion.note_change(change, step.by_surfaces, 1);

@@ -154,10 +154,9 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
                              keyframe_from_world * result.world_from_camera, frame.index,
                              recording()});
   if (!result.is_keyframe) {
-    Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
-    for (const auto& of_target : result.registration.target_information) information += of_target;
+    const auto by_surfaces = covariance_of(information_of(result.registration));
     content_.frames.back().covariance =
-        with_shared_errors(rotated(covariance_of(information), keyframe_from_world.linear()));
+        with_shared_errors(rotated(by_surfaces, keyframe_from_world.linear()));
   }
   result.target_covariances.clear();
   result.since_keyframe.reset();

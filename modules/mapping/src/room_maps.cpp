@@ -205,8 +205,9 @@ std::optional<MapJoin> RoomMapper::found_join(std::span<const Stretch> travelled
   };
   const KeyframeSpacing spacing = keyframe_spacing();
   const JoinContext context{all, camera_, spacing, loop_options_, registration_};
-  if (is_certain(*join, possible_places_, is_possible, context)) return join;
-  join = find_certain_join(map_, possible_places_, is_possible, context);
+  if (!is_certain(*join, possible_places_, is_possible, context)) {
+    join = find_certain_join(map_, possible_places_, is_possible, context);
+  }
   nearness_.is_ambiguous = !join;
   return join;
 }

@@ -12,10 +12,8 @@
 #include <cmath>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 namespace tofmap {
@@ -50,17 +48,15 @@ class WayBack {
   WayBack(const MapContent& content, int taken_in, const OdometryOptions& odometry,
           const RegistrationOptions& registration, const LoopOptions& recognition);
 
-  /// The number of keyframes before the first one that those after it are certain about. 0 if the
-  /// start is certain, by odometry or by loops, or if nothing after it is.
-  std::size_t length_of_start() const;
-
-  /// The keyframes of the start, mended, the last one first. Empty if one of them does not fit.
+  /// The keyframes of the start, mended, the last one first. Empty if the start is certain, by
+  /// odometry or by loops, if nothing after it is, or if one of them does not fit.
   std::vector<Mended> go();
 
-  /// Id of the first keyframe after the start.
-  int end_id() const { return keyframes_[length_of_start()]->id; }
+  /// The first keyframe after the start. There is one if go() has found something.
+  const Keyframe& end() const { return *keyframes_[length_]; }
 
  private:
+  std::size_t length_of_start() const;
   bool is_certain(const Keyframe& keyframe) const;
   bool is_held_by_loops(std::size_t count) const;
   void learn_motion();
@@ -73,6 +69,7 @@ class WayBack {
   const RegistrationOptions& registration_;
   const LoopOptions& recognition_;
   std::vector<const Keyframe*> keyframes_;  ///< of the map, in order
+  std::size_t length_ = 0;                  ///< number of keyframes of the start
   std::vector<Keyframe> passed_;            ///< the nearest one last, mended
   std::optional<StampedPose> last_;
   std::optional<StampedPose> before_last_;
@@ -90,6 +87,7 @@ WayBack::WayBack(const MapContent& content, int taken_in, const OdometryOptions&
   for (const Keyframe& keyframe : content.keyframes.all()) {
     if (keyframe.taken_in == taken_in) keyframes_.push_back(&keyframe);
   }
+  length_ = length_of_start();
 }
 
 /// Whether odometry is certain of a keyframe relative to those of the map before it.
@@ -119,6 +117,7 @@ bool WayBack::is_held_by_loops(std::size_t count) const {
   return false;
 }
 
+/// The number of keyframes before the first one that those after it are certain about.
 std::size_t WayBack::length_of_start() const {
   std::size_t length = 0;
   while (length + 1 < keyframes_.size() && !is_certain(*keyframes_[length + 1])) ++length;
@@ -126,12 +125,12 @@ std::size_t WayBack::length_of_start() const {
 }
 
 std::vector<Mended> WayBack::go() {
-  const std::size_t length = length_of_start();
+  if (length_ == 0) return {};
   learn_motion();
-  const std::size_t end = std::min(length + keyframes_after, keyframes_.size());
-  for (std::size_t i = end; i-- > length;) passed_.push_back(*keyframes_[i]);
+  const std::size_t known = std::min(length_ + keyframes_after, keyframes_.size());
+  for (std::size_t i = known; i-- > length_;) passed_.push_back(*keyframes_[i]);
   std::vector<Mended> start;
-  for (std::size_t i = length; i-- > 0;) {
+  for (std::size_t i = length_; i-- > 0;) {
     const auto mended = step_to(*keyframes_[i]);
     if (!mended) return {};
     start.push_back(*mended);
@@ -141,11 +140,10 @@ std::vector<Mended> WayBack::go() {
 
 /// Learns the motion of the camera from the frames after the start, from the last one back.
 void WayBack::learn_motion() {
-  const Keyframe& end = *keyframes_[length_of_start()];
   std::vector<const RegisteredFrame*> frames;
   for (const RegisteredFrame& frame : content_.frames) {
-    if (frame.recording != end.recording || frame.index < end.frame_index) continue;
-    if (content_.keyframes[frame.keyframe].taken_in != end.taken_in) continue;
+    if (frame.recording != end().recording || frame.index < end().frame_index) continue;
+    if (content_.keyframes[frame.keyframe].taken_in != end().taken_in) continue;
     frames.push_back(&frame);
     if (frames.size() == frames_of_motion) break;
   }
@@ -173,8 +171,7 @@ Pose WayBack::predict(double timestamp_s) const {
   const double last_step_s = before_last_ ? last_->timestamp_s - before_last_->timestamp_s : 0;
   if (last_step_s == 0) return last_->world_from_camera;
   const double share = (timestamp_s - last_->timestamp_s) / last_step_s;
-  const Pose step = before_last_->world_from_camera.inverse() * last_->world_from_camera;
-  return last_->world_from_camera * interpolate(Pose::Identity(), step, share);
+  return at_constant_velocity(before_last_->world_from_camera, last_->world_from_camera, share);
 }
 
 void WayBack::pass(const StampedPose& pose, int frame) {
@@ -208,8 +205,7 @@ std::optional<Mended> WayBack::step_to(const Keyframe& keyframe) {
       prior_deviation_sigmas(prior, found.world_from_camera) > odometry_.max_prior_sigmas) {
     return std::nullopt;
   }
-  Covariance information = Covariance::Zero();
-  for (const Covariance& of_target : found.target_information) information += of_target;
+  const Covariance information = information_of(found);
   learn_over(count, information, motion_);
   motion_.restart();
   pass({keyframe.timestamp_s, found.world_from_camera}, keyframe.frame_index);
@@ -262,17 +258,15 @@ std::vector<int> mend_uncertain_start(MapContent& content, int taken_in,
                                       const RegistrationOptions& registration,
                                       const LoopOptions& recognition) {
   WayBack way(content, taken_in, odometry, registration, recognition);
-  if (way.length_of_start() == 0) return {};
-  const Keyframe& end = content.keyframes[way.end_id()];
   const std::vector<Mended> start = way.go();
   if (start.empty()) return {};
-  release_frames(content, start, end);
+  release_frames(content, start, way.end());
   std::vector<int> ids;
   for (const Mended& mended : start) {
     content.keyframes.set_pose(mended.id, mended.world_from_camera);
     ids.push_back(mended.id);
   }
-  replace_edges(content, start, end);
+  replace_edges(content, start, way.end());
   std::ranges::reverse(ids);
   return ids;
 }

@@ -86,9 +86,9 @@ struct TrackingResult {
   RegistrationResult registration;  ///< all defaults if registration was not tried
   /// Covariance of the error of the pose relative to each target if the status is `tracked`, else
   /// empty: rotation vector in radians, then translation in metres, along the axes of the world.
-  /// Each comes from the surfaces of that target alone, so it is large in directions that these do
-  /// not constrain, even if other targets do. RoomMapper::add_frame() makes edges of the
-  /// covariances and removes them.
+  /// Each comes from the surfaces of that target alone (of the latest keyframe: as
+  /// `since_keyframe`) and is large in directions that these do not constrain, even if other
+  /// targets do. RoomMapper::add_frame() makes edges of the covariances and removes them.
   std::vector<Eigen::Matrix<double, 6, 6>> target_covariances;
   /// If the status is `tracked` and there is a keyframe. RoomMapper::add_frame() removes it as
   /// well.
