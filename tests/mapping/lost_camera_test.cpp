@@ -147,6 +147,7 @@ TEST_F(LostCamera, KeepsTheMapOfAnotherBuildingApart) {
     alone.add_frame({i, i / 15.0, view});
   }
   mapper_.finish();
+  alone.finish();
   ASSERT_EQ(maps_of(mapper_.content()), (std::vector{0, 1}));
   EXPECT_EQ(trajectory_of(mapper_.content(), 0).size(), std::size_t{frames});
   const Trajectory there = trajectory_of(mapper_.content(), 1);
