@@ -152,6 +152,19 @@ double mean_of_half(std::span<const double> shares) {
   return mean_of(shares.first((shares.size() + 1) / 2));
 }
 
+/// Whether keyframes contradict the place of a join little, and all others clearly more.
+bool is_certain(const MapJoin& join, std::span<const PoseEdge> possible,
+                const IsPossibleJoin& is_possible, const JoinContext& context) {
+  const JoinSearch search(join.map, context);
+  const std::vector<double> violations = search.violations_at(join);
+  if (mean_of(violations) >= most_violations_of_join) return false;
+  const double half = mean_of_half(violations);
+  return std::ranges::none_of(search.places(possible, &join), [&](const MapJoin& runner_up) {
+    return is_possible(runner_up) && mean_of_half(search.violations_at(runner_up)) <
+                                         std::max(half + least_difference, half * least_ratio);
+  });
+}
+
 }  // namespace
 
 const Keyframe* nearest_view(const Pose& pose, std::span<const Keyframe> keyframes,
@@ -169,28 +182,32 @@ const Keyframe* nearest_view(const Pose& pose, std::span<const Keyframe> keyfram
   return nearest;
 }
 
-bool is_certain(const MapJoin& join, std::span<const PoseEdge> recognitions,
-                const IsPossibleJoin& is_possible, const JoinContext& context) {
-  const JoinSearch search(join.map, context);
-  const std::vector<double> violations = search.violations_at(join);
-  if (mean_of(violations) >= most_violations_of_join) return false;
-  const double half = mean_of_half(violations);
-  return std::ranges::none_of(search.places(recognitions, &join), [&](const MapJoin& runner_up) {
-    return is_possible(runner_up) && mean_of_half(search.violations_at(runner_up)) <
-                                         std::max(half + least_difference, half * least_ratio);
-  });
-}
-
-std::optional<MapJoin> find_certain_join(int map, std::span<const PoseEdge> recognitions,
+std::optional<MapJoin> find_certain_join(int map, std::span<const PoseEdge> possible,
                                          const IsPossibleJoin& is_possible,
                                          const JoinContext& context) {
   const JoinSearch search(map, context);
-  for (const MapJoin& place : search.places(recognitions)) {
+  for (const MapJoin& place : search.places(possible)) {
     if (!is_possible(place)) continue;
     auto join = search.confirmed(place);
-    if (join && is_certain(*join, recognitions, is_possible, context)) return join;
+    if (join && is_certain(*join, possible, is_possible, context)) return join;
   }
   return std::nullopt;
+}
+
+JoinChoice choose_join(int map, std::span<const PoseEdge> sure, std::span<const PoseEdge> possible,
+                       const IsPossibleJoin& is_possible, const JoinContext& context) {
+  std::vector<const PoseEdge*> edges;
+  for (const PoseEdge& edge : sure) edges.push_back(&edge);
+  JoinChoice choice;
+  choice.agreeing =
+      static_cast<int>(most_that_agree(edges, context.keyframes, context.loops).size());
+  choice.join = find_join(sure, map, context.keyframes, context.loops);
+  if (!choice.join) return choice;
+  if (!is_certain(*choice.join, possible, is_possible, context)) {
+    choice.join = find_certain_join(map, possible, is_possible, context);
+  }
+  choice.is_ambiguous = !choice.join;
+  return choice;
 }
 
 }  // namespace tofmap

@@ -136,17 +136,13 @@ Recognitions MapMerger::recognise_in(std::span<const Keyframe> keyframes, int ma
     for (const Keyframe& other : keyframes) {
       if (other.map == map_) candidates.push_back(&other);
     }
-    const auto places = find_places(keyframe, std::move(candidates), everywhere, keyframes,
-                                    content_.camera, loops_, registration_);
-    const auto edge_of_place = [&](const Recognition& place) {
-      return loop_edge(keyframes[static_cast<std::size_t>(place.from)], keyframe.id,
-                       place.registration);
-    };
-    for (const Recognition& place : places) recognitions.possible.push_back(edge_of_place(place));
-    const auto found = surest_place(places, keyframes);
-    if (found) recognitions.sure.push_back(edge_of_place(*found));
+    const RecognisedPlaces places =
+        recognise_places(keyframe, std::move(candidates), everywhere, keyframes, content_.camera,
+                         loops_, registration_);
+    std::ranges::copy(places.possible, std::back_inserter(recognitions.possible));
+    if (places.surest) recognitions.sure.push_back(*places.surest);
     ++nearness.keyframes;
-    nearness.recognised += found ? 1 : 0;
+    nearness.recognised += places.surest ? 1 : 0;
   }
   return recognitions;
 }
@@ -160,15 +156,16 @@ bool MapMerger::join(const MapContent& added, const std::function<void()>& tell,
   const int map = largest_map(added) + maps_begun(content_);
   std::ranges::copy(own, std::back_inserter(all));
   const Recognitions recognitions = recognise_in(all, map, tell, nearness);
-  std::vector<const PoseEdge*> edges;
-  for (const PoseEdge& edge : recognitions.sure) edges.push_back(&edge);
-  nearness.agreeing = static_cast<int>(most_that_agree(edges, all, loops_).size());
   const auto anywhere = [](const MapJoin&) { return true; };
   const JoinContext context{all, content_.camera, spacing_, loops_, registration_};
-  auto join = find_join(recognitions.sure, map, all, loops_);
-  nearness.is_ambiguous = join && !is_certain(*join, recognitions.possible, anywhere, context);
-  if (nearness.is_ambiguous) return false;
-  if (!join) join = find_certain_join(map, recognitions.possible, anywhere, context);
+  auto [join, agreeing, is_ambiguous] =
+      choose_join(map, recognitions.sure, recognitions.possible, anywhere, context);
+  nearness.agreeing = agreeing;
+  nearness.is_ambiguous = is_ambiguous;
+  // Maps that share little do not agree by sure recognitions.
+  if (!join && !is_ambiguous) {
+    join = find_certain_join(map, recognitions.possible, anywhere, context);
+  }
   if (!join) return false;
   append_rest(added, own, content_);
   content_.keyframes.join(map, map_, join->into_from_map);

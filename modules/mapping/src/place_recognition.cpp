@@ -4,9 +4,12 @@
 #include "tofmap/mapping/place_recognition.hpp"
 
 #include "registration_choice.hpp"
+#include "tofmap/mapping/keyframe_edge.hpp"
 #include "tofmap/mapping/verification.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 namespace tofmap {
 namespace {
@@ -92,6 +95,25 @@ std::optional<Recognition> surest_place(std::vector<Recognition> places,
            !is_same_place(best, other, keyframes);
   });
   return is_ambiguous ? std::nullopt : std::optional(best);
+}
+
+RecognisedPlaces recognise_places(const Keyframe& keyframe, std::vector<const Keyframe*> candidates,
+                                  const IsPossiblePlace& is_possible,
+                                  std::span<const Keyframe> keyframes, const CameraModel& camera,
+                                  const LoopOptions& options,
+                                  const RegistrationOptions& registration) {
+  const auto edge_of = [&](const Recognition& place) {
+    return loop_edge(keyframes[static_cast<std::size_t>(place.from)], keyframe.id,
+                     place.registration);
+  };
+  std::vector<Recognition> places = find_places(keyframe, std::move(candidates), is_possible,
+                                                keyframes, camera, options, registration);
+  RecognisedPlaces recognised;
+  std::ranges::transform(places, std::back_inserter(recognised.possible), edge_of);
+  if (const auto surest = surest_place(std::move(places), keyframes)) {
+    recognised.surest = edge_of(*surest);
+  }
+  return recognised;
 }
 
 }  // namespace tofmap

@@ -143,18 +143,12 @@ void RoomMapper::recognise_among(const Keyframe& keyframe, std::vector<const Key
   for (const auto& of_one_kind : {candidates, earlier}) {
     if (of_one_kind.empty()) continue;
     const auto all = content_.keyframes.all();
-    const auto places =
-        find_places(keyframe, of_one_kind, is_possible, all, camera_, loop_options_, registration_);
-    const auto edge_of_place = [&](const Recognition& place) {
-      return loop_edge(content_.keyframes[place.from], keyframe.id, place.registration);
-    };
+    const RecognisedPlaces places = recognise_places(keyframe, of_one_kind, is_possible, all,
+                                                     camera_, loop_options_, registration_);
     const bool is_of_earlier = of_one_kind.front()->recording < recording();
-    for (const Recognition& place : places) {
-      if (is_of_earlier) possible_places_.push_back(edge_of_place(place));
-    }
-    const auto found = surest_place(places, all);
-    if (!found) continue;
-    recognitions_.push_back(edge_of_place(*found));
+    if (is_of_earlier) std::ranges::copy(places.possible, std::back_inserter(possible_places_));
+    if (!places.surest) continue;
+    recognitions_.push_back(*places.surest);
     if (is_of_earlier) ++nearness_.recognised;
   }
 }
@@ -195,21 +189,15 @@ std::optional<MapJoin> RoomMapper::found_join(std::span<const Stretch> travelled
   }
   const auto all = content_.keyframes.all();
   if (auto join = find_join(own, map_, all, loop_options_)) return join;
-  std::vector<const PoseEdge*> edges;
-  for (const PoseEdge& edge : earlier) edges.push_back(&edge);
-  nearness_.agreeing = static_cast<int>(most_that_agree(edges, all, loop_options_).size());
-  auto join = find_join(earlier, map_, all, loop_options_);
-  if (!join) return std::nullopt;
   const auto is_possible = [&](const MapJoin& place) {
     return can_travel(travelled, place) && agrees_with_start(place);
   };
   const KeyframeSpacing spacing = keyframe_spacing();
-  const JoinContext context{all, camera_, spacing, loop_options_, registration_};
-  if (!is_certain(*join, possible_places_, is_possible, context)) {
-    join = find_certain_join(map_, possible_places_, is_possible, context);
-  }
-  nearness_.is_ambiguous = !join;
-  return join;
+  const JoinChoice choice = choose_join(map_, earlier, possible_places_, is_possible,
+                                        {all, camera_, spacing, loop_options_, registration_});
+  nearness_.agreeing = choice.agreeing;
+  nearness_.is_ambiguous = !choice.join && (choice.is_ambiguous || nearness_.is_ambiguous);
+  return choice.join;
 }
 
 /// Joins the newest map with another one if enough recognitions agree. `travelled` are stretches().

@@ -32,28 +32,37 @@ struct JoinContext {
 /// Tells joins that are possible by what is known of the camera's path.
 using IsPossibleJoin = std::function<bool(const MapJoin&)>;
 
-/// Whether the map of a recording can be joined with one of earlier recordings, if nothing tells
-/// how the camera came there: places look alike. `recognitions` are edges from keyframes of earlier
-/// recordings to some of the map: all places that each of these may see, right and wrong ones.
-///
-/// Another place where at least two keyframes agree, and which is possible, is a runner-up. The
-/// keyframes of the map are put there, and compared with the free space of the nearest ones of the
-/// other map (free_space_violation_share()). The join is certain if they contradict its place by
-/// less than 20 % of what both see, and each runner-up clearly more. For that, only the half of the
-/// keyframes counts that contradicts a place least: furniture that was moved is in sight of some of
-/// them, while at a place that looks alike all see something else.
-bool is_certain(const MapJoin& join, std::span<const PoseEdge> recognitions,
-                const IsPossibleJoin& is_possible, const JoinContext& context);
-
 /// Searches for the place of a finished map in others, where it may share little with them.
-/// `recognitions` are as for is_certain().
+/// `possible` are edges from keyframes of earlier recordings to some of the map: all places that
+/// each of these may see, right and wrong ones.
 ///
 /// Each place where at least two keyframes agree is tried. The other keyframes of the map are put
 /// there; those that overlap are registered from there. Together with them, at least
-/// `least_agreeing_keyframes` must agree, and the join must be certain (is_certain()). Empty if
-/// there is no such place.
-std::optional<MapJoin> find_certain_join(int map, std::span<const PoseEdge> recognitions,
+/// `least_agreeing_keyframes` must agree, and the join must be certain. Empty if there is no such
+/// place.
+///
+/// Nothing tells how the camera came there, and places look alike. Another place where at least two
+/// keyframes agree, and which is possible, is a runner-up. The keyframes of the map are put there,
+/// and compared with the free space of the nearest ones of the other map
+/// (free_space_violation_share()). The join is certain if they contradict its place by less than
+/// 20 % of what both see, and each runner-up clearly more. For that, only the half of the keyframes
+/// counts that contradicts a place least: furniture that was moved is in sight of some of them,
+/// while at a place that looks alike all see something else.
+std::optional<MapJoin> find_certain_join(int map, std::span<const PoseEdge> possible,
                                          const IsPossibleJoin& is_possible,
                                          const JoinContext& context);
+
+/// The place of a map in those of earlier recordings, as far as keyframes know it.
+struct JoinChoice {
+  std::optional<MapJoin> join;  ///< if it is certain
+  int agreeing = 0;             ///< largest number of sure recognitions that agree
+  bool is_ambiguous = false;    ///< whether keyframes agree on a place, but none is certain
+};
+
+/// Chooses the place where the surest recognitions of a map agree (find_join()) or, if that is not
+/// certain, another one (find_certain_join()). No join is chosen if they agree nowhere. `possible`
+/// are as for find_certain_join(), `sure` some of them.
+JoinChoice choose_join(int map, std::span<const PoseEdge> sure, std::span<const PoseEdge> possible,
+                       const IsPossibleJoin& is_possible, const JoinContext& context);
 
 }  // namespace tofmap

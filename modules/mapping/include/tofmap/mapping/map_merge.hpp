@@ -25,11 +25,10 @@ struct MergedMaps {
 /// Merges maps of one building, without knowledge of their relative poses and in any order.
 ///
 /// The keyframes of each map are compared with those of the maps that are joined already. Maps are
-/// joined where places are recognised with certainty (find_join() and is_certain(), or
-/// find_certain_join()). `spacing` is the distance at which the keyframes were taken. Those that
-/// fit nowhere are tried again when others were joined. Loops between the maps then correct the
-/// poses of all keyframes. The world frame is that of the first map. Recordings are put in the
-/// order of their dates.
+/// joined where places are recognised with certainty (choose_join() or find_certain_join()).
+/// `spacing` is the distance at which the keyframes were taken. Those that fit nowhere are tried
+/// again when others were joined. Loops between the maps then correct the poses of all keyframes.
+/// The world frame is that of the first map. Recordings are put in the order of their dates.
 ///
 /// Of a map that consists of several that could not be joined, the one with the most keyframes is
 /// joined; the others stay separate.

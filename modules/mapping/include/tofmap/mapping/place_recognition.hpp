@@ -10,6 +10,7 @@
 #include <tofmap/core/camera.hpp>
 #include <tofmap/mapping/keyframe.hpp>
 #include <tofmap/mapping/loop_options.hpp>
+#include <tofmap/registration/pose_graph.hpp>
 #include <tofmap/registration/projective_icp.hpp>
 
 namespace tofmap {
@@ -53,5 +54,19 @@ std::vector<Recognition> find_places(const Keyframe& keyframe,
 /// another place reaches more than 90 % of that product.
 std::optional<Recognition> surest_place(std::vector<Recognition> places,
                                         std::span<const Keyframe> keyframes);
+
+/// The places of other maps that a keyframe may see, as edges from the keyframes that it was
+/// registered with.
+struct RecognisedPlaces {
+  std::vector<PoseEdge> possible;  ///< find_places()
+  std::optional<PoseEdge> surest;  ///< surest_place() of them
+};
+
+/// Recognises places as find_places() does.
+RecognisedPlaces recognise_places(const Keyframe& keyframe, std::vector<const Keyframe*> candidates,
+                                  const IsPossiblePlace& is_possible,
+                                  std::span<const Keyframe> keyframes, const CameraModel& camera,
+                                  const LoopOptions& options,
+                                  const RegistrationOptions& registration);
 
 }  // namespace tofmap

@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "changed_pieces.hpp"
+
+#include "near_points.hpp"
+#include "tofmap/mapping/change_detection.hpp"
+#include "tofmap/mapping/free_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+namespace tofmap {
+namespace {
+
+/// How far a surface goes on beside the points that keyframes see through: closer to another
+/// surface, the noise of a keyframe hides it.
+constexpr float growth_m = 0.15F;
+
+/// For each point, whether another surface has none there that may be the same.
+std::vector<char> without_counterpart(const MapCloud& points, const MapCloud& other,
+                                      float voxel_m) {
+  constexpr float reach_voxels = 2;
+  const float least_cosine = std::cos(static_cast<float>(M_PI) / 4);
+  const NearPoints search(other, reach_voxels * voxel_m);
+  std::vector<char> is_alone(points.size());
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t at = 0; at < std::ssize(points); ++at) {
+    const auto i = static_cast<std::size_t>(at);
+    const Eigen::Vector3f normal = points[i].getNormalVector3fMap();
+    is_alone[i] =
+        search.any_near(points[i],
+                        [&](std::size_t k) {
+                          const Eigen::Vector3f apart_m =
+                              other[k].getVector3fMap() - points[i].getVector3fMap();
+                          return normal.dot(other[k].getNormalVector3fMap()) >= least_cosine &&
+                                 std::abs(normal.dot(apart_m)) <= voxel_m;
+                        })
+            ? 0
+            : 1;
+  }
+  return is_alone;
+}
+
+/// Tells points that belong to no change.
+constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+/// Whether points may have been there at their time, and keyframes of another time see through
+/// them. `sightings` are those of these keyframes.
+std::vector<char> seen_through(const SeenSurface& surface,
+                               const std::vector<Sightings>& sightings) {
+  std::vector<char> is_through(surface.points.size());
+  for (std::size_t i = 0; i < is_through.size(); ++i) {
+    is_through[i] = surface.certainty[i] != Certainty::none &&
+                            sightings[i].violating >= least_views &&
+                            sightings[i].violates_free_space()
+                        ? 1
+                        : 0;
+  }
+  return is_through;
+}
+
+/// The seeds of changes: those points that were there with certainty, are seen through and have no
+/// counterpart. Themselves; `none` for all others.
+std::vector<std::size_t> seeds_of_changes(const SeenSurface& surface,
+                                          const std::vector<char>& is_alone,
+                                          const std::vector<char>& is_through) {
+  std::vector<std::size_t> seed_of(surface.points.size(), none);
+  for (std::size_t i = 0; i < seed_of.size(); ++i) {
+    const bool is_sure = surface.certainty[i] == Certainty::sure;
+    if (is_sure && is_alone[i] != 0 && is_through[i] != 0) seed_of[i] = i;
+  }
+  return seed_of;
+}
+
+/// Adds what is connected with seeds and has no counterpart either. Each point gets its seed.
+/// Points that are seen through become seeds themselves.
+void grow(const MapCloud& points, const NearPoints& search, const std::vector<char>& is_alone,
+          const std::vector<char>& is_through, std::vector<std::size_t>& seed_of) {
+  std::vector<std::size_t> open;
+  std::ranges::copy_if(seed_of, std::back_inserter(open),
+                       [](std::size_t seed) { return seed != none; });
+  for (std::size_t done = 0; done < open.size(); ++done) {
+    const std::size_t seed = seed_of[open[done]];
+    search.any_near(points[open[done]], [&](std::size_t i) {
+      const float gap_m = (points[i].getVector3fMap() - points[seed].getVector3fMap()).norm();
+      if (seed_of[i] == none && is_alone[i] != 0 && gap_m <= growth_m) {
+        seed_of[i] = is_through[i] != 0 ? i : seed;
+        open.push_back(i);
+      }
+      return false;
+    });
+  }
+}
+
+/// The middle number of observations of the points of changes within the reach of a search.
+std::uint32_t usual_observations(const MapPoint& point, const MapCloud& points,
+                                 const NearPoints& search,
+                                 const std::vector<std::size_t>& seed_of) {
+  std::vector<std::uint32_t> near;
+  search.any_near(point, [&](std::size_t i) {
+    if (seed_of[i] != none) near.push_back(points[i].observations);
+    return false;
+  });
+  const auto middle = near.begin() + std::ssize(near) / 2;
+  std::ranges::nth_element(near, middle);
+  return *middle;
+}
+
+/// Whether another point of a change, in front of a point or behind it, was observed clearly more
+/// often: that is where the surface is, and the point is what the noise of ranges adds to it.
+bool is_noise_of_another(const MapPoint& point, const MapCloud& points, const NearPoints& search,
+                         const std::vector<std::size_t>& seed_of, float voxel_m) {
+  constexpr std::uint32_t clearly = 2;  // times
+  const Eigen::Vector3f normal = point.getNormalVector3fMap();
+  return search.any_near(point, [&](std::size_t i) {
+    const MapPoint& other = points[i];
+    if (seed_of[i] == none || other.observations <= clearly * point.observations) return false;
+    const Eigen::Vector3f apart_m = other.getVector3fMap() - point.getVector3fMap();
+    const float along_m = normal.dot(apart_m);
+    return std::abs(along_m) > voxel_m / 2 &&
+           (apart_m - along_m * normal).norm() < 1.25F * voxel_m &&
+           normal.dot(other.getNormalVector3fMap()) > 0.5F;
+  });
+}
+
+/// Tells the points of changes that are no surface: those that hardly have the observations that a
+/// map demands, as all points around them, and those that the noise of ranges puts in front of a
+/// surface, or behind it.
+std::vector<char> noise_of_changes(const MapCloud& points, const MapContent& content,
+                                   const std::vector<std::size_t>& seed_of) {
+  constexpr float reach_voxels = 4;
+  constexpr double hardly = 1.5;  // times the least number
+  const auto voxel_m = static_cast<float>(content.surface_options.voxel_m);
+  const double least = hardly * content.surface_options.min_observations;
+  const NearPoints search(points, reach_voxels * voxel_m);
+  std::vector<char> is_noise(points.size(), 0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (seed_of[i] == none) continue;
+    const bool is_rare = usual_observations(points[i], points, search, seed_of) < least;
+    is_noise[i] = is_rare || is_noise_of_another(points[i], points, search, seed_of, voxel_m);
+  }
+  return is_noise;
+}
+
+/// Takes the points that are connected with a point and belong to a change, in ascending order.
+std::vector<std::size_t> take_piece(std::size_t first, const MapCloud& points,
+                                    const NearPoints& search,
+                                    const std::vector<std::size_t>& seed_of,
+                                    std::vector<char>& is_taken) {
+  is_taken[first] = 1;
+  std::vector<std::size_t> piece{first};
+  for (std::size_t done = 0; done < piece.size(); ++done) {
+    search.any_near(points[piece[done]], [&](std::size_t i) {
+      if (seed_of[i] != none && is_taken[i] == 0) {
+        is_taken[i] = 1;
+        piece.push_back(i);
+      }
+      return false;
+    });
+  }
+  std::ranges::sort(piece);
+  return piece;
+}
+
+}  // namespace
+
+std::vector<MapCloud> pieces_seen_through(const SeenSurface& surface, const SeenSurface& other,
+                                          const MapContent& content) {
+  const MapCloud& points = surface.points;
+  const double voxel_m = content.surface_options.voxel_m;
+  const NearPoints search(points, static_cast<float>(2 * voxel_m));
+  const std::vector<char> is_alone =
+      without_counterpart(points, other.points, static_cast<float>(voxel_m));
+  const std::vector<char> is_through =
+      seen_through(surface, sightings_of(points, other.keyframes, content.camera, voxel_m));
+  std::vector<std::size_t> seed_of = seeds_of_changes(surface, is_alone, is_through);
+  grow(points, search, is_alone, is_through, seed_of);
+  const std::vector<char> is_noise = noise_of_changes(points, content, seed_of);
+  const NearPoints beside(points, growth_m);
+  std::vector<MapCloud> pieces;
+  std::vector<char> is_taken(points.size(), 0);
+  for (std::size_t first = 0; first < points.size(); ++first) {
+    if (seed_of[first] == none || is_taken[first] != 0) continue;
+    std::vector<std::size_t> piece = take_piece(first, points, beside, seed_of, is_taken);
+    std::erase_if(piece, [&](std::size_t i) { return is_noise[i] != 0; });
+    const auto seeds = std::ranges::count_if(piece, [&](std::size_t i) { return seed_of[i] == i; });
+    if (2 * seeds < std::ssize(piece) || piece.size() < least_points_of_change) continue;
+    MapCloud& cloud = pieces.emplace_back();
+    for (const std::size_t i : piece) cloud.push_back(points[i]);
+  }
+  return pieces;
+}
+
+}  // namespace tofmap
