@@ -59,6 +59,14 @@ class MapsOfOneRoom : public testing::Test {
                              {keyframes_, room_.camera(), spacing, loops_, registration_});
   }
 
+  /// The choice while the second recording goes on.
+  JoinChoice choose(const std::vector<PoseEdge>& edges) const {
+    const KeyframeSpacing spacing{OdometryOptions().keyframe_translation_m,
+                                  OdometryOptions().keyframe_rotation_rad};
+    return choose_join(1, edges, edges, [](const MapJoin&) { return true; },
+                       {keyframes_, room_.camera(), spacing, loops_, registration_});
+  }
+
   test::Scenery room_{"room"};
   LoopOptions loops_;
   RegistrationOptions registration_;
@@ -88,6 +96,21 @@ TEST_F(MapsOfOneRoom, AreJoinedAtTheRightOneOfTwoPlaces) {
   ASSERT_TRUE(join);
   const Pose truth = room_.pose(begins[0]).inverse() * room_.pose(begins[1]);
   EXPECT_LT((join->into_from_map.translation() - truth.translation()).norm(), 0.01);
+}
+
+TEST_F(MapsOfOneRoom, AwaitSixKeyframesThatAgreeWhileTheRecordingGoesOn) {
+  ASSERT_EQ(recognitions(6, {0, 0, 0}).size(), 6U);
+  const JoinChoice early = choose(recognitions(5, {0, 0, 0}));
+  EXPECT_FALSE(early.join);
+  EXPECT_FALSE(early.is_ambiguous);
+  EXPECT_EQ(early.agreeing, 5);
+  EXPECT_TRUE(choose(recognitions(6, {0, 0, 0})).join);
+}
+
+TEST_F(MapsOfOneRoom, AreAmbiguousWhereKeyframesAgreeButContradictThePlace) {
+  const JoinChoice choice = choose(recognitions(6, {1.5, 0, 0}));
+  EXPECT_FALSE(choice.join);
+  EXPECT_TRUE(choice.is_ambiguous);
 }
 
 TEST_F(MapsOfOneRoom, AreNotJoinedWhereTheCameraCannotHaveCome) {

@@ -28,6 +28,16 @@ constexpr double least_ratio = 1.5;
 /// Number of keyframes that must agree on a place for it to be tried, or to be a runner-up.
 constexpr std::size_t least_of_place = 2;
 
+/// Number of keyframes that must agree while others are still to come: of places that look alike,
+/// the right one may be recognised last.
+constexpr std::size_t least_agreeing_so_far = 2 * least_agreeing_keyframes;
+
+std::vector<const PoseEdge*> pointers_to(std::span<const PoseEdge> edges) {
+  std::vector<const PoseEdge*> pointers;
+  for (const PoseEdge& edge : edges) pointers.push_back(&edge);
+  return pointers;
+}
+
 class JoinSearch {
  public:
   JoinSearch(int map, const JoinContext& context) : map_(map), context_(context) {
@@ -116,9 +126,7 @@ std::optional<MapJoin> JoinSearch::confirmed(const MapJoin& join) const {
     if (std::ranges::count(join.edges, keyframe->id, &PoseEdge::to) > 0) continue;
     if (const auto edge = registered(*keyframe, join)) edges.push_back(*edge);
   }
-  std::vector<const PoseEdge*> all;
-  for (const PoseEdge& edge : edges) all.push_back(&edge);
-  const auto agreeing = most_that_agree(all, context_.keyframes, context_.loops);
+  const auto agreeing = most_that_agree(pointers_to(edges), context_.keyframes, context_.loops);
   if (recognising_keyframes(agreeing) < least_agreeing_keyframes) return std::nullopt;
   return join_by(agreeing, map_, context_.keyframes);
 }
@@ -196,13 +204,15 @@ std::optional<MapJoin> find_certain_join(int map, std::span<const PoseEdge> poss
 
 JoinChoice choose_join(int map, std::span<const PoseEdge> sure, std::span<const PoseEdge> possible,
                        const IsPossibleJoin& is_possible, const JoinContext& context) {
-  std::vector<const PoseEdge*> edges;
-  for (const PoseEdge& edge : sure) edges.push_back(&edge);
   JoinChoice choice;
   choice.agreeing =
-      static_cast<int>(most_that_agree(edges, context.keyframes, context.loops).size());
+      static_cast<int>(most_that_agree(pointers_to(sure), context.keyframes, context.loops).size());
   choice.join = find_join(sure, map, context.keyframes, context.loops);
   if (!choice.join) return choice;
+  if (recognising_keyframes(pointers_to(choice.join->edges)) < least_agreeing_so_far) {
+    choice.join.reset();
+    return choice;
+  }
   if (!is_certain(*choice.join, possible, is_possible, context)) {
     choice.join = find_certain_join(map, possible, is_possible, context);
   }

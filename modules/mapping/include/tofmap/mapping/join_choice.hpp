@@ -59,9 +59,10 @@ struct JoinChoice {
   bool is_ambiguous = false;    ///< whether keyframes agree on a place, but none is certain
 };
 
-/// Chooses the place where the surest recognitions of a map agree (find_join()) or, if that is not
-/// certain, another one (find_certain_join()). No join is chosen if they agree nowhere. `possible`
-/// are as for find_certain_join(), `sure` some of them.
+/// Chooses a place of a map while its recording may go on. Six keyframes must recognise it with
+/// certainty, twice as many as at the end, and agree (find_join()). If it is not certain by what
+/// contradicts it, another one is searched (find_certain_join()). `possible` are as for that,
+/// `sure` some of them.
 JoinChoice choose_join(int map, std::span<const PoseEdge> sure, std::span<const PoseEdge> possible,
                        const IsPossibleJoin& is_possible, const JoinContext& context);
 
