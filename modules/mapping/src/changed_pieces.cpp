@@ -112,16 +112,20 @@ std::uint32_t usual_observations(const MapPoint& point, const MapCloud& points,
 /// Whether another point of a change, in front of a point or behind it, was observed clearly more
 /// often: that is where the surface is, and the point is what the noise of ranges adds to it.
 bool is_noise_of_another(const MapPoint& point, const MapCloud& points, const NearPoints& search,
-                         const std::vector<std::size_t>& seed_of, float voxel_m) {
+                         const std::vector<std::size_t>& seed_of,
+                         const SurfaceMapOptions& options) {
   constexpr std::uint32_t clearly = 2;  // times
+  const auto voxel_m = static_cast<float>(options.voxel_m);
+  const auto farthest_m = static_cast<float>(1.5 * options.max_sigma_m);
   const Eigen::Vector3f normal = point.getNormalVector3fMap();
   return search.any_near(point, [&](std::size_t i) {
     const MapPoint& other = points[i];
     if (seed_of[i] == none || other.observations <= clearly * point.observations) return false;
     const Eigen::Vector3f apart_m = other.getVector3fMap() - point.getVector3fMap();
-    const float along_m = normal.dot(apart_m);
-    return std::abs(along_m) > voxel_m / 2 &&
-           (apart_m - along_m * normal).norm() < 1.25F * voxel_m &&
+    const float along_m = std::abs(normal.dot(apart_m));
+    const float across_m = normal.cross(apart_m).norm();
+    return along_m > voxel_m / 2 && along_m <= farthest_m &&
+           across_m < std::min(along_m, 1.25F * voxel_m) &&
            normal.dot(other.getNormalVector3fMap()) > 0.5F;
   });
 }
@@ -133,14 +137,14 @@ std::vector<char> noise_of_changes(const MapCloud& points, const MapContent& con
                                    const std::vector<std::size_t>& seed_of) {
   constexpr float reach_voxels = 4;
   constexpr double hardly = 1.5;  // times the least number
-  const auto voxel_m = static_cast<float>(content.surface_options.voxel_m);
-  const double least = hardly * content.surface_options.min_observations;
-  const NearPoints search(points, reach_voxels * voxel_m);
+  const SurfaceMapOptions& options = content.surface_options;
+  const double least = hardly * options.min_observations;
+  const NearPoints search(points, reach_voxels * static_cast<float>(options.voxel_m));
   std::vector<char> is_noise(points.size(), 0);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (seed_of[i] == none) continue;
     const bool is_rare = usual_observations(points[i], points, search, seed_of) < least;
-    is_noise[i] = is_rare || is_noise_of_another(points[i], points, search, seed_of, voxel_m);
+    is_noise[i] = is_rare || is_noise_of_another(points[i], points, search, seed_of, options);
   }
   return is_noise;
 }
@@ -179,7 +183,7 @@ std::vector<MapCloud> pieces_seen_through(const SeenSurface& surface, const Seen
   std::vector<std::size_t> seed_of = seeds_of_changes(surface, is_alone, is_through);
   grow(points, search, is_alone, is_through, seed_of);
   const std::vector<char> is_noise = noise_of_changes(points, content, seed_of);
-  const NearPoints beside(points, growth_m);
+  const NearPoints beside(points, std::max(growth_m, static_cast<float>(2 * voxel_m)));
   std::vector<MapCloud> pieces;
   std::vector<char> is_taken(points.size(), 0);
   for (std::size_t first = 0; first < points.size(); ++first) {
