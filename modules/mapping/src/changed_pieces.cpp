@@ -9,14 +9,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <limits>
+#include <vector>
 
 namespace tofmap {
 namespace {
 
 /// How far a surface goes on beside the points that keyframes see through: closer to another
-/// surface, the noise of a keyframe hides it.
+/// surface, the noise of a keyframe hides it. Pieces that are no farther apart are one.
 constexpr float growth_m = 0.15F;
 
 /// For each point, whether another surface has none there that may be the same.
@@ -45,7 +48,7 @@ std::vector<char> without_counterpart(const MapCloud& points, const MapCloud& ot
 }
 
 /// Tells points that belong to no change.
-constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t no_seed = std::numeric_limits<std::size_t>::max();
 
 /// Whether points may have been there at their time, and keyframes of another time see through
 /// them. `sightings` are those of these keyframes.
@@ -63,11 +66,11 @@ std::vector<char> seen_through(const SeenSurface& surface,
 }
 
 /// The seeds of changes: those points that were there with certainty, are seen through and have no
-/// counterpart. Themselves; `none` for all others.
+/// counterpart. Each is its own seed; all other points get `no_seed`.
 std::vector<std::size_t> seeds_of_changes(const SeenSurface& surface,
                                           const std::vector<char>& is_alone,
                                           const std::vector<char>& is_through) {
-  std::vector<std::size_t> seed_of(surface.points.size(), none);
+  std::vector<std::size_t> seed_of(surface.points.size(), no_seed);
   for (std::size_t i = 0; i < seed_of.size(); ++i) {
     const bool is_sure = surface.certainty[i] == Certainty::sure;
     if (is_sure && is_alone[i] != 0 && is_through[i] != 0) seed_of[i] = i;
@@ -81,12 +84,12 @@ void grow(const MapCloud& points, const NearPoints& search, const std::vector<ch
           const std::vector<char>& is_through, std::vector<std::size_t>& seed_of) {
   std::vector<std::size_t> open;
   std::ranges::copy_if(seed_of, std::back_inserter(open),
-                       [](std::size_t seed) { return seed != none; });
+                       [](std::size_t seed) { return seed != no_seed; });
   for (std::size_t done = 0; done < open.size(); ++done) {
     const std::size_t seed = seed_of[open[done]];
     search.any_near(points[open[done]], [&](std::size_t i) {
       const float gap_m = (points[i].getVector3fMap() - points[seed].getVector3fMap()).norm();
-      if (seed_of[i] == none && is_alone[i] != 0 && gap_m <= growth_m) {
+      if (seed_of[i] == no_seed && is_alone[i] != 0 && gap_m <= growth_m) {
         seed_of[i] = is_through[i] != 0 ? i : seed;
         open.push_back(i);
       }
@@ -95,13 +98,12 @@ void grow(const MapCloud& points, const NearPoints& search, const std::vector<ch
   }
 }
 
-/// The middle number of observations of the points of changes within the reach of a search.
+/// Median number of observations of the points in reach of one of them.
 std::uint32_t usual_observations(const MapPoint& point, const MapCloud& points,
-                                 const NearPoints& search,
-                                 const std::vector<std::size_t>& seed_of) {
+                                 const NearPoints& search) {
   std::vector<std::uint32_t> near;
   search.any_near(point, [&](std::size_t i) {
-    if (seed_of[i] != none) near.push_back(points[i].observations);
+    near.push_back(points[i].observations);
     return false;
   });
   const auto middle = near.begin() + std::ssize(near) / 2;
@@ -109,44 +111,58 @@ std::uint32_t usual_observations(const MapPoint& point, const MapCloud& points,
   return *middle;
 }
 
-/// Whether another point of a change, in front of a point or behind it, was observed clearly more
-/// often: that is where the surface is, and the point is what the noise of ranges adds to it.
+/// How far the noise of ranges puts points in front of a surface, or behind it.
+float reach_of_noise_m(const SurfaceMapOptions& options) {
+  constexpr double sigmas = 1.5;
+  return static_cast<float>(sigmas * options.max_sigma_m);
+}
+
+/// Whether another point, in front of a point or behind it, was observed clearly more often: that
+/// is where the surface is, and the point is what the noise of ranges adds to it.
 bool is_noise_of_another(const MapPoint& point, const MapCloud& points, const NearPoints& search,
-                         const std::vector<std::size_t>& seed_of,
                          const SurfaceMapOptions& options) {
   constexpr std::uint32_t clearly = 2;  // times
+  constexpr float least_cosine = 0.5F;  // between the normals of one surface
   const auto voxel_m = static_cast<float>(options.voxel_m);
-  const auto farthest_m = static_cast<float>(1.5 * options.max_sigma_m);
+  const float farthest_m = reach_of_noise_m(options);
   const Eigen::Vector3f normal = point.getNormalVector3fMap();
   return search.any_near(point, [&](std::size_t i) {
     const MapPoint& other = points[i];
-    if (seed_of[i] == none || other.observations <= clearly * point.observations) return false;
+    if (other.observations <= clearly * point.observations) return false;
     const Eigen::Vector3f apart_m = other.getVector3fMap() - point.getVector3fMap();
     const float along_m = std::abs(normal.dot(apart_m));
-    const float across_m = normal.cross(apart_m).norm();
-    return along_m > voxel_m / 2 && along_m <= farthest_m &&
-           across_m < std::min(along_m, 1.25F * voxel_m) &&
-           normal.dot(other.getNormalVector3fMap()) > 0.5F;
+    // Beside the point, in the same layer, voxels may have been observed more often as well.
+    const bool is_beside = along_m <= voxel_m / 2 || normal.cross(apart_m).norm() >= along_m;
+    return !is_beside && along_m <= farthest_m &&
+           normal.dot(other.getNormalVector3fMap()) > least_cosine;
   });
 }
 
-/// Tells the points of changes that are no surface: those that hardly have the observations that a
-/// map demands, as all points around them, and those that the noise of ranges puts in front of a
+/// Takes out of changes what is no surface: points that hardly have the observations that a map
+/// demands, as most points around them, and those that the noise of ranges puts in front of a
 /// surface, or behind it.
-std::vector<char> noise_of_changes(const MapCloud& points, const MapContent& content,
-                                   const std::vector<std::size_t>& seed_of) {
-  constexpr float reach_voxels = 4;
+void drop_noise(const MapCloud& points, const SurfaceMapOptions& options,
+                std::vector<std::size_t>& seed_of) {
+  constexpr float around_voxels = 4;
   constexpr double hardly = 1.5;  // times the least number
-  const SurfaceMapOptions& options = content.surface_options;
   const double least = hardly * options.min_observations;
-  const NearPoints search(points, reach_voxels * static_cast<float>(options.voxel_m));
-  std::vector<char> is_noise(points.size(), 0);
+  std::vector<std::size_t> members;
+  MapCloud changed;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (seed_of[i] == none) continue;
-    const bool is_rare = usual_observations(points[i], points, search, seed_of) < least;
-    is_noise[i] = is_rare || is_noise_of_another(points[i], points, search, seed_of, options);
+    if (seed_of[i] == no_seed) continue;
+    members.push_back(i);
+    changed.push_back(points[i]);
   }
-  return is_noise;
+  const NearPoints around(changed, around_voxels * static_cast<float>(options.voxel_m));
+  const NearPoints along_ray(changed, std::sqrt(2.0F) * reach_of_noise_m(options));
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t at = 0; at < std::ssize(members); ++at) {
+    const auto i = static_cast<std::size_t>(at);
+    if (usual_observations(changed[i], changed, around) < least ||
+        is_noise_of_another(changed[i], changed, along_ray, options)) {
+      seed_of[members[i]] = no_seed;
+    }
+  }
 }
 
 /// Takes the points that are connected with a point and belong to a change, in ascending order.
@@ -158,7 +174,7 @@ std::vector<std::size_t> take_piece(std::size_t first, const MapCloud& points,
   std::vector<std::size_t> piece{first};
   for (std::size_t done = 0; done < piece.size(); ++done) {
     search.any_near(points[piece[done]], [&](std::size_t i) {
-      if (seed_of[i] != none && is_taken[i] == 0) {
+      if (seed_of[i] != no_seed && is_taken[i] == 0) {
         is_taken[i] = 1;
         piece.push_back(i);
       }
@@ -182,14 +198,13 @@ std::vector<MapCloud> pieces_seen_through(const SeenSurface& surface, const Seen
       seen_through(surface, sightings_of(points, other.keyframes, content.camera, voxel_m));
   std::vector<std::size_t> seed_of = seeds_of_changes(surface, is_alone, is_through);
   grow(points, search, is_alone, is_through, seed_of);
-  const std::vector<char> is_noise = noise_of_changes(points, content, seed_of);
+  drop_noise(points, content.surface_options, seed_of);
   const NearPoints beside(points, std::max(growth_m, static_cast<float>(2 * voxel_m)));
   std::vector<MapCloud> pieces;
   std::vector<char> is_taken(points.size(), 0);
   for (std::size_t first = 0; first < points.size(); ++first) {
-    if (seed_of[first] == none || is_taken[first] != 0) continue;
-    std::vector<std::size_t> piece = take_piece(first, points, beside, seed_of, is_taken);
-    std::erase_if(piece, [&](std::size_t i) { return is_noise[i] != 0; });
+    if (seed_of[first] == no_seed || is_taken[first] != 0) continue;
+    const auto piece = take_piece(first, points, beside, seed_of, is_taken);
     const auto seeds = std::ranges::count_if(piece, [&](std::size_t i) { return seed_of[i] == i; });
     if (2 * seeds < std::ssize(piece) || piece.size() < least_points_of_change) continue;
     MapCloud& cloud = pieces.emplace_back();

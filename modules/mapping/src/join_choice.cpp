@@ -49,7 +49,7 @@ class JoinSearch {
   std::vector<MapJoin> places(std::span<const PoseEdge> recognitions,
                               const MapJoin* but = nullptr) const;
   std::vector<double> violations_at(const MapJoin& join) const;
-  std::optional<MapJoin> confirmed(const MapJoin& join) const;
+  std::optional<MapJoin> confirmed(const MapJoin& join, std::size_t least_agreeing) const;
 
  private:
   const Keyframe& at(int id) const { return context_.keyframes[static_cast<std::size_t>(id)]; }
@@ -120,14 +120,15 @@ std::optional<PoseEdge> JoinSearch::registered(const Keyframe& keyframe,
 }
 
 /// The join with the other keyframes of the map that confirm it. Empty if they are too few.
-std::optional<MapJoin> JoinSearch::confirmed(const MapJoin& join) const {
+std::optional<MapJoin> JoinSearch::confirmed(const MapJoin& join,
+                                             std::size_t least_agreeing) const {
   std::vector<PoseEdge> edges = join.edges;
   for (const Keyframe* keyframe : own_) {
     if (std::ranges::count(join.edges, keyframe->id, &PoseEdge::to) > 0) continue;
     if (const auto edge = registered(*keyframe, join)) edges.push_back(*edge);
   }
   const auto agreeing = most_that_agree(pointers_to(edges), context_.keyframes, context_.loops);
-  if (recognising_keyframes(agreeing) < least_agreeing_keyframes) return std::nullopt;
+  if (recognising_keyframes(agreeing) < least_agreeing) return std::nullopt;
   return join_by(agreeing, map_, context_.keyframes);
 }
 
@@ -173,6 +174,19 @@ bool is_certain(const MapJoin& join, std::span<const PoseEdge> possible,
   });
 }
 
+/// find_certain_join() with another number of keyframes that must agree.
+std::optional<MapJoin> certain_join(int map, std::span<const PoseEdge> possible,
+                                    const IsPossibleJoin& is_possible, const JoinContext& context,
+                                    std::size_t least_agreeing) {
+  const JoinSearch search(map, context);
+  for (const MapJoin& place : search.places(possible)) {
+    if (!is_possible(place)) continue;
+    auto join = search.confirmed(place, least_agreeing);
+    if (join && is_certain(*join, possible, is_possible, context)) return join;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 const Keyframe* nearest_view(const Pose& pose, std::span<const Keyframe> keyframes,
@@ -193,13 +207,7 @@ const Keyframe* nearest_view(const Pose& pose, std::span<const Keyframe> keyfram
 std::optional<MapJoin> find_certain_join(int map, std::span<const PoseEdge> possible,
                                          const IsPossibleJoin& is_possible,
                                          const JoinContext& context) {
-  const JoinSearch search(map, context);
-  for (const MapJoin& place : search.places(possible)) {
-    if (!is_possible(place)) continue;
-    auto join = search.confirmed(place);
-    if (join && is_certain(*join, possible, is_possible, context)) return join;
-  }
-  return std::nullopt;
+  return certain_join(map, possible, is_possible, context, least_agreeing_keyframes);
 }
 
 JoinChoice choose_join(int map, std::span<const PoseEdge> sure, std::span<const PoseEdge> possible,
@@ -209,14 +217,14 @@ JoinChoice choose_join(int map, std::span<const PoseEdge> sure, std::span<const 
       static_cast<int>(most_that_agree(pointers_to(sure), context.keyframes, context.loops).size());
   choice.join = find_join(sure, map, context.keyframes, context.loops);
   if (!choice.join) return choice;
+  const bool is_sure = is_certain(*choice.join, possible, is_possible, context);
+  choice.is_ambiguous = !is_sure;
   if (recognising_keyframes(pointers_to(choice.join->edges)) < least_agreeing_so_far) {
     choice.join.reset();
-    return choice;
+  } else if (!is_sure) {
+    choice.join = certain_join(map, possible, is_possible, context, least_agreeing_so_far);
+    choice.is_ambiguous = !choice.join;
   }
-  if (!is_certain(*choice.join, possible, is_possible, context)) {
-    choice.join = find_certain_join(map, possible, is_possible, context);
-  }
-  choice.is_ambiguous = !choice.join;
   return choice;
 }
 

@@ -5,9 +5,7 @@
 
 #include "tofmap/mapping/change_detection.hpp"
 #include "tofmap/mapping/join_choice.hpp"
-#include "tofmap/mapping/keyframe_edge.hpp"
 #include "tofmap/mapping/loop_closure.hpp"
-#include "tofmap/mapping/loop_fit.hpp"
 #include "tofmap/mapping/map_fit.hpp"
 #include "tofmap/mapping/map_join.hpp"
 #include "tofmap/mapping/place_recognition.hpp"
@@ -161,11 +159,9 @@ bool MapMerger::join(const MapContent& added, const std::function<void()>& tell,
   auto [join, agreeing, is_ambiguous] =
       choose_join(map, recognitions.sure, recognitions.possible, anywhere, context);
   nearness.agreeing = agreeing;
-  nearness.is_ambiguous = is_ambiguous;
-  // Maps that share little do not agree by sure recognitions.
-  if (!join && !is_ambiguous) {
-    join = find_certain_join(map, recognitions.possible, anywhere, context);
-  }
+  // No more keyframes will come: three that agree are enough.
+  if (!join) join = find_certain_join(map, recognitions.possible, anywhere, context);
+  nearness.is_ambiguous = !join && is_ambiguous;
   if (!join) return false;
   append_rest(added, own, content_);
   content_.keyframes.join(map, map_, join->into_from_map);

@@ -5,8 +5,6 @@
 
 #include "tofmap/mapping/free_space.hpp"
 #include "tofmap/mapping/join_choice.hpp"
-#include "tofmap/mapping/keyframe_edge.hpp"
-#include "tofmap/mapping/loop_fit.hpp"
 #include "tofmap/mapping/map_join.hpp"
 #include "tofmap/mapping/place_recognition.hpp"
 #include "tofmap/mapping/room_mapper.hpp"
@@ -130,7 +128,8 @@ void RoomMapper::recognise_place() {
   join_maps(travelled);
 }
 
-/// Adds the places of other maps that a keyframe recognises with certainty.
+/// Adds the places of other maps that a keyframe recognises: those that are certain, and all of
+/// earlier recordings.
 void RoomMapper::recognise_among(const Keyframe& keyframe, std::vector<const Keyframe*> candidates,
                                  const IsPossiblePlace& is_possible) {
   std::vector<const Keyframe*> earlier;
@@ -196,6 +195,7 @@ std::optional<MapJoin> RoomMapper::found_join(std::span<const Stretch> travelled
   const JoinChoice choice = choose_join(map_, earlier, possible_places_, is_possible,
                                         {all, camera_, spacing, loop_options_, registration_});
   nearness_.agreeing = choice.agreeing;
+  // Later keyframes may disagree with a place that was ambiguous, and make none certain.
   nearness_.is_ambiguous = !choice.join && (choice.is_ambiguous || nearness_.is_ambiguous);
   return choice.join;
 }

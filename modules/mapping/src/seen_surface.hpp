@@ -5,17 +5,19 @@
 #include <vector>
 
 #include <tofmap/cloud/cloud_file.hpp>
+#include <tofmap/mapping/keyframe.hpp>
 #include <tofmap/mapping/map_content.hpp>
 
 namespace tofmap {
 
-/// Number of keyframes that must see through a point. A single one may be deceived.
+/// Number of keyframes that must see through a point, or agree with it. A single one may be
+/// deceived.
 inline constexpr int least_views = 2;
 
 /// How certain it is that a surface was at a point.
 enum class Certainty {
-  none,      ///< each pixel that saw it covers too much of it
-  possible,  ///< a keyframe shows it
+  none,      ///< all pixels that saw it cover too much of it
+  possible,  ///< a keyframe shows it, by pixels that cover up to twice as much
   sure,      ///< several keyframes show it well
 };
 
