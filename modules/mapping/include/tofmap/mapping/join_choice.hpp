@@ -61,8 +61,8 @@ struct JoinChoice {
 
 /// Chooses a place of a map while its recording may go on. Six keyframes must recognise it with
 /// certainty, twice as many as at the end, and agree (find_join()). If it is not certain by what
-/// contradicts it, another one is searched (find_certain_join()). `possible` are as for that,
-/// `sure` some of them.
+/// contradicts it, another one is searched, where six must agree as well. `possible` are as for
+/// find_certain_join(), `sure` some of them.
 JoinChoice choose_join(int map, std::span<const PoseEdge> sure, std::span<const PoseEdge> possible,
                        const IsPossibleJoin& is_possible, const JoinContext& context);
 

@@ -85,11 +85,11 @@ struct MapNearness {
 /// origin of a map of its own, and the others are tracked in it. Every keyframe of the newest map
 /// is compared with those of the other maps that the camera can have reached in the time since then
 /// (can_travel()); when three keyframes recognise places of another map and agree, both maps are
-/// joined. Maps that are never joined stay separate. The keyframes and submaps of a map stay apart
-/// from those of the maps that it was joined with, so that the join can be taken back: when two
-/// later keyframes differ from what the other map has there, or when a frame fits only its own map
-/// and contradicts the other. A map of fewer than three frames is dropped again when the next one
-/// begins.
+/// joined; for a map of earlier recordings, see choose_join(). Others stay separate. The keyframes
+/// and submaps of a map stay apart from those of the maps that it was joined with, so that the join
+/// can be taken back: when two later keyframes differ from what the other map has there, or when a
+/// frame fits only its own map and contradicts the other. A map of fewer than three frames is
+/// dropped again when the next one begins.
 ///
 /// People, doors and other things that move are found (StillOdometry); they have no part in
 /// registration, keyframes and surface.
