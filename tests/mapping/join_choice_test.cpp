@@ -53,21 +53,19 @@ class MapsOfOneRoom : public testing::Test {
   }
 
   std::optional<MapJoin> find(const std::vector<PoseEdge>& edges, bool is_possible = true) const {
-    const KeyframeSpacing spacing{OdometryOptions().keyframe_translation_m,
-                                  OdometryOptions().keyframe_rotation_rad};
     return find_certain_join(1, edges, [&](const MapJoin&) { return is_possible; },
-                             {keyframes_, room_.camera(), spacing, loops_, registration_});
+                             {keyframes_, room_.camera(), spacing_, loops_, registration_});
   }
 
   /// The choice while the second recording goes on.
   JoinChoice choose(const std::vector<PoseEdge>& edges) const {
-    const KeyframeSpacing spacing{OdometryOptions().keyframe_translation_m,
-                                  OdometryOptions().keyframe_rotation_rad};
     return choose_join(1, edges, edges, [](const MapJoin&) { return true; },
-                       {keyframes_, room_.camera(), spacing, loops_, registration_});
+                       {keyframes_, room_.camera(), spacing_, loops_, registration_});
   }
 
   test::Scenery room_{"room"};
+  KeyframeSpacing spacing_{OdometryOptions().keyframe_translation_m,
+                           OdometryOptions().keyframe_rotation_rad};
   LoopOptions loops_;
   RegistrationOptions registration_;
   std::vector<Keyframe> keyframes_;

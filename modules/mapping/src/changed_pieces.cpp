@@ -98,6 +98,17 @@ void grow(const MapCloud& points, const NearPoints& search, const std::vector<ch
   }
 }
 
+/// The points that belong to changes.
+struct ChangedPoints {
+  MapCloud points;
+  std::vector<char> is_seed;  ///< for each point
+
+  void add(const MapPoint& point, bool point_is_seed) {
+    points.push_back(point);
+    is_seed.push_back(point_is_seed ? 1 : 0);
+  }
+};
+
 /// Median number of observations of the points in reach of one of them.
 std::uint32_t usual_observations(const MapPoint& point, const MapCloud& points,
                                  const NearPoints& search) {
@@ -138,43 +149,40 @@ bool is_noise_of_another(const MapPoint& point, const MapCloud& points, const Ne
   });
 }
 
-/// Takes out of changes what is no surface: points that hardly have the observations that a map
-/// demands, as most points around them, and those that the noise of ranges puts in front of a
-/// surface, or behind it.
-void drop_noise(const MapCloud& points, const SurfaceMapOptions& options,
-                std::vector<std::size_t>& seed_of) {
+/// The points of changes that are a surface. Left out are those that hardly have the observations
+/// that a map demands, as most points around them, and those that the noise of ranges puts in front
+/// of a surface, or behind it.
+ChangedPoints without_noise(const ChangedPoints& changed, const SurfaceMapOptions& options) {
   constexpr float around_voxels = 4;
   constexpr double hardly = 1.5;  // times the least number
   const double least = hardly * options.min_observations;
-  std::vector<std::size_t> members;
-  MapCloud changed;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (seed_of[i] == no_seed) continue;
-    members.push_back(i);
-    changed.push_back(points[i]);
-  }
-  const NearPoints around(changed, around_voxels * static_cast<float>(options.voxel_m));
-  const NearPoints along_ray(changed, std::sqrt(2.0F) * reach_of_noise_m(options));
+  const MapCloud& points = changed.points;
+  const NearPoints around(points, around_voxels * static_cast<float>(options.voxel_m));
+  const NearPoints along_ray(points, std::sqrt(2.0F) * reach_of_noise_m(options));
+  std::vector<char> is_noise(points.size());
 #pragma omp parallel for schedule(static)
-  for (std::ptrdiff_t at = 0; at < std::ssize(members); ++at) {
+  for (std::ptrdiff_t at = 0; at < std::ssize(points); ++at) {
     const auto i = static_cast<std::size_t>(at);
-    if (usual_observations(changed[i], changed, around) < least ||
-        is_noise_of_another(changed[i], changed, along_ray, options)) {
-      seed_of[members[i]] = no_seed;
-    }
+    is_noise[i] = usual_observations(points[i], points, around) < least ||
+                          is_noise_of_another(points[i], points, along_ray, options)
+                      ? 1
+                      : 0;
   }
+  ChangedPoints kept;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (is_noise[i] == 0) kept.add(points[i], changed.is_seed[i] != 0);
+  }
+  return kept;
 }
 
-/// Takes the points that are connected with a point and belong to a change, in ascending order.
+/// Takes the points that are connected with a point, in ascending order.
 std::vector<std::size_t> take_piece(std::size_t first, const MapCloud& points,
-                                    const NearPoints& search,
-                                    const std::vector<std::size_t>& seed_of,
-                                    std::vector<char>& is_taken) {
+                                    const NearPoints& search, std::vector<char>& is_taken) {
   is_taken[first] = 1;
   std::vector<std::size_t> piece{first};
   for (std::size_t done = 0; done < piece.size(); ++done) {
     search.any_near(points[piece[done]], [&](std::size_t i) {
-      if (seed_of[i] != no_seed && is_taken[i] == 0) {
+      if (is_taken[i] == 0) {
         is_taken[i] = 1;
         piece.push_back(i);
       }
@@ -183,6 +191,24 @@ std::vector<std::size_t> take_piece(std::size_t first, const MapCloud& points,
   }
   std::ranges::sort(piece);
   return piece;
+}
+
+/// The pieces of changes, without those that are small or mostly no seeds.
+std::vector<MapCloud> pieces_of(const ChangedPoints& changed, double voxel_m) {
+  const MapCloud& points = changed.points;
+  const NearPoints beside(points, std::max(growth_m, static_cast<float>(2 * voxel_m)));
+  std::vector<MapCloud> pieces;
+  std::vector<char> is_taken(points.size(), 0);
+  for (std::size_t first = 0; first < points.size(); ++first) {
+    if (is_taken[first] != 0) continue;
+    const auto piece = take_piece(first, points, beside, is_taken);
+    const auto seeds =
+        std::ranges::count_if(piece, [&](std::size_t i) { return changed.is_seed[i] != 0; });
+    if (2 * seeds < std::ssize(piece) || piece.size() < least_points_of_change) continue;
+    MapCloud& cloud = pieces.emplace_back();
+    for (const std::size_t i : piece) cloud.push_back(points[i]);
+  }
+  return pieces;
 }
 
 }  // namespace
@@ -198,19 +224,11 @@ std::vector<MapCloud> pieces_seen_through(const SeenSurface& surface, const Seen
       seen_through(surface, sightings_of(points, other.keyframes, content.camera, voxel_m));
   std::vector<std::size_t> seed_of = seeds_of_changes(surface, is_alone, is_through);
   grow(points, search, is_alone, is_through, seed_of);
-  drop_noise(points, content.surface_options, seed_of);
-  const NearPoints beside(points, std::max(growth_m, static_cast<float>(2 * voxel_m)));
-  std::vector<MapCloud> pieces;
-  std::vector<char> is_taken(points.size(), 0);
-  for (std::size_t first = 0; first < points.size(); ++first) {
-    if (seed_of[first] == no_seed || is_taken[first] != 0) continue;
-    const auto piece = take_piece(first, points, beside, seed_of, is_taken);
-    const auto seeds = std::ranges::count_if(piece, [&](std::size_t i) { return seed_of[i] == i; });
-    if (2 * seeds < std::ssize(piece) || piece.size() < least_points_of_change) continue;
-    MapCloud& cloud = pieces.emplace_back();
-    for (const std::size_t i : piece) cloud.push_back(points[i]);
+  ChangedPoints changed;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (seed_of[i] != no_seed) changed.add(points[i], seed_of[i] == i);
   }
-  return pieces;
+  return pieces_of(without_noise(changed, content.surface_options), voxel_m);
 }
 
 }  // namespace tofmap
