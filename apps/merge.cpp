@@ -91,7 +91,7 @@ Json report_json(const MergeArguments& arguments, const MergedMaps& merged, int 
                               {"keyframes", nearness.keyframes},
                               {"recognised", nearness.recognised},
                               {"agreeing", nearness.agreeing},
-                              {"ambiguous", nearness.is_ambiguous}});
+                              {"ambiguous", nearness.obstacle == JoinObstacle::ambiguous}});
   }
   report["changes"] = changes_json(content.changes, content.recordings);
   return report;

@@ -14,15 +14,27 @@ namespace {
 
 std::string told(int keyframes) { return counted(static_cast<std::size_t>(keyframes), "keyframe"); }
 
+std::string told(JoinObstacle obstacle) {
+  switch (obstacle) {
+    case JoinObstacle::none:
+    case JoinObstacle::too_few:
+      break;
+    case JoinObstacle::contradicted:
+      return ". They agree on one, but see through surfaces that are there";
+    case JoinObstacle::ambiguous:
+      return ". They fit to several places, to each nearly as well";
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string told_nearness(const MapNearness& nearness) {
   return fmt::format(
       "of {} that were compared, {} may see places of it, {} of which agree on one; {} must, "
-      "without "
-      "contradicting it{}",
+      "without contradicting it{}",
       told(nearness.keyframes), nearness.recognised, nearness.agreeing, least_agreeing_keyframes,
-      nearness.is_ambiguous ? ". Another place is as likely" : "");
+      told(nearness.obstacle));
 }
 
 std::string told_refusal(const MapNearness& nearness, std::size_t frames) {
@@ -34,7 +46,11 @@ std::string told_refusal(const MapNearness& nearness, std::size_t frames) {
            "map' of the recording by itself says why";
   }
   const std::string near = refused + told_nearness(nearness);
-  if (nearness.is_ambiguous) return near + "; say where the camera begins with --start";
+  if (nearness.obstacle == JoinObstacle::ambiguous)
+    return near + "; say where the camera begins with --start";
+  if (nearness.obstacle == JoinObstacle::contradicted) {
+    return near + ". The recording shows another place that looks alike, or much was moved in it";
+  }
   return near +
          ". The recording shows another place, or the same from where the map was not seen from";
 }

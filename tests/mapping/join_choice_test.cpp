@@ -100,15 +100,15 @@ TEST_F(MapsOfOneRoom, AwaitSixKeyframesThatAgreeWhileTheRecordingGoesOn) {
   ASSERT_EQ(recognitions(6, {0, 0, 0}).size(), 6U);
   const JoinChoice early = choose(recognitions(5, {0, 0, 0}));
   EXPECT_FALSE(early.join);
-  EXPECT_FALSE(early.is_ambiguous);
+  EXPECT_EQ(early.obstacle, JoinObstacle::too_few);
   EXPECT_EQ(early.agreeing, 5);
   EXPECT_TRUE(choose(recognitions(6, {0, 0, 0})).join);
 }
 
-TEST_F(MapsOfOneRoom, AreAmbiguousWhereKeyframesAgreeButContradictThePlace) {
+TEST_F(MapsOfOneRoom, AreNotJoinedWhereKeyframesAgreeButContradictThePlace) {
   const JoinChoice choice = choose(recognitions(6, {1.5, 0, 0}));
   EXPECT_FALSE(choice.join);
-  EXPECT_TRUE(choice.is_ambiguous);
+  EXPECT_EQ(choice.obstacle, JoinObstacle::contradicted);
 }
 
 TEST_F(MapsOfOneRoom, AreNotJoinedWhereTheCameraCannotHaveCome) {

@@ -49,6 +49,18 @@ TEST(CloudShelf, KeepsAsManyExpandedCloudsAsItsBudgetAllows) {
   EXPECT_NEAR(held->at(44, 36).z, 5, 1e-3) << "a cloud that is held was freed";
 }
 
+TEST(CloudShelf, ForgetsWhatExceedsANewBudget) {
+  CloudShelf shelf(test::small_camera());
+  std::vector<KeyframeCloud> clouds;
+  for (int i = 0; i < 3; ++i) clouds.push_back(shelf.add(wall(4 + i)));
+  for (const KeyframeCloud& cloud : clouds) cloud.load();
+  EXPECT_EQ(shelf.expanded_bytes(), 3 * bytes_of_one());
+  shelf.set_budget(0);
+  EXPECT_EQ(shelf.expanded_bytes(), bytes_of_one()) << "not the one that was used last alone";
+  EXPECT_NEAR(clouds[0].load()->at(44, 36).z, 4, 1e-3);
+  EXPECT_EQ(shelf.expanded_bytes(), bytes_of_one());
+}
+
 TEST(CloudShelf, FreesCloudsWithTheirOwners) {
   CloudShelf shelf(test::small_camera());
   {

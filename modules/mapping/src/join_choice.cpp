@@ -10,6 +10,8 @@
 #include "tofmap/mapping/place_recognition.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <numeric>
 #include <vector>
 
@@ -161,17 +163,19 @@ double mean_of_half(std::span<const double> shares) {
   return mean_of(shares.first((shares.size() + 1) / 2));
 }
 
-/// Whether keyframes contradict the place of a join little, and all others clearly more.
-bool is_certain(const MapJoin& join, std::span<const PoseEdge> possible,
-                const IsPossibleJoin& is_possible, const JoinContext& context) {
+/// None if keyframes contradict the place of a join little, and all others clearly more.
+JoinObstacle obstacle_of(const MapJoin& join, std::span<const PoseEdge> possible,
+                         const IsPossibleJoin& is_possible, const JoinContext& context) {
   const JoinSearch search(join.map, context);
   const std::vector<double> violations = search.violations_at(join);
-  if (mean_of(violations) >= most_violations_of_join) return false;
+  if (mean_of(violations) >= most_violations_of_join) return JoinObstacle::contradicted;
   const double half = mean_of_half(violations);
-  return std::ranges::none_of(search.places(possible, &join), [&](const MapJoin& runner_up) {
+  const auto runners_up = search.places(possible, &join);
+  const bool is_ambiguous = std::ranges::any_of(runners_up, [&](const MapJoin& runner_up) {
     return is_possible(runner_up) && mean_of_half(search.violations_at(runner_up)) <
                                          std::max(half + least_difference, half * least_ratio);
   });
+  return is_ambiguous ? JoinObstacle::ambiguous : JoinObstacle::none;
 }
 
 /// find_certain_join() with another number of keyframes that must agree.
@@ -182,9 +186,22 @@ std::optional<MapJoin> certain_join(int map, std::span<const PoseEdge> possible,
   for (const MapJoin& place : search.places(possible)) {
     if (!is_possible(place)) continue;
     auto join = search.confirmed(place, least_agreeing);
-    if (join && is_certain(*join, possible, is_possible, context)) return join;
+    if (!join) continue;
+    if (obstacle_of(*join, possible, is_possible, context) == JoinObstacle::none) return join;
   }
   return std::nullopt;
+}
+
+/// Whether all places are tried again when a map has this number of keyframes: always up to a
+/// dozen, then whenever their number has grown by 7 %. Otherwise the effort, which grows with the
+/// number of keyframes, would grow with its square.
+bool are_all_tried_at(std::ptrdiff_t keyframes) {
+  constexpr std::ptrdiff_t always_up_to = 12;
+  constexpr double per_doubling = 10;
+  const auto steps_at = [](std::ptrdiff_t count) {
+    return std::floor(per_doubling * std::log2(static_cast<double>(count)));
+  };
+  return keyframes <= always_up_to || steps_at(keyframes) > steps_at(keyframes - 1);
 }
 
 }  // namespace
@@ -217,13 +234,17 @@ JoinChoice choose_join(int map, std::span<const PoseEdge> sure, std::span<const 
       static_cast<int>(most_that_agree(pointers_to(sure), context.keyframes, context.loops).size());
   choice.join = find_join(sure, map, context.keyframes, context.loops);
   if (!choice.join) return choice;
-  const bool is_sure = is_certain(*choice.join, possible, is_possible, context);
-  choice.is_ambiguous = !is_sure;
+  choice.obstacle = obstacle_of(*choice.join, possible, is_possible, context);
+  const bool is_sure = choice.obstacle == JoinObstacle::none;
   if (recognising_keyframes(pointers_to(choice.join->edges)) < least_agreeing_so_far) {
     choice.join.reset();
+    if (is_sure) choice.obstacle = JoinObstacle::too_few;
   } else if (!is_sure) {
-    choice.join = certain_join(map, possible, is_possible, context, least_agreeing_so_far);
-    choice.is_ambiguous = !choice.join;
+    choice.join.reset();
+    if (are_all_tried_at(std::ranges::count(context.keyframes, map, &Keyframe::map))) {
+      choice.join = certain_join(map, possible, is_possible, context, least_agreeing_so_far);
+    }
+    if (choice.join) choice.obstacle = JoinObstacle::none;
   }
   return choice;
 }

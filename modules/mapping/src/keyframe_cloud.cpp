@@ -129,6 +129,12 @@ KeyframeCloud CloudShelf::add(std::function<CompactCloud()> read) {
   return added;
 }
 
+void CloudShelf::set_budget(std::size_t bytes) {
+  const std::scoped_lock lock(stock_->mutex);
+  stock_->budget_bytes = bytes;
+  stock_->shrink();
+}
+
 std::size_t CloudShelf::expanded_bytes() const {
   const std::scoped_lock lock(stock_->mutex);
   return stock_->expanded_bytes;

@@ -38,6 +38,10 @@ void KeyframeGraph::add(Keyframe keyframe, std::function<CompactCloud()> read_cl
   add(std::move(keyframe));
 }
 
+void KeyframeGraph::keep_clouds_compact() {
+  if (shelf_) shelf_->set_budget(0);
+}
+
 void KeyframeGraph::connect(int a, int b, const PoseSpread& spread) {
   for (const auto& [one, other] : {std::pair(a, b), std::pair(b, a)}) {
     KeyframeLink& known = link(one, other);

@@ -156,12 +156,12 @@ bool MapMerger::join(const MapContent& added, const std::function<void()>& tell,
   const Recognitions recognitions = recognise_in(all, map, tell, nearness);
   const auto anywhere = [](const MapJoin&) { return true; };
   const JoinContext context{all, content_.camera, spacing_, loops_, registration_};
-  auto [join, agreeing, is_ambiguous] =
+  auto [join, agreeing, obstacle] =
       choose_join(map, recognitions.sure, recognitions.possible, anywhere, context);
   nearness.agreeing = agreeing;
   // No more keyframes will come: three that agree are enough.
   if (!join) join = find_certain_join(map, recognitions.possible, anywhere, context);
-  nearness.is_ambiguous = !join && is_ambiguous;
+  nearness.obstacle = join ? JoinObstacle::none : obstacle;
   if (!join) return false;
   append_rest(added, own, content_);
   content_.keyframes.join(map, map_, join->into_from_map);

@@ -144,7 +144,7 @@ MapperState RoomMapper::state() const {
       {"compared", nearness_.keyframes},
       {"recognised", nearness_.recognised},
       {"agreeing", nearness_.agreeing},
-      {"is_ambiguous", nearness_.is_ambiguous},
+      {"obstacle", static_cast<int>(nearness_.obstacle)},
       {"start", start_ ? Json{{"map", start_->map},
                               {"pose", json_of(start_->world_from_camera)},
                               {"has_rotation", start_->has_rotation}}
@@ -187,7 +187,8 @@ void RoomMapper::restore(MapContent content, const MapperState& state) {
   nearness_ = {.keyframes = integer_in(json, "compared", 0),
                .recognised = integer_in(json, "recognised", 0),
                .agreeing = integer_in(json, "agreeing", 0),
-               .is_ambiguous = flag_in(json, "is_ambiguous")};
+               .obstacle = static_cast<JoinObstacle>(
+                   integer_in(json, "obstacle", 0, static_cast<int>(JoinObstacle::ambiguous)))};
   start_.reset();
   if (const Json& start = member(json, "start"); !start.is_null()) {
     start_ = MapPlace{integer_in(start, "map", 0, begun_maps_ - 1), pose_in(start, "pose"),

@@ -76,6 +76,8 @@ void RoomMapper::finish() {
   if (unfitted_loops_ > 0) fit();
   smooth_path(content_, recording(), odometry_options_.prior_rotation_sigma_rad,
               odometry_options_.prior_translation_sigma_m);
+  // From here on, clouds are gone through in order.
+  content_.keyframes.keep_clouds_compact();
   content_.changes = find_changes(content_);
 }
 

@@ -196,7 +196,7 @@ std::optional<MapJoin> RoomMapper::found_join(std::span<const Stretch> travelled
                                         {all, camera_, spacing, loop_options_, registration_});
   nearness_.agreeing = choice.agreeing;
   // Later keyframes may disagree with a place that was ambiguous, and make none certain.
-  nearness_.is_ambiguous = !choice.join && (choice.is_ambiguous || nearness_.is_ambiguous);
+  if (choice.obstacle != JoinObstacle::too_few) nearness_.obstacle = choice.obstacle;
   return choice.join;
 }
 

@@ -56,13 +56,14 @@ std::optional<MapJoin> find_certain_join(int map, std::span<const PoseEdge> poss
 struct JoinChoice {
   std::optional<MapJoin> join;  ///< if it is certain
   int agreeing = 0;             ///< largest number of sure recognitions that agree
-  bool is_ambiguous = false;    ///< whether keyframes agree on a place, but none is certain
+  JoinObstacle obstacle = JoinObstacle::too_few;
 };
 
 /// Chooses a place of a map while its recording may go on. Six keyframes must recognise it with
 /// certainty, twice as many as at the end, and agree (find_join()). If it is not certain by what
-/// contradicts it, another one is searched, where six must agree as well. `possible` are as for
-/// find_certain_join(), `sure` some of them.
+/// contradicts it, another one is searched, where six must agree as well; in a long recording,
+/// that is done after every tenth or so of its keyframes, since it takes all of them. `possible`
+/// are as for find_certain_join(), `sure` some of them.
 JoinChoice choose_join(int map, std::span<const PoseEdge> sure, std::span<const PoseEdge> possible,
                        const IsPossibleJoin& is_possible, const JoinContext& context);
 

@@ -71,6 +71,9 @@ class CloudShelf {
   /// A cloud that is read when it is needed.
   KeyframeCloud add(std::function<CompactCloud()> read);
 
+  /// Changes the budget.
+  void set_budget(std::size_t bytes);
+
   /// Memory of the expanded clouds on the shelf.
   std::size_t expanded_bytes() const;
 

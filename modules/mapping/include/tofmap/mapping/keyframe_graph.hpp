@@ -76,6 +76,10 @@ class KeyframeGraph {
   /// Replaces the cloud of a keyframe, and with it the descriptor of its place.
   void set_cloud(int id, const KeyframeCloud& cloud);
 
+  /// Keeps no more than the cloud expanded that was used last. That saves memory, and costs no time
+  /// where each cloud is used once.
+  void keep_clouds_compact();
+
   /// Moves all keyframes of a map into another one.
   void join(int map, int into, const Pose& into_from_map);
 

@@ -21,6 +21,14 @@ struct MapJoin {
   std::vector<PoseEdge> edges;  ///< the recognitions that agree on this pose
 };
 
+/// Why a map was not joined with another one.
+enum class JoinObstacle {
+  none,          ///< it was
+  too_few,       ///< too few keyframes agree on a place
+  contradicted,  ///< keyframes agree on places, but see through surfaces that are there
+  ambiguous,     ///< keyframes fit to several places, to each nearly as well
+};
+
 /// Number of keyframes that must recognise the same place. One alone may be wrong: places look
 /// alike.
 inline constexpr std::size_t least_agreeing_keyframes = 3;

@@ -64,10 +64,10 @@ struct MapPlace {
 
 /// How near a recording came to being found in a map.
 struct MapNearness {
-  int keyframes = 0;          ///< number of keyframes that were compared with the map
-  int recognised = 0;         ///< number of those that may see a place of it
-  int agreeing = 0;           ///< number of those that agree on the likeliest place
-  bool is_ambiguous = false;  ///< whether another place is as likely
+  int keyframes = 0;   ///< number of keyframes that were compared with the map
+  int recognised = 0;  ///< number of those that may see a place of it
+  int agreeing = 0;    ///< number of those that agree on the likeliest place
+  JoinObstacle obstacle = JoinObstacle::too_few;
 };
 
 /// Tracks the camera, closes loops, and keeps trajectory and map consistent.
