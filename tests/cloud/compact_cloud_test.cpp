@@ -125,11 +125,18 @@ TEST(CompactCloud, RefusesDamagedBytes) {
     cut.bytes.resize(size);
     EXPECT_THROW(expand(cut, rays), InputError) << size;
   }
+  int refused = 0;
   for (std::size_t at = 0; at < whole.bytes.size(); at += whole.bytes.size() / 50) {
     CompactCloud flipped = whole;
     flipped.bytes[at] ^= 4;
-    EXPECT_THROW(expand(flipped, rays), InputError) << at;
+    try {
+      // Where all pixels are alike, a repetition from elsewhere is the same.
+      EXPECT_EQ(compact(expand(flipped, rays)).bytes, compact(expand(whole, rays)).bytes) << at;
+    } catch (const InputError&) {
+      ++refused;
+    }
   }
+  EXPECT_GT(refused, 40) << "of 50";
   CompactCloud other = whole;
   std::swap(other.width_px, other.height_px);
   EXPECT_THROW(expand(other, rays), InputError);

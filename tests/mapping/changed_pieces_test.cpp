@@ -22,13 +22,16 @@ class SurfaceInFreeSpace : public testing::Test {
  protected:
   static constexpr double step_m = 0.04;  // the voxels of the map
 
-  SurfaceInFreeSpace() {
-    for (int i = 0; i < 3; ++i) {
+  SurfaceInFreeSpace() { add_keyframes(3, 3.5); }
+
+  /// Adds later keyframes that see a wall.
+  void add_keyframes(int count, double wall_m) {
+    for (int i = 0; i < count; ++i) {
       const Pose pose = moved_by({0, 0.05 * i, 0}, {0.1 * i, 0, 0});
-      later_.keyframes.push_back({.id = i,
+      later_.keyframes.push_back({.id = static_cast<int>(later_.keyframes.size()),
                                   .world_from_camera = pose,
                                   .cloud = std::make_shared<const SurfaceCloud>(test::box_cloud(
-                                      small_camera(), {-1.5, -1, -2.5}, {2, 1.2, 3.5}, pose))});
+                                      small_camera(), {-1.5, -1, -2.5}, {2, 1.2, wall_m}, pose))});
     }
   }
 
@@ -67,6 +70,12 @@ TEST_F(SurfaceInFreeSpace, IsGone) {
 
 TEST_F(SurfaceInFreeSpace, IsNotGoneIfNoKeyframeWasSureOfIt) {
   add_square({0, 0, 2}, 10, 50, Certainty::possible);
+  EXPECT_TRUE(gone().empty());
+}
+
+TEST_F(SurfaceInFreeSpace, IsNotGoneIfSomeKeyframesStillSeeIt) {
+  add_square({0, 0, 2}, 10, 50, Certainty::sure);
+  add_keyframes(2, 2);
   EXPECT_TRUE(gone().empty());
 }
 

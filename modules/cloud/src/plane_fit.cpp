@@ -232,6 +232,7 @@ struct Fits {
   float* q0_variance;
   float* a_variance;
   float* b_variance;
+  float* excess;
 };
 
 /// Solves the normal equations of each pixel by the decomposition L D Lᵀ. They are scaled to a unit
@@ -287,6 +288,7 @@ TOFMAP_VECTOR_CLONES void solve(int pixels, const Sums& sums_, float least_sprea
     planes.slack_a[i] = 0;
     planes.slack_b[i] = 0;
     fits.neighbours[i] = spans_plane ? count : 0.0F;
+    fits.excess[i] = excess;
     fits.q0_variance[i] = excess * scale0 * scale0 * inverse0;
     fits.a_variance[i] = excess * scale1 * scale1 * inverse1;
     fits.b_variance[i] = excess * scale2 * scale2 * inverse2;
@@ -385,7 +387,7 @@ void PlaneFits::fit(int row, PlaneRow& out) const {
     }
     solve(cols_, sums, least_spread2_, planes,
           {work.neighbours.data(), out.q0_variance.data(), out.a_variance.data(),
-           out.b_variance.data()});
+           out.b_variance.data(), out.excess.data()});
     std::ranges::transform(work.fewest, work.neighbours, work.fewest.begin(),
                            [](float one, float other) { return std::min(one, other); });
   }

@@ -19,6 +19,7 @@ struct PlaneRow {
   std::vector<float> q0_variance;
   std::vector<float> a_variance;
   std::vector<float> b_variance;
+  std::vector<float> excess;  ///< how much more the neighbours scatter than predicted, at least 1
 
   explicit PlaneRow(std::size_t cols)
       : neighbours(cols),
@@ -27,7 +28,8 @@ struct PlaneRow {
         b(cols),
         q0_variance(cols),
         a_variance(cols),
-        b_variance(cols) {}
+        b_variance(cols),
+        excess(cols) {}
 };
 
 /// Fits a plane to those neighbours of each pixel that lie on the same surface. A row is processed
@@ -45,10 +47,21 @@ class PlaneFits {
   /// several threads.
   void fit(int row, PlaneRow& out) const;
 
+  /// Fits the planes of a row anew that mix surfaces which meet in a fold, as a wall and the floor
+  /// do. There, the pixels next to the one that the plane is for are all in front of it, or all
+  /// behind it. `averaged` are the averaged_px of the image's row, or null if nothing was averaged.
+  ///
+  /// The plane is then fitted to one side of the window alone: to that half or quarter around the
+  /// pixel which lies on a plane best. If none lies on one, the plane stays, and its distance from
+  /// the pixels next to the pixel adds to its variance.
+  void refit_folds(int row, const float* averaged, PlaneRow& out) const;
+
   float tangent_x(int row, int col) const { return tangent_x_[place(row, col)]; }
   float tangent_y(int row, int col) const { return tangent_y_[place(row, col)]; }
 
  private:
+  class OneSidedFits;
+
   std::size_t place(int row, int col) const {
     return static_cast<std::size_t>((row + margin_) * stride_ + margin_ + col);
   }

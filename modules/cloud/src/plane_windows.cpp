@@ -59,6 +59,7 @@ void copy_plane(const PlaneRow& from, std::size_t i, PlaneRow& to) {
   to.q0_variance[i] = from.q0_variance[i];
   to.a_variance[i] = from.a_variance[i];
   to.b_variance[i] = from.b_variance[i];
+  to.excess[i] = from.excess[i];
 }
 
 }  // namespace
@@ -78,12 +79,15 @@ PlaneWindows::PlaneWindows(const RangeImage& image, const PixelRays& rays,
 }
 
 void PlaneWindows::fit(int row, PlaneRow& out) const {
+  const float* averaged = averaged_px_.size() > 0 ? &averaged_px_(row, 0) : nullptr;
   fits_.front().fit(row, out);
+  fits_.front().refit_folds(row, averaged, out);
   if (fits_.size() > 1) {
     PlaneRow wider(static_cast<std::size_t>(cols_));
     for (std::size_t k = 1; k < fits_.size(); ++k) {
       if (!(widenings_.row(row) == static_cast<std::uint8_t>(k)).any()) continue;
       fits_[k].fit(row, wider);
+      fits_[k].refit_folds(row, averaged, wider);
       take_wider(row, k, wider, out);
     }
   }

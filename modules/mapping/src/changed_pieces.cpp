@@ -47,6 +47,10 @@ std::vector<char> without_counterpart(const MapCloud& points, const MapCloud& ot
   return is_alone;
 }
 
+/// How many times more keyframes of another time must see through a surface than agree with it, for
+/// it not to have been there then.
+constexpr int times_more = 3;
+
 /// Tells points that belong to no change.
 constexpr std::size_t no_seed = std::numeric_limits<std::size_t>::max();
 
@@ -58,7 +62,7 @@ std::vector<char> seen_through(const SeenSurface& surface,
   for (std::size_t i = 0; i < is_through.size(); ++i) {
     is_through[i] = surface.certainty[i] != Certainty::none &&
                             sightings[i].violating >= least_views &&
-                            sightings[i].violates_free_space()
+                            sightings[i].violating >= times_more * sightings[i].agreeing
                         ? 1
                         : 0;
   }
