@@ -130,7 +130,9 @@ int run_localise(const LocaliseArguments& arguments) {
   arguments.recording.apply(table);
   if (!arguments.method.empty()) table.set("unwrap.method", arguments.method);
   const bool quiet = arguments.common.quiet;
-  MapContent map = MapStore::open(map_file_in(arguments.map)).content();
+  const std::filesystem::path map_file = map_file_in(arguments.map);
+  refuse_to_replace(map_file, arguments.out);
+  MapContent map = MapStore::open(map_file).content();
   const auto start = start_place(arguments.start, map);
   MapInput input(arguments.recording.sequence, options);
   if (is_interrupted()) return exit_status::interrupted;

@@ -238,7 +238,7 @@ FinishedMap finish_map(MapRun& run, MapFile& file, OutputFolder& out, MapOutput&
   const auto interrupted =
       output.arguments.resume ? Completeness::resumable : Completeness::interrupted;
   out.commit(finished.map.interrupted ? interrupted
-             : finished.is_taken_back ? Completeness::interrupted
+             : finished.is_taken_back ? Completeness::taken_back
                                       : Completeness::whole);
   for (const std::string& text : output.failures.texts()) {
     std::fprintf(stderr, "tofmap: %s holds the map, but without %s\n", out.final_path().c_str(),
@@ -352,7 +352,7 @@ void print_how_to_resume(const RoomMap& map, const MapInput& input, const Output
 /// The file of the map: a new one or, with --resume, that of an interrupted run, if there is one,
 /// or, with --onto, a copy of a finished one.
 MapFile map_file(const MapArguments& arguments, OutputFolder& out) {
-  if (arguments.resume) return MapFile::resumed(out, arguments.out);
+  if (arguments.resume) return MapFile::resumed(out, arguments.out, arguments.onto);
   tell_of_killed_run(arguments.out);
   return arguments.onto.empty() ? MapFile(out) : MapFile::extending(out, arguments.onto);
 }
@@ -367,14 +367,15 @@ int run_map(const MapArguments& arguments) {
 
   MapInput input(arguments.recording.sequence, options);
   if (is_interrupted()) return exit_status::interrupted;
+  OutputFolder out(arguments.out);
+  MapFile file = map_file(arguments, out);
+  if (const auto surface = file.surface_options()) options.pipeline.map = *surface;
   MapOutput output{.arguments = arguments,
                    .options = options,
                    .options_yaml = table.to_yaml(false),
                    .sensor = input.frames().sensor(),
                    .sample = sample_for(input, options)};
   MapRun run(output.sensor, options.pipeline, arguments.recording.sequence.string());
-  OutputFolder out(arguments.out);
-  MapFile file = map_file(arguments, out);
   if (const MapStore* interrupted = file.to_resume()) {
     naming(arguments.out.string(), [&] {
       resume_run(*interrupted, run, output.sample, *input.recording(), options.pipeline);
@@ -420,7 +421,8 @@ void add_map_command(CLI::App& program, Outcome& outcome) {
   app->add_option("--out", arguments->out, "folder for the result")->required();
   add_method_option(*app, arguments->method);
   app->add_option("--onto", arguments->onto,
-                  "go on with a finished map: a folder that 'map' wrote, or map.db");
+                  "go on with a finished map, which keeps its options map.…: a folder that 'map' "
+                  "wrote, or map.db");
   add_start_option(*app, arguments->start);
   app->add_flag("--even-if-worse", arguments->even_if_worse,
                 "keep the map that --onto extends even if its verdict is worse than before");

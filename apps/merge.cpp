@@ -44,11 +44,14 @@ struct MergeInput {
   std::vector<MapContent> maps;
 };
 
-MergeInput read_maps(const std::vector<std::filesystem::path>& paths) {
+MergeInput read_maps(const std::vector<std::filesystem::path>& paths,
+                     const std::filesystem::path& out) {
   if (paths.size() < 2) throw UsageError("merge: needs at least two maps");
   MergeInput input;
   for (const std::filesystem::path& path : paths) {
-    input.files.push_back(MapStore::open(map_file_in(path)));
+    const std::filesystem::path file = map_file_in(path);
+    refuse_to_replace(file, out);
+    input.files.push_back(MapStore::open(file));
     input.maps.push_back(input.files.back().content());
   }
   return input;
@@ -121,7 +124,7 @@ void write_map_file(const OutputFolder& out, const MapContent& content,
 int run_merge(const MergeArguments& arguments) {
   ProgramOptions options;
   const OptionTable table = arguments.common.resolve("merge", options);
-  MergeInput input = read_maps(arguments.maps);
+  MergeInput input = read_maps(arguments.maps, arguments.out);
   std::vector<std::vector<MapRecording>> recordings;
   for (const MapContent& map : input.maps) recordings.push_back(map.recordings);
   OutputFolder out(arguments.out);

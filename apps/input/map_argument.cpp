@@ -24,6 +24,15 @@ std::filesystem::path map_file_in(const std::filesystem::path& argument) {
   return file;
 }
 
+void refuse_to_replace(const std::filesystem::path& map_file, const std::filesystem::path& out) {
+  std::error_code error;
+  const auto folder = std::filesystem::canonical(map_file, error).parent_path();
+  if (error || folder != std::filesystem::weakly_canonical(out, error)) return;
+  throw UsageError(map_file.string() +
+                   ": is in the folder of the result, which would replace it; "
+                   "give another --out");
+}
+
 bool is_map(const std::filesystem::path& argument) {
   std::error_code error;
   if (!std::filesystem::is_directory(argument, error)) return argument.extension() == ".db";

@@ -10,6 +10,9 @@ namespace tofmap::app {
 /// if there is none.
 std::filesystem::path map_file_in(const std::filesystem::path& argument);
 
+/// Throws UsageError if the map file is in the folder of a result, which would replace it.
+void refuse_to_replace(const std::filesystem::path& map_file, const std::filesystem::path& out);
+
 /// Whether an argument names a map: a file that ends in .db, or a folder with a map file that is no
 /// recording.
 bool is_map(const std::filesystem::path& argument);

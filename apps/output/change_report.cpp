@@ -34,7 +34,7 @@ Json box_json(const MapCloud& cloud) {
           {"max_m", {box.max().x(), box.max().y(), box.max().z()}}};
 }
 
-double turned_rad(const MapChange& change) {
+double rotation_rad(const MapChange& change) {
   return Eigen::AngleAxisd(change.after_from_before.linear()).angle();
 }
 
@@ -53,7 +53,7 @@ std::string told_place(const MapChange& change) {
   constexpr double degrees = 180 / M_PI;
   if (change.kind == ChangeKind::moved) {
     return fmt::format("from {} to {}, by {:.2f} m and {:.0f} degrees", told(change.before),
-                       told(change.after), moved_m(change), degrees * turned_rad(change));
+                       told(change.after), moved_m(change), degrees * rotation_rad(change));
   }
   return "around " + told(change.kind == ChangeKind::gone ? change.before : change.after);
 }
@@ -72,7 +72,7 @@ Json changes_json(const std::vector<MapChange>& changes,
               {"after", box_json(change.after)}};
     if (change.kind == ChangeKind::moved) {
       json["moved_m"] = moved_m(change);
-      json["turned_rad"] = turned_rad(change);
+      json["rotation_rad"] = rotation_rad(change);
     }
     list.push_back(std::move(json));
   }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,20 +42,38 @@ std::vector<fs::path> left_folders(const fs::path& folder) {
   return left;
 }
 
-/// The folders that killed runs have left, the newest first.
-std::vector<fs::path> killed_runs(const fs::path& folder, const OutputFolder& own) {
-  std::vector<fs::path> killed = left_folders(folder);
-  std::erase(killed, own.path());
-  return killed;
-}
+/// What killed runs have left beside a result.
+struct KilledRuns {
+  std::vector<fs::path> folders;   ///< of which nothing is needed once a new file holds more
+  std::optional<fs::path> newest;  ///< the newest one that can be continued
+};
 
-/// Merges what a killed program has left beside its file, and checks that it does not run any more.
-/// Returns whether it was killed between its first commit and its last one.
-bool can_continue(const fs::path& killed) {
-  MapStore store = MapStore::open(killed / map_file_name, MapStore::Access::extend);
-  const bool holds = holds_run(store);
-  store.settle();
-  return holds;
+/// Looks through the temporary folders of a result, and merges what killed programs have left
+/// beside their files. A folder with more than the file is a result that could not be moved into
+/// place. It stays, as does a folder whose file cannot be read, which is named. Throws InputError
+/// if a run is still going on.
+KilledRuns killed_runs(const fs::path& folder, const OutputFolder& own) {
+  KilledRuns killed;
+  for (const fs::path& left : left_folders(folder)) {
+    if (left == own.path()) continue;
+    const fs::path file = left / map_file_name;
+    if (MapStore::is_in_use(file)) {
+      throw InputError(file.string() +
+                       ": is in use by a run that is still going on; wait until it ends, or give "
+                       "another --out");
+    }
+    try {
+      MapStore store = MapStore::open(file, MapStore::Access::extend);
+      const bool holds = holds_run(store);
+      store.settle();
+      if (!holds && fs::exists(left / "trajectory.txt")) continue;
+      killed.folders.push_back(left);
+      if (holds && !killed.newest) killed.newest = left;
+    } catch (const InputError& error) {
+      std::fprintf(stderr, "tofmap: left out, remove it if it is not needed: %s\n", error.what());
+    }
+  }
+  return killed;
 }
 
 /// The map file of an interrupted run.
@@ -76,6 +95,20 @@ fs::path copied(const fs::path& file, const fs::path& copy) {
   }
   fs::permissions(copy, fs::perms::owner_write, fs::perm_options::add, error);
   return copy;
+}
+
+/// Throws InputError unless an interrupted run, of which these are the recordings, goes on with the
+/// finished map `onto`, or with none if that is empty.
+void check_base(const std::vector<MapRecording>& recordings, const fs::path& onto) {
+  std::vector<MapRecording> base;
+  if (!onto.empty()) base = MapStore::open(map_file_in(onto)).content().recordings;
+  const auto is_same = [](const MapRecording& one, const MapRecording& other) {
+    return one.source == other.source && one.added == other.added;
+  };
+  if (std::ranges::equal(std::span(recordings).first(recordings.size() - 1), base, is_same)) return;
+  throw InputError(onto.empty()
+                       ? "the interrupted run goes on with a finished map; give that with --onto"
+                       : "the interrupted run does not go on with " + onto.string());
 }
 
 std::optional<Verdict> verdict_named(const std::string& name) {
@@ -104,20 +137,23 @@ MapFile::MapFile(OutputFolder& out) : MapFile(out, std::nullopt, {}, Origin::fre
   }
 }
 
-MapFile MapFile::resumed(OutputFolder& out, const fs::path& folder) {
-  std::vector<fs::path> killed = killed_runs(folder, out);
-  const auto newest = std::ranges::find_if(killed, can_continue);
-  if (newest == killed.end() && !fs::exists(folder)) {
-    MapFile file(out);
-    file.killed_ = std::move(killed);
+MapFile MapFile::resumed(OutputFolder& out, const fs::path& folder, const fs::path& onto) {
+  KilledRuns killed = killed_runs(folder, out);
+  if (!killed.newest && !fs::exists(folder)) {
+    MapFile file = onto.empty() ? MapFile(out) : extending(out, onto);
+    file.killed_ = std::move(killed.folders);
     return file;
   }
   const fs::path interrupted =
-      newest != killed.end() ? *newest / map_file_name : interrupted_file(folder);
+      killed.newest ? *killed.newest / map_file_name : interrupted_file(folder);
   const fs::path copy = copied(interrupted, out.path() / map_file_name);
   try {
-    return {out, MapStore::open(copy, MapStore::Access::extend), std::move(killed),
-            Origin::interrupted};
+    MapFile file(out, MapStore::open(copy, MapStore::Access::extend), std::move(killed.folders),
+                 Origin::interrupted);
+    const MapContent content = file.store_->content();
+    check_base(content.recordings, onto);
+    file.note_base(content, content.recordings.size() - 1);
+    return file;
   } catch (const InputError& error) {
     throw InputError(std::string(error.what()) + "; start anew without --resume");
   }
@@ -127,14 +163,22 @@ MapFile MapFile::extending(OutputFolder& out, const fs::path& map) {
   const fs::path file = map_file_in(map);
   MapStore::open(file);  // with messages that name it, not its copy
   const fs::path copy = copied(file, out.path() / map_file_name);
-  return {out, MapStore::open(copy, MapStore::Access::extend), {}, Origin::finished};
+  MapFile extended(out, MapStore::open(copy, MapStore::Access::extend), {}, Origin::finished);
+  const MapContent content = extended.store_->content();
+  extended.note_base(content, content.recordings.size());
+  return extended;
 }
 
-std::optional<MapContent> MapFile::to_extend() {
+/// Notes what the map was like after its first recordings.
+void MapFile::note_base(const MapContent& content, std::size_t recordings) {
+  if (recordings == 0) return;
+  surface_options_ = content.surface_options;
+  verdict_before_ = verdict_named(content.recordings[recordings - 1].verdict);
+}
+
+std::optional<MapContent> MapFile::to_extend() const {
   if (origin_ != Origin::finished) return std::nullopt;
-  MapContent content = store_->content();
-  verdict_before_ = verdict_named(content.recordings.back().verdict);
-  return content;
+  return store_->content();
 }
 
 void MapFile::store(MapRun& run, FrameSample& sample, MapInput& input,
@@ -181,7 +225,11 @@ void MapFile::store_last(MapRun& run, FrameSample& sample, MapInput& input,
   try {
     store(run, sample, input, options);
   } catch (const InputError&) {
-    give_up();
+    if (input.is_recording() && is_stored_) {
+      out_->keep();  // what was stored before is there, should the result not become complete
+    } else {
+      give_up();
+    }
   }
 }
 

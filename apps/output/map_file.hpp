@@ -6,6 +6,7 @@
 #include "output/output_folder.hpp"
 
 #include <chrono>
+#include <cstddef>
 #include <exception>
 #include <filesystem>
 #include <optional>
@@ -26,16 +27,22 @@ class MapFile {
   explicit MapFile(OutputFolder& out);
 
   /// Continues the file of the interrupted or killed run whose result was to be `folder`: a copy of
-  /// it in the temporary folder of the new result. A new file if there is no such folder. Throws
-  /// InputError if the folder holds no map, or if the run is still going on.
-  static MapFile resumed(OutputFolder& out, const std::filesystem::path& folder);
+  /// it in the temporary folder of the new result. A new file, or extending() `onto` if that is not
+  /// empty, if there is no such folder. Throws InputError if the folder holds no map, if the run
+  /// does not go on with `onto`, or if it is still going on.
+  static MapFile resumed(OutputFolder& out, const std::filesystem::path& folder,
+                         const std::filesystem::path& onto);
 
   /// The file of a map that goes on with a finished one: a copy of `map`, a map file or the folder
   /// that holds it. Throws InputError if that cannot be read.
   static MapFile extending(OutputFolder& out, const std::filesystem::path& map);
 
   /// The finished map to go on with. Empty if the file is new, or that of an interrupted run.
-  std::optional<MapContent> to_extend();
+  std::optional<MapContent> to_extend() const;
+
+  /// The options of the surface of the finished map that the file goes on with, which stay as they
+  /// are. Empty if there is none.
+  std::optional<SurfaceMapOptions> surface_options() const { return surface_options_; }
 
   /// The verdict on the finished map that the file goes on with. Empty if there is none.
   std::optional<Verdict> verdict_before() const { return verdict_before_; }
@@ -51,7 +58,7 @@ class MapFile {
                     const PipelineOptions& options);
 
   /// Stores a run that has read its last frame, so that a recording can be resumed from it. If that
-  /// fails, the map is made without the file.
+  /// fails, the map is made without the file, or with what was stored before.
   void store_last(MapRun& run, FrameSample& sample, MapInput& input,
                   const PipelineOptions& options);
 
@@ -72,6 +79,7 @@ class MapFile {
   MapFile(OutputFolder& out, std::optional<MapStore> store,
           std::vector<std::filesystem::path> killed, Origin origin);
 
+  void note_base(const MapContent& content, std::size_t recordings);
   void store(MapRun& run, FrameSample& sample, MapInput& input, const PipelineOptions& options);
   void remove_killed();
   void give_up();
@@ -81,6 +89,7 @@ class MapFile {
   std::vector<std::filesystem::path> killed_;
   std::optional<MapStore> store_;  ///< empty if it could not be written
   std::exception_ptr failure_;     ///< why
+  std::optional<SurfaceMapOptions> surface_options_;
   std::optional<Verdict> verdict_before_;
   Origin origin_;
   bool is_stored_;  ///< whether there was a commit

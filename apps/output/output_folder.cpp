@@ -201,9 +201,13 @@ void OutputFolder::choose_free_name() {
   }
 }
 
-void OutputFolder::tell_other_name(const fs::path& wanted, bool keeps_earlier) const {
+void OutputFolder::tell_other_name(const fs::path& wanted, Completeness completeness,
+                                   bool keeps_earlier) const {
   if (folder_ == wanted) return;
-  if (keeps_earlier) {
+  if (keeps_earlier && completeness == Completeness::taken_back) {
+    std::fprintf(stderr, "tofmap: the earlier result in %s is kept, the new one is in %s\n",
+                 wanted.c_str(), folder_.c_str());
+  } else if (keeps_earlier) {
     std::fprintf(
         stderr,
         "tofmap: interrupted; the earlier result in %s is kept, the new partial result is in %s\n",
@@ -217,8 +221,9 @@ void OutputFolder::tell_other_name(const fs::path& wanted, bool keeps_earlier) c
 void OutputFolder::commit(Completeness completeness) {
   const fs::path wanted = folder_;
   std::error_code ignored;
-  const bool keeps_earlier = completeness == Completeness::interrupted && !earlier_.empty() &&
-                             !fs::is_empty(folder_, ignored);
+  const bool is_lesser =
+      completeness == Completeness::interrupted || completeness == Completeness::taken_back;
+  const bool keeps_earlier = is_lesser && !earlier_.empty() && !fs::is_empty(folder_, ignored);
   const bool is_taken = identity(folder_) != earlier_ || !may_be_replaced(folder_, replaces_);
   if (keeps_earlier || is_taken) choose_free_name();
   is_committed_ = true;  // from here on the files are kept even if a step fails
@@ -244,7 +249,7 @@ void OutputFolder::commit(Completeness completeness) {
                  "tofmap: %s contained files that tofmap did not write; they are now in %s\n",
                  folder_.c_str(), replaced.c_str());
   }
-  tell_other_name(wanted, keeps_earlier);
+  tell_other_name(wanted, completeness, keeps_earlier);
 }
 
 void OutputFolder::keep() { is_committed_ = true; }

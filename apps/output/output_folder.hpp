@@ -17,6 +17,7 @@ enum class Replaces {
 enum class Completeness {
   whole,
   interrupted,  ///< a partial result, which does not replace an earlier one
+  taken_back,   ///< a result that is only to be looked at, which does not replace one either
   resumable,    ///< a partial result that continues the earlier one and replaces it
 };
 
@@ -64,7 +65,8 @@ class OutputFolder {
 
  private:
   void choose_free_name();
-  void tell_other_name(const std::filesystem::path& wanted, bool keeps_earlier) const;
+  void tell_other_name(const std::filesystem::path& wanted, Completeness completeness,
+                       bool keeps_earlier) const;
 
   std::string earlier_;  ///< identity of the folder at the beginning; empty if there was none
   std::filesystem::path folder_;

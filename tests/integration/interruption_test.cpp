@@ -322,6 +322,22 @@ TEST_F(InterruptedMap, BeginsAnewWhereAKilledRunHasLeftNothingToGoOnWith) {
   EXPECT_FALSE(fs::exists(left));
 }
 
+TEST_F(InterruptedMap, IsResumedBesideFoldersThatAreNotItsOwn) {
+  const fs::path damaged = out_.string() + ".partial-1";
+  fs::create_directory(damaged);
+  std::ofstream(damaged / "map.db") << "no map";
+  // A result that could not be moved into place.
+  const fs::path result = out_.string() + ".partial-2";
+  fs::create_directory(result);
+  fs::copy_file(fs::path(TOFMAP_SOURCE_DIR) / "tests/mapping/maps/version_1.db", result / "map.db");
+  std::ofstream(result / "trajectory.txt") << "# timestamp tx ty tz qx qy qz qw\n";
+  const Finished resumed = resume();
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_THAT(resumed.err, HasSubstr((damaged / "map.db").string()));
+  EXPECT_TRUE(fs::exists(damaged));
+  EXPECT_TRUE(fs::exists(result));
+}
+
 TEST_F(Interruption, ByKillLeavesNoResultAndAnotherRunWorks) {
   {
     RunningProgram program(unwrap_arguments());

@@ -46,8 +46,7 @@ class ReusedMap : public testing::Test {
     } else if (name == "elsewhere") {
       simulate("flat", name, {});
     } else if (name == "extended") {
-      expect_success(run(
-          {"map", made("second"), "--onto", made("map_first"), "--set", "map.voxel_m=0.2"}, name));
+      expect_success(run({"map", made("second"), "--onto", made("map_first")}, name));
     } else {
       expect_success(run({"map", made(name.substr(4)), "--set", "map.voxel_m=0.2"}, name));
     }
@@ -118,6 +117,24 @@ TEST_F(ReusedMap, IsExtendedByAnotherRecording) {
   EXPECT_THAT(page, HasSubstr("What has changed"));
   EXPECT_EQ(query("map_first", "SELECT COUNT(*) FROM recordings"), "1\n");
   EXPECT_EQ(query("extended", "SELECT COUNT(*) FROM recordings"), "2\n");
+}
+
+TEST_F(ReusedMap, IsExtendedByARunThatSaysResumeWhereThereIsNothingToResume) {
+  expect_success(run({"map", made("second"), "--onto", made("map_first"), "--resume"}, "resumed"));
+  EXPECT_EQ(test::read_text(at("resumed/trajectory.txt")),
+            test::read_text(made("extended") + "/trajectory.txt"));
+}
+
+TEST_F(ReusedMap, IsNotReplacedByAResultThatIsNoMapOfIt) {
+  const std::string map = test::read_text(made("map_first") + "/map.db");
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"localise", made("second"), "--in", at("map_first")},
+                                             {"merge", made("map_second"), at("map_first")}}) {
+    const test::Finished refused = run(arguments, "map_first");
+    EXPECT_EQ(refused.status, 2) << arguments[0];
+    EXPECT_THAT(refused.err, HasSubstr("give another --out")) << arguments[0];
+    EXPECT_TRUE(test::read_text(at("map_first/map.db")) == map) << arguments[0];
+  }
 }
 
 TEST_F(ReusedMap, IsMergedWithAnotherOneInAnyOrder) {

@@ -52,7 +52,7 @@ class SurfaceInFreeSpace : public testing::Test {
   /// The numbers of points of the pieces that are gone.
   std::vector<std::size_t> gone() const {
     std::vector<std::size_t> sizes;
-    for (const MapCloud& piece : pieces_seen_through(seen_, later_, content_)) {
+    for (const MapCloud& piece : pieces_violating_free_space(seen_, later_, content_)) {
       sizes.push_back(piece.size());
     }
     return sizes;

@@ -188,7 +188,7 @@ TEST_F(LostCamera, IsFoundAfterAnInterruptionAsWithoutOne) {
       resumed.push_back(std::make_unique<RoomMapper>(room_.camera(), OdometryOptions(),
                                                      RegistrationOptions(), LoopOptions(),
                                                      SurfaceMapOptions()));
-      resumed.back()->restore(mapper_.content(), mapper_.state());
+      resumed.back()->restore(mapper_.content(), mapper_.state(), added_);
     }
     const auto view = room_.view(there(i));
     for (const auto& mapper : resumed) mapper->add_frame({added_, added_ / 15.0, view});

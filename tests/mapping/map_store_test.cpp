@@ -136,7 +136,7 @@ TEST_F(StoredMap, GoesOnFromItsFileToTheSameBits) {
   MapStore made = MapStore::create(file());
   store(made);
   RoomMapper resumed(room_.camera(), {}, {}, {}, {});
-  resumed.restore(made.content(), mapper_.state());
+  resumed.restore(made.content(), mapper_.state(), frames);
   for (int i = frames; i < 2 * frames; ++i) {
     add(i);
     resumed.add_frame({i, i / 15.0, room_.view(3 * i), false});
@@ -294,6 +294,27 @@ TEST_F(StoredMap, IsRefusedIfAByteOfItIsFlippedOrItIsCut) {
   }
 }
 
+TEST_F(StoredMap, IsRefusedIfARowWasChanged) {
+  make();
+  const std::filesystem::path whole = folder_.path() / "whole.db";
+  std::filesystem::copy_file(file(), whole);
+  for (const char* change :
+       {"UPDATE clouds SET width_px = 87 WHERE keyframe = 0",
+        "UPDATE constraints SET residual = residual + 1 WHERE id = 0",
+        "UPDATE constraints SET error_m = 0 WHERE id = 0",
+        "UPDATE keyframes SET timestamp_s = timestamp_s + 9 WHERE id = 1",
+        "UPDATE keyframes SET path_m = CAST(path_m AS TEXT) WHERE id = 1",
+        "UPDATE frames SET keyframe = 0 WHERE id = (SELECT MAX(id) FROM frames)",
+        "UPDATE links SET rotation_rad2 = 1 WHERE keyframe = 0 AND place = 0",
+        "UPDATE recordings SET verdict = 'good'", "UPDATE submaps SET voxels = voxels + 1",
+        "DELETE FROM frames WHERE id = 0", "INSERT INTO entries VALUES ('', x'')"}) {
+    execute(change);
+    EXPECT_THAT(complaint(), HasSubstr("changed by another program")) << change;
+    std::filesystem::remove(file());
+    std::filesystem::copy_file(whole, file());
+  }
+}
+
 TEST_F(StoredMap, IsRefusedIfItsTablesContradictEachOther) {
   const std::vector<std::string> damages{
       "UPDATE keyframes SET submap = 77 WHERE id = 1",
@@ -318,6 +339,8 @@ TEST_F(StoredMap, IsRefusedIfItsTablesContradictEachOther) {
       "UPDATE recordings SET sensor = '{}'",
       "DELETE FROM recordings",
       "UPDATE properties SET value = '{\"voxel_m\": -1}' WHERE name = 'surface'",
+      "UPDATE properties SET value = replace(value, '0.1', '0') WHERE name = 'surface'",
+      "UPDATE keyframes SET map = 2147483647 WHERE id = 1",
       "DELETE FROM properties WHERE name = 'surface'",
       "DROP TABLE frames"};
   make();

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,16 +23,16 @@ class Scenery {
 
   const CameraModel& camera() const { return simulator_.sensor().camera; }
 
-  Pose pose(int frame) const { return simulator_.simulate(frame).world_from_camera; }
+  Pose pose(int frame) const { return seen(frame).world_from_camera; }
 
   /// The true surfaces of a frame, with one more thing in the room if there is a `box`, in the
   /// world's frame.
   std::shared_ptr<const SurfaceCloud> view(int frame,
                                            std::optional<Eigen::AlignedBox3d> box = {}) const {
-    const SimulatedFrame simulated = simulator_.simulate(frame);
-    RangeImage image(simulated.range_truth_m.rows(), simulated.range_truth_m.cols());
-    image.range_m = simulated.range_truth_m;
-    if (box) put_into(image, *box, simulated.world_from_camera);
+    const Seen& truth = seen(frame);
+    RangeImage image(truth.range_m.rows(), truth.range_m.cols());
+    image.range_m = truth.range_m;
+    if (box) put_into(image, *box, truth.world_from_camera);
     image.sigma_m.setConstant(0.01F);
     image.confidence.setConstant(1);
     image.wrap_count.setZero();
@@ -40,6 +41,20 @@ class Scenery {
   }
 
  private:
+  struct Seen {
+    Pose world_from_camera;
+    ImageF range_m;
+  };
+
+  /// The true ranges of a frame. They are simulated once, since tests need most of them repeatedly.
+  const Seen& seen(int frame) const {
+    const auto known = seen_.find(frame);
+    if (known != seen_.end()) return known->second;
+    const SimulatedFrame simulated = simulator_.simulate(frame);
+    return seen_.emplace(frame, Seen{simulated.world_from_camera, simulated.range_truth_m})
+        .first->second;
+  }
+
   void put_into(RangeImage& image, const Eigen::AlignedBox3d& box, const Pose& pose) const {
     for (int v = 0; v < camera().height_px; ++v) {
       for (int u = 0; u < camera().width_px; ++u) {
@@ -59,6 +74,7 @@ class Scenery {
   }
 
   Simulator simulator_;
+  mutable std::map<int, Seen> seen_;
 };
 
 }  // namespace tofmap::test

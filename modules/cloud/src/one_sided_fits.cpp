@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
@@ -302,9 +303,10 @@ std::optional<SidePlane> PlaneFits::OneSidedFits::best_side(const Eigen::Vector3
   return half ? half : best_of(halves, sides.size(), most_cost, shared);
 }
 
-void PlaneFits::refit_folds(int row, const float* averaged, PlaneRow& out) const {
+void PlaneFits::refit_folds(int row, std::span<const int> columns, const float* averaged,
+                            PlaneRow& out) const {
   OneSidedFits window(*this);
-  for (int col = 0; col < cols_; ++col) {
+  for (const int col : columns) {
     const auto i = static_cast<std::size_t>(col);
     if (out.neighbours[i] == 0) continue;
     const double shared = averaged == nullptr ? 1 : averaged[col];

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <tofmap/cloud/surface_cloud.hpp>
@@ -47,14 +48,16 @@ class PlaneFits {
   /// several threads.
   void fit(int row, PlaneRow& out) const;
 
-  /// Fits the planes of a row anew that mix surfaces which meet in a fold, as a wall and the floor
-  /// do. There, the pixels next to the one that the plane is for are all in front of it, or all
-  /// behind it. `averaged` are the averaged_px of the image's row, or null if nothing was averaged.
+  /// Fits those planes of a row anew, at some columns, that mix surfaces which meet in a fold, as a
+  /// wall and the floor do. There, the pixels next to the one that the plane is for are all in
+  /// front of it, or all behind it. `averaged` are the averaged_px of the image's row, or null if
+  /// nothing was averaged.
   ///
   /// The plane is then fitted to one side of the window alone: to that half or quarter around the
   /// pixel which lies on a plane best. If none lies on one, the plane stays, and its distance from
   /// the pixels next to the pixel adds to its variance.
-  void refit_folds(int row, const float* averaged, PlaneRow& out) const;
+  void refit_folds(int row, std::span<const int> columns, const float* averaged,
+                   PlaneRow& out) const;
 
   float tangent_x(int row, int col) const { return tangent_x_[place(row, col)]; }
   float tangent_y(int row, int col) const { return tangent_y_[place(row, col)]; }

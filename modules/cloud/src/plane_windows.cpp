@@ -79,19 +79,24 @@ PlaneWindows::PlaneWindows(const RangeImage& image, const PixelRays& rays,
 }
 
 void PlaneWindows::fit(int row, PlaneRow& out) const {
-  const float* averaged = averaged_px_.size() > 0 ? &averaged_px_(row, 0) : nullptr;
   fits_.front().fit(row, out);
-  fits_.front().refit_folds(row, averaged, out);
   if (fits_.size() > 1) {
     PlaneRow wider(static_cast<std::size_t>(cols_));
     for (std::size_t k = 1; k < fits_.size(); ++k) {
       if (!(widenings_.row(row) == static_cast<std::uint8_t>(k)).any()) continue;
       fits_[k].fit(row, wider);
-      fits_[k].refit_folds(row, averaged, wider);
       take_wider(row, k, wider, out);
     }
   }
-  if (averaged_px_.size() > 0) count_shared_noise(row, out);
+  const float* averaged = averaged_px_.size() > 0 ? &averaged_px_(row, 0) : nullptr;
+  for (std::size_t k = 0; k < fits_.size(); ++k) {
+    std::vector<int> columns;
+    for (int col = 0; col < cols_; ++col) {
+      if (widenings_(row, col) == k) columns.push_back(col);
+    }
+    fits_[k].refit_folds(row, columns, averaged, out);
+  }
+  if (averaged != nullptr) count_shared_noise(row, out);
 }
 
 void PlaneWindows::take_wider(int row, std::size_t widenings, const PlaneRow& wider,

@@ -85,11 +85,11 @@ std::vector<MapChange> changes_in(const MapContent& content, int map, int record
   const SeenSurface before = surface_seen(content, map, 0, recording);
   const SeenSurface now = surface_seen(content, map, recording, recording + 1);
   if (before.points.empty() || now.points.empty()) return {};
-  std::vector<MapCloud> gone = pieces_seen_through(before, now, content);
+  std::vector<MapCloud> gone = pieces_violating_free_space(before, now, content);
   // What is new was first seen after the keyframes that see through it.
   SeenSurface later = now;
   for (MapPoint& point : later.points) point.recording = 0;
-  std::vector<MapCloud> appeared = pieces_seen_through(later, before, content);
+  std::vector<MapCloud> appeared = pieces_violating_free_space(later, before, content);
   for (MapCloud& piece : appeared) {
     for (MapPoint& point : piece) point.recording = static_cast<std::uint32_t>(recording);
   }

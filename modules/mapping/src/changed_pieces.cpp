@@ -56,28 +56,28 @@ constexpr std::size_t no_seed = std::numeric_limits<std::size_t>::max();
 
 /// Whether points may have been there at their time, and keyframes of another time see through
 /// them. `sightings` are those of these keyframes.
-std::vector<char> seen_through(const SeenSurface& surface,
-                               const std::vector<Sightings>& sightings) {
-  std::vector<char> is_through(surface.points.size());
-  for (std::size_t i = 0; i < is_through.size(); ++i) {
-    is_through[i] = surface.certainty[i] != Certainty::none &&
-                            sightings[i].violating >= least_views &&
-                            sightings[i].violating >= times_more * sightings[i].agreeing
-                        ? 1
-                        : 0;
+std::vector<char> violations_of(const SeenSurface& surface,
+                                const std::vector<Sightings>& sightings) {
+  std::vector<char> is_violation(surface.points.size());
+  for (std::size_t i = 0; i < is_violation.size(); ++i) {
+    is_violation[i] = surface.certainty[i] != Certainty::none &&
+                              sightings[i].violating >= least_views &&
+                              sightings[i].violating >= times_more * sightings[i].agreeing
+                          ? 1
+                          : 0;
   }
-  return is_through;
+  return is_violation;
 }
 
 /// The seeds of changes: those points that were there with certainty, are seen through and have no
 /// counterpart. Each is its own seed; all other points get `no_seed`.
 std::vector<std::size_t> seeds_of_changes(const SeenSurface& surface,
                                           const std::vector<char>& is_alone,
-                                          const std::vector<char>& is_through) {
+                                          const std::vector<char>& is_violation) {
   std::vector<std::size_t> seed_of(surface.points.size(), no_seed);
   for (std::size_t i = 0; i < seed_of.size(); ++i) {
     const bool is_sure = surface.certainty[i] == Certainty::sure;
-    if (is_sure && is_alone[i] != 0 && is_through[i] != 0) seed_of[i] = i;
+    if (is_sure && is_alone[i] != 0 && is_violation[i] != 0) seed_of[i] = i;
   }
   return seed_of;
 }
@@ -85,7 +85,7 @@ std::vector<std::size_t> seeds_of_changes(const SeenSurface& surface,
 /// Adds what is connected with seeds and has no counterpart either. Each point gets its seed.
 /// Points that are seen through become seeds themselves.
 void grow(const MapCloud& points, const NearPoints& search, const std::vector<char>& is_alone,
-          const std::vector<char>& is_through, std::vector<std::size_t>& seed_of) {
+          const std::vector<char>& is_violation, std::vector<std::size_t>& seed_of) {
   std::vector<std::size_t> open;
   std::ranges::copy_if(seed_of, std::back_inserter(open),
                        [](std::size_t seed) { return seed != no_seed; });
@@ -94,7 +94,7 @@ void grow(const MapCloud& points, const NearPoints& search, const std::vector<ch
     search.any_near(points[open[done]], [&](std::size_t i) {
       const float gap_m = (points[i].getVector3fMap() - points[seed].getVector3fMap()).norm();
       if (seed_of[i] == no_seed && is_alone[i] != 0 && gap_m <= growth_m) {
-        seed_of[i] = is_through[i] != 0 ? i : seed;
+        seed_of[i] = is_violation[i] != 0 ? i : seed;
         open.push_back(i);
       }
       return false;
@@ -197,7 +197,7 @@ std::vector<std::size_t> take_piece(std::size_t first, const MapCloud& points,
   return piece;
 }
 
-/// The pieces of changes, without those that are small or mostly no seeds.
+/// The pieces of changes, without those that are small or hardly have seeds.
 std::vector<MapCloud> pieces_of(const ChangedPoints& changed, double voxel_m) {
   const MapCloud& points = changed.points;
   const NearPoints beside(points, std::max(growth_m, static_cast<float>(2 * voxel_m)));
@@ -208,7 +208,7 @@ std::vector<MapCloud> pieces_of(const ChangedPoints& changed, double voxel_m) {
     const auto piece = take_piece(first, points, beside, is_taken);
     const auto seeds =
         std::ranges::count_if(piece, [&](std::size_t i) { return changed.is_seed[i] != 0; });
-    if (2 * seeds < std::ssize(piece) || piece.size() < least_points_of_change) continue;
+    if (3 * seeds < std::ssize(piece) || piece.size() < least_points_of_change) continue;
     MapCloud& cloud = pieces.emplace_back();
     for (const std::size_t i : piece) cloud.push_back(points[i]);
   }
@@ -217,17 +217,18 @@ std::vector<MapCloud> pieces_of(const ChangedPoints& changed, double voxel_m) {
 
 }  // namespace
 
-std::vector<MapCloud> pieces_seen_through(const SeenSurface& surface, const SeenSurface& other,
-                                          const MapContent& content) {
+std::vector<MapCloud> pieces_violating_free_space(const SeenSurface& surface,
+                                                  const SeenSurface& other,
+                                                  const MapContent& content) {
   const MapCloud& points = surface.points;
   const double voxel_m = content.surface_options.voxel_m;
   const NearPoints search(points, static_cast<float>(2 * voxel_m));
   const std::vector<char> is_alone =
       without_counterpart(points, other.points, static_cast<float>(voxel_m));
-  const std::vector<char> is_through =
-      seen_through(surface, sightings_of(points, other.keyframes, content.camera, voxel_m));
-  std::vector<std::size_t> seed_of = seeds_of_changes(surface, is_alone, is_through);
-  grow(points, search, is_alone, is_through, seed_of);
+  const std::vector<char> is_violation =
+      violations_of(surface, sightings_of(points, other.keyframes, content.camera, voxel_m));
+  std::vector<std::size_t> seed_of = seeds_of_changes(surface, is_alone, is_violation);
+  grow(points, search, is_alone, is_violation, seed_of);
   ChangedPoints changed;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (seed_of[i] != no_seed) changed.add(points[i], seed_of[i] == i);

@@ -8,9 +8,10 @@
 
 namespace tofmap {
 
-/// The connected pieces of a surface that keyframes of another time see through. `other` is the
-/// surface that these saw.
-std::vector<MapCloud> pieces_seen_through(const SeenSurface& surface, const SeenSurface& other,
-                                          const MapContent& content);
+/// The connected pieces of a surface that violate the free space of keyframes of another time.
+/// `other` is the surface that these saw.
+std::vector<MapCloud> pieces_violating_free_space(const SeenSurface& surface,
+                                                  const SeenSurface& other,
+                                                  const MapContent& content);
 
 }  // namespace tofmap

@@ -29,11 +29,11 @@ double share_near(const Keyframe& keyframe, const NearPoints& points) {
   const auto cloud = keyframe.cloud.load();
   for (const SurfacePoint& point : cloud->points) {
     if (!point.has_normal()) continue;
-    MapPoint placed;
-    placed.getVector3fMap() =
+    MapPoint in_world;
+    in_world.getVector3fMap() =
         (keyframe.world_from_camera * point.getVector3fMap().cast<double>()).cast<float>();
     ++all;
-    near += points.any_near(placed, [](std::size_t) { return true; }) ? 1 : 0;
+    near += points.any_near(in_world, [](std::size_t) { return true; }) ? 1 : 0;
   }
   return all > 0 ? static_cast<double>(near) / all : 0;
 }
@@ -57,17 +57,19 @@ int contradicted_loops(const MapContent& content) {
   int rejected = 0;
   int explained = 0;
   int used_between_recordings = 0;
+  int rejected_between_recordings = 0;
   auto loop = content.loops.begin();
   for (const PoseEdge& edge : content.edges) {
     if (!edge.may_be_wrong) continue;
     const bool is_used = (loop++)->is_used;
     const bool is_between_recordings =
         content.keyframes[edge.from].recording != content.keyframes[edge.to].recording;
-    used_between_recordings += is_used && is_between_recordings ? 1 : 0;
+    (is_used ? used_between_recordings : rejected_between_recordings) +=
+        is_between_recordings ? 1 : 0;
     rejected += is_used ? 0 : 1;
     explained += !is_used && is_between_recordings && is_explained(edge, content) ? 1 : 0;
   }
-  return explained < used_between_recordings ? rejected - explained : rejected;
+  return rejected_between_recordings < used_between_recordings ? rejected - explained : rejected;
 }
 
 }  // namespace tofmap

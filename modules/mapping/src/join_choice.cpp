@@ -110,7 +110,7 @@ std::optional<PoseEdge> JoinSearch::registered(const Keyframe& keyframe,
   const RegistrationResult result =
       register_to_targets(*cloud, targets_around(*other, context_.keyframes), context_.camera,
                           prior, context_.registration);
-  // What a flat surface leaves open, the join tells.
+  // The join tells what a flat surface does not constrain.
   const bool fits = result.status == RegistrationStatus::converged &&
                     result.overlap >= context_.loops.min_overlap &&
                     result.inlier_ratio >= context_.loops.min_inlier_ratio;

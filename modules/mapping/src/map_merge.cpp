@@ -196,6 +196,7 @@ void MapMerger::order_recordings() {
   for (const std::size_t i : order) {
     place[i] = static_cast<int>(ordered.size());
     ordered.push_back(content_.recordings[i]);
+    ordered.back().verdict.clear();  // it was on another map
   }
   content_.recordings = std::move(ordered);
   content_.keyframes.renumber_recordings(place);

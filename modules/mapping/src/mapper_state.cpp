@@ -20,7 +20,7 @@ void check_covariance(const Eigen::Matrix<double, 6, 6>& covariance) {
   const bool is_symmetric =
       covariance.allFinite() && covariance.isApprox(covariance.transpose(), rounding);
   if (!is_symmetric || covariance.llt().info() != Eigen::Success) {
-    throw InputError("a covariance is none");
+    throw InputError("a covariance is invalid");
   }
 }
 
@@ -154,7 +154,7 @@ MapperState RoomMapper::state() const {
   return state;
 }
 
-void RoomMapper::restore(MapContent content, const MapperState& state) {
+void RoomMapper::restore(MapContent content, const MapperState& state, int frames) {
   const Json json = Json::parse(state.json, nullptr, false);
   const int keyframes = content.keyframes.size();
   const int newest = std::max(keyframes - 1, 0);
@@ -164,7 +164,7 @@ void RoomMapper::restore(MapContent content, const MapperState& state) {
   last_fit_ = integer_in(json, "last_fit", 0, newest);
   last_slip_search_ = integer_in(json, "last_slip_search", -keyframes_between_fits, newest);
   current_ = integer_in(json, "current", 0, newest);
-  begun_maps_ = integer_in(json, "begun_maps", 1);
+  begun_maps_ = integer_in(json, "begun_maps", 1, most_maps);
   map_ = integer_in(json, "map", 0, begun_maps_ - 1);
   lost_frames_ = integer_in(json, "lost_frames", 0);
   searched_ = integer_in(json, "searched", 0, keyframes);
@@ -198,13 +198,19 @@ void RoomMapper::restore(MapContent content, const MapperState& state) {
   if (held.size() != state.held.size()) throw InputError("'held' does not fit its clouds");
   held_.clear();
   for (std::size_t i = 0; i < held.size(); ++i) {
-    held_.push_back({.index = integer_in(held[i], "index", 0),
+    held_.push_back({.index = integer_in(held[i], "index", 0, frames - 1),
                      .timestamp_s = number_in(held[i], "timestamp_s"),
                      .cloud = state.held[i]});
   }
   for (const Keyframe& keyframe : content.keyframes.all()) {
     if (keyframe.map >= begun_maps_ || keyframe.taken_in >= begun_maps_) {
       throw InputError("a keyframe is in a map that has not begun");
+    }
+  }
+  const int last = static_cast<int>(content.recordings.size()) - 1;
+  for (const RegisteredFrame& frame : content.frames) {
+    if (frame.recording == last && frame.index >= frames) {
+      throw InputError("a frame was registered that was not read");
     }
   }
   content_ = std::move(content);

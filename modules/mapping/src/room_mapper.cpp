@@ -122,13 +122,14 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
   }
   const auto before = is_joined() ? std::optional(odometry_) : std::nullopt;
   NewFrame as_recorded = frame;
-  TrackingResult result = track_with(around, frame);
-  if (result.registered() && before) {
-    if (auto undisturbed = track_undisturbed(as_recorded, around, result, *before)) {
-      result = *std::move(undisturbed);
+  StillTracking found = track_with(around, frame);
+  if (found.tracking.registered() && before) {
+    if (auto undisturbed = track_undisturbed(as_recorded, around, found, *before)) {
+      found = *std::move(undisturbed);
       frame = std::move(as_recorded);
     }
   }
+  TrackingResult result = std::move(found.tracking);
   if (!result.registered() && before) {
     odometry_ = *before;
     result = track_apart(frame, around);
@@ -166,11 +167,11 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
 
 /// Registers a frame with keyframes, and takes what moves out of its cloud. Only keyframes of the
 /// newest map tell what moves: differences from a map that was joined are evidence about the join.
-TrackingResult RoomMapper::track_with(std::span<const Keyframe* const> around, NewFrame& frame) {
+StillTracking RoomMapper::track_with(std::span<const Keyframe* const> around, NewFrame& frame) {
   StillTracking found =
       odometry_.track(frame.timestamp_s, frame.cloud, around, own(around), content_.keyframes);
   frame.cloud = found.still;
-  return std::move(found.tracking);
+  return found;
 }
 
 /// Those of the keyframes that were taken in the newest map, whatever it was joined with since.

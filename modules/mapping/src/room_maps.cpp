@@ -159,8 +159,8 @@ bool RoomMapper::agrees_with_start(const MapJoin& join) const {
   if (!start_ || !start_->has_rotation) return true;
   const RegisteredFrame& first = own_frames().front();
   if (content_.keyframes[first.keyframe].map != join.map) return true;
-  const Pose placed = join.into_from_map * pose_of(first, content_.keyframes);
-  return Eigen::AngleAxisd(start_->world_from_camera.linear().transpose() * placed.linear())
+  const Pose joined = join.into_from_map * pose_of(first, content_.keyframes);
+  return Eigen::AngleAxisd(start_->world_from_camera.linear().transpose() * joined.linear())
              .angle() <= most_rad;
 }
 
@@ -237,14 +237,14 @@ void RoomMapper::join(const MapJoin& join, std::span<const Stretch> travelled) {
 /// Joins maps of the recording with those of earlier ones, now that all of their keyframes are
 /// known, and closes the loops between them.
 void RoomMapper::join_afterwards() {
-  const std::vector<Stretch> travelled = stretches();
   const KeyframeSpacing spacing = keyframe_spacing();
-  const auto is_possible = [&](const MapJoin& place) {
-    return can_travel(travelled, place) && agrees_with_start(place);
-  };
   std::set<int> maps;
   for (const PoseEdge& edge : possible_places_) maps.insert(content_.keyframes[edge.to].map);
   for (const int map : maps) {
+    const std::vector<Stretch> travelled = stretches();  // a join before has moved them
+    const auto is_possible = [&](const MapJoin& place) {
+      return can_travel(travelled, place) && agrees_with_start(place);
+    };
     const auto found = find_certain_join(
         map, possible_places_, is_possible,
         {content_.keyframes.all(), camera_, spacing, loop_options_, registration_});
@@ -317,7 +317,7 @@ bool RoomMapper::is_of_another_place(const RegistrationTarget& frame, const Keyf
 /// maps that were joined has failed. If it fits the one and contradicts the others, the join is
 /// taken back.
 TrackingResult RoomMapper::track_apart(NewFrame& frame, std::span<const Keyframe* const> around) {
-  TrackingResult result = track_with(own(around), frame);
+  TrackingResult result = track_with(own(around), frame).tracking;
   if (!result.registered()) return result;
   const Keyframe* other = keyframe_near(result.world_from_camera, map_);
   if (other != nullptr &&
@@ -332,19 +332,24 @@ TrackingResult RoomMapper::track_apart(NewFrame& frame, std::span<const Keyframe
 }
 
 /// Registers a frame with the keyframes of its own recording alone, after the registration with all
-/// keyframes has fitted badly: what moved between recordings is in the way. Empty, with odometry as
-/// it was, unless that fits clearly better. Takes what moves out of the frame.
-std::optional<TrackingResult> RoomMapper::track_undisturbed(NewFrame& frame,
-                                                            std::span<const Keyframe* const> around,
-                                                            const TrackingResult& disturbed,
-                                                            const StillOdometry& before) {
+/// keyframes has fitted badly: what moved between recordings is in the way. Empty, with odometry
+/// and clouds as they were, unless that fits clearly better. Takes what moves out of the frame.
+std::optional<StillTracking> RoomMapper::track_undisturbed(NewFrame& frame,
+                                                           std::span<const Keyframe* const> around,
+                                                           const StillTracking& disturbed,
+                                                           const StillOdometry& before) {
   constexpr double badly = 1.5;    // residuals relative to the noise; 1 is usual
   constexpr double better = 0.67;  // share of the residuals
-  const double scale = disturbed.registration.residual_scale;
+  const double scale = disturbed.tracking.registration.residual_scale;
   if (scale < badly || !is_of_earlier_recording(map_)) return std::nullopt;
   StillOdometry joined = std::exchange(odometry_, before);
-  TrackingResult result = track_with(own(around), frame);
-  if (result.registered() && result.registration.residual_scale < better * scale) return result;
+  // At a wrong pose, all seems to move: that must not be taken out of keyframes.
+  const auto cleaned = exchange_clouds(disturbed.before, content_.keyframes);
+  StillTracking found = track_with(own(around), frame);
+  const TrackingResult& result = found.tracking;
+  if (result.registered() && result.registration.residual_scale < better * scale) return found;
+  exchange_clouds(found.before, content_.keyframes);
+  exchange_clouds(cleaned, content_.keyframes);
   odometry_ = std::move(joined);
   return std::nullopt;
 }

@@ -98,7 +98,7 @@ inline void check_rotation(const Eigen::Matrix3d& rotation) {
   constexpr double rounding = 1e-6;
   const Eigen::Matrix3d identity = rotation * rotation.transpose();
   if (!identity.isIdentity(rounding) || !(rotation.determinant() > 0)) {
-    throw InputError("a rotation is none");
+    throw InputError("a rotation is invalid");
   }
 }
 

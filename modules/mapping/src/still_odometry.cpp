@@ -61,9 +61,10 @@ std::vector<ComparedKeyframe> targets_and_first(const TrackingResult& frame,
   return found;
 }
 
-/// Gives keyframes other clouds. Returns those that they had.
-std::vector<CleanedKeyframe> replace_clouds(std::span<const CleanedKeyframe> others,
-                                            KeyframeGraph& keyframes) {
+}  // namespace
+
+std::vector<CleanedKeyframe> exchange_clouds(std::span<const CleanedKeyframe> others,
+                                             KeyframeGraph& keyframes) {
   std::vector<CleanedKeyframe> before;
   for (const CleanedKeyframe& other : others) {
     before.push_back({other.id, keyframes[other.id].cloud});
@@ -71,8 +72,6 @@ std::vector<CleanedKeyframe> replace_clouds(std::span<const CleanedKeyframe> oth
   }
   return before;
 }
-
-}  // namespace
 
 StillOdometry::StillOdometry(const CameraModel& camera, const OdometryOptions& options,
                              const RegistrationOptions& registration,
@@ -87,26 +86,26 @@ StillTracking StillOdometry::track(double timestamp_s, const CloudPointer& cloud
                                    std::span<const Keyframe* const> around,
                                    std::span<const Keyframe* const> compared,
                                    KeyframeGraph& keyframes) {
-  if (!leaves_out_moving_) return {odometry_.track(timestamp_s, *cloud, around), cloud};
+  if (!leaves_out_moving_) return {odometry_.track(timestamp_s, *cloud, around), cloud, {}};
   const Odometry before = odometry_;
   const CloudPointer expected = moving_.without_known(cloud, odometry_.expected_pose(timestamp_s));
   // Until they are found, things that move contradict the free space of keyframes.
   const bool may_contradict = !compared.empty();
   TrackingResult first = odometry_.track(timestamp_s, *expected, around, may_contradict);
   const bool is_of_background = track_background(timestamp_s, expected, around, before, first);
-  if (first.status != TrackingStatus::tracked || compared.empty()) return {first, cloud};
+  if (first.status != TrackingStatus::tracked || compared.empty()) return {first, cloud, {}};
   const auto spreads = keyframes.well_connected_to(around.back()->id);
   const Motion motion =
       moving_.find(cloud, first.world_from_camera, targets_and_first(first, compared, spreads));
   const CloudPointer still = is_of_background ? moving_.background(motion.still) : motion.still;
-  const std::vector<CleanedKeyframe> as_before = replace_clouds(motion.keyframes, keyframes);
+  const std::vector<CleanedKeyframe> as_before = exchange_clouds(motion.keyframes, keyframes);
   TrackingResult result = first;
   if (!motion.is_empty() || first.contradicts_targets) {
     const Odometry after_first = std::exchange(odometry_, before);
     result = odometry_.track(timestamp_s, *still, around);
     if (!result.registered() && first.contradicts_targets) {  // not by what moves
-      replace_clouds(as_before, keyframes);
-      return {result, cloud};
+      exchange_clouds(as_before, keyframes);
+      return {result, cloud, {}};
     }
     if (!result.registered()) {
       result = first;
@@ -114,7 +113,7 @@ StillTracking StillOdometry::track(double timestamp_s, const CloudPointer& cloud
     }
   }
   moving_.remember(motion);
-  return {result, still};
+  return {result, still, as_before};
 }
 
 /// In the first frames of a map the motion of the camera is not known yet, and registration may

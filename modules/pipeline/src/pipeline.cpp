@@ -149,13 +149,17 @@ void check_same_camera(const CameraModel& of_map, const CameraModel& camera) {
       camera.fx_px));
 }
 
-/// Whether a loop that the last recording has found, and that is used, moved what was there before.
+/// Whether a loop between the last recording and earlier ones, which is used, moved what was there
+/// before.
 bool has_moved_map(const MapContent& content) {
   auto loop = content.loops.begin();
   for (const PoseEdge& edge : content.edges) {
     if (!edge.may_be_wrong) continue;
-    const bool is_new = content.keyframes[edge.to].recording + 1 == std::ssize(content.recordings);
-    if (is_new && loop->is_used && loop->error_m > KeyframeGraph::well_connected_sigma_m) {
+    const auto is_new = [&](int id) {
+      return content.keyframes[id].recording + 1 == std::ssize(content.recordings);
+    };
+    if (is_new(edge.to) != is_new(edge.from) && loop->is_used &&
+        loop->error_m > KeyframeGraph::well_connected_sigma_m) {
       return true;
     }
     ++loop;

@@ -130,14 +130,16 @@ void MapRun::save(MapStore::Commit& commit) const {
 }
 
 void MapRun::load(const MapStore& store, const std::function<SourcedFrame(int index)>& read_frame) {
-  mapper_.restore(store.content(), mapper_state_in(store, sensor_.camera));
-  const int recording = static_cast<int>(mapper_.content().recordings.size()) - 1;
+  MapContent content = store.content();
+  const int recording = static_cast<int>(content.recordings.size()) - 1;
   frames_.clear();
   for (const FrameRow& row : store.frame_rows(recording)) frames_.push_back(frame_record(row));
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     if (frames_[i].index != static_cast<int>(i)) throw InputError("rows of frames are missing");
   }
   first_unsaved_ = frames_.size();
+  mapper_.restore(std::move(content), mapper_state_in(store, sensor_.camera),
+                  static_cast<int>(frames_.size()));
   read_entry(store, measurer_entry, [&](ByteReader& in) { measurer_.load(in); });
   read_entry(store, errors_entry, [&](ByteReader& in) { errors_.load(in); });
   last_ = last_read(frames_, read_frame);

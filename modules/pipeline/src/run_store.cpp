@@ -3,6 +3,7 @@
 
 #include "tofmap/pipeline/run_store.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <sstream>
 #include <string>
@@ -18,7 +19,7 @@ namespace {
 
 // Raise the number whenever the stored state of a run changes between two releases. The map itself
 // has a version of its own.
-constexpr const char* state_version = TOFMAP_VERSION ", 27";
+constexpr const char* state_version = TOFMAP_VERSION ", 28";
 
 // The names of what is stored besides the map.
 constexpr const char* version_entry = "run/version";
@@ -92,6 +93,17 @@ void check_recording(const std::string& line, const SequenceReader& source) {
       "--resume");
 }
 
+/// Throws InputError unless a stored frame has a phase image of each frequency.
+void check_phases(const SampledFrame& frame, const SensorModel& sensor) {
+  const auto is_there = [](const ImageF& phase) { return phase.size() > 0; };
+  for (const Frame* one : {&frame.recorded, &frame.returns}) {
+    if (one->phases.size() != sensor.modulation.count() ||
+        !std::ranges::all_of(one->phases, is_there)) {
+      throw InputError("a frame lacks the phases of a frequency");
+    }
+  }
+}
+
 }  // namespace
 
 void store_run(MapStore& store, MapRun& run, FrameSample& sample, const SequenceReader& source,
@@ -122,7 +134,11 @@ void complete_map(MapStore& store, MapRun& run) {
     commit.finish();
   }
   run.note_saved();
-  store.shrink();
+  try {
+    store.shrink();
+  } catch (const InputError&) {
+    // The map is whole. Its file is only larger than it could be.
+  }
 }
 
 bool holds_run(const MapStore& store) { return store.entry(version_entry).has_value(); }
@@ -141,6 +157,7 @@ void resume_run(const MapStore& store, MapRun& run, FrameSample& sample, Sequenc
   naming("the state of the run is damaged; start anew without --resume", [&] {
     run.load(store, [&](int index) { return source.read(index); });
     sample.load(store, static_cast<int>(run.frames().size()));
+    for (const SampledFrame& frame : sample.frames()) check_phases(frame, source.sensor());
   });
   source.start_at(static_cast<int>(run.frames().size()));
 }

@@ -115,7 +115,7 @@ MapChange change_in(SQLite::Statement& row, int recordings) {
   Eigen::Matrix4d matrix;
   read_numbers(row, Column::motion, matrix.data(), static_cast<int>(matrix.size()));
   check_rotation(matrix.topLeftCorner<3, 3>());
-  if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) throw InputError("a motion is none");
+  if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) throw InputError("a motion is invalid");
   change.after_from_before = Pose(matrix);
   const SQLite::Column before_bytes = row.getColumn(Column::before);
   const SQLite::Column after_bytes = row.getColumn(Column::after);

@@ -56,6 +56,11 @@ std::vector<MapRecording> read_recordings(SQLite::Database& database) {
     recordings.push_back(std::move(recording));
   });
   if (recordings.empty()) throw InputError("is a map of no recording");
+  for (const MapRecording& recording : recordings) {
+    if (!are_same_camera(recording.sensor.camera, recordings.front().sensor.camera)) {
+      throw InputError("its recordings are of different cameras");
+    }
+  }
   return recordings;
 }
 
@@ -88,8 +93,8 @@ void read_keyframes(SQLite::Database& database,
     keyframe.recording = integer_in(row, 1, 0, recordings - 1);
     keyframe.frame_index = integer_in(row, 2, 0, any);
     keyframe.timestamp_s = number_in(row, 3);
-    keyframe.map = integer_in(row, 4, 0, any);
-    keyframe.taken_in = integer_in(row, 5, 0, any);
+    keyframe.map = integer_in(row, 4, 0, most_maps - 1);
+    keyframe.taken_in = integer_in(row, 5, 0, most_maps - 1);
     keyframe.path_m = number_in(row, 6);
     content.submap_of.push_back(integer_in(row, 7, 0, submaps - 1));
     constexpr int first = 8;

@@ -19,7 +19,8 @@ bool is_same(const Pose& one, const Pose& other) { return one.matrix() == other.
 bool is_same(const WrittenKeyframe& one, const WrittenKeyframe& other) {
   return is_same(one.world_from_camera, other.world_from_camera) &&
          one.recording == other.recording && one.frame_index == other.frame_index &&
-         one.map == other.map && one.taken_in == other.taken_in && one.submap == other.submap;
+         one.map == other.map && one.taken_in == other.taken_in && one.submap == other.submap &&
+         one.cloud == other.cloud;  // the descriptor of the place follows from it
 }
 
 WrittenKeyframe row_of(const Keyframe& keyframe, const MapContent& content) {

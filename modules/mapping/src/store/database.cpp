@@ -6,6 +6,7 @@
 #include "schema.hpp"
 
 #include <array>
+#include <cstdint>
 #include <fstream>
 
 #include <sqlite3.h>
@@ -68,33 +69,57 @@ void check_integrity(SQLite::Database& database) {
 
 constexpr const char* checksum_name = "checksum";
 
+/// A checksum of values. Each has its type and its length before it, so that no two rows of values
+/// that differ have the same bytes.
+class Checksum {
+ public:
+  void add(char type, std::string_view bytes) {
+    const std::uint64_t length = bytes.size();
+    add_bytes({&type, 1});
+    add_bytes({reinterpret_cast<const char*>(&length), sizeof length});
+    add_bytes(bytes);
+  }
+
+  void add(const SQLite::Column& column) {
+    if (column.isNull()) {
+      add('n', {});
+    } else if (column.isFloat()) {
+      const double number = column.getDouble();
+      add('r', {reinterpret_cast<const char*>(&number), sizeof number});
+    } else {
+      add(column.isInteger() ? 'i' : column.isText() ? 't' : 'b', bytes_in(column));
+    }
+  }
+
+  std::string text() const { return std::to_string(sum_); }
+
+ private:
+  void add_bytes(std::string_view bytes) {
+    if (bytes.empty()) return;  // zlib would begin anew
+    sum_ =
+        crc32(sum_, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size()));
+  }
+
+  uLong sum_ = crc32(0, nullptr, 0);
+};
+
 /// A checksum of all rows of the tables but that of the checksum itself.
 std::string checksum_of(SQLite::Database& database) {
-  uLong checksum = crc32(0, nullptr, 0);
-  const auto add = [&](std::string_view bytes) {
-    checksum = crc32(checksum, reinterpret_cast<const Bytef*>(bytes.data()),
-                     static_cast<uInt>(bytes.size()));
-  };
+  Checksum checksum;
   SQLite::Statement tables(
       database, "SELECT name, sql FROM sqlite_schema WHERE type = 'table' ORDER BY name");
   while (tables.executeStep()) {
     const std::string table = tables.getColumn(0).getString();
-    add(tables.getColumn(1).getString());
+    checksum.add('t', tables.getColumn(1).getString());
     SQLite::Statement row(database, table == "clouds"
                                         ? "SELECT keyframe, width_px, height_px FROM clouds"
                                         : "SELECT * FROM " + table);
     while (row.executeStep()) {
       if (table == "properties" && row.getColumn(0).getString() == checksum_name) continue;
-      for (int i = 0; i < row.getColumnCount(); ++i) {
-        const SQLite::Column column = row.getColumn(i);
-        const double number = column.isFloat() ? column.getDouble() : 0;
-        add(column.isFloat()
-                ? std::string_view(reinterpret_cast<const char*>(&number), sizeof number)
-                : bytes_in(column));
-      }
+      for (int i = 0; i < row.getColumnCount(); ++i) checksum.add(row.getColumn(i));
     }
   }
-  return std::to_string(checksum);
+  return checksum.text();
 }
 
 /// Throws InputError if the file has a checksum that is not that of its tables.
@@ -168,6 +193,16 @@ SQLite::Database open_database(const fs::path& file, bool is_locked) {
   check_checksum(database);
   if (is_locked) lock(database);
   return database;
+}
+
+bool is_in_use(const fs::path& file) {
+  try {
+    SQLite::Database database(file.string(), SQLite::OPEN_READWRITE);
+    database.exec("BEGIN IMMEDIATE; ROLLBACK");
+    return false;
+  } catch (const SQLite::Exception& error) {
+    return error.getErrorCode() == SQLITE_BUSY || error.getErrorCode() == SQLITE_LOCKED;
+  }
 }
 
 void bind_bytes(SQLite::Statement& statement, int index, std::string_view bytes) {

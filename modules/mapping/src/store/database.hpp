@@ -35,6 +35,9 @@ SQLite::Database create_database(const std::filesystem::path& file);
 /// known. `is_locked`: for this process alone, to be written.
 SQLite::Database open_database(const std::filesystem::path& file, bool is_locked);
 
+/// Whether another process writes the file.
+bool is_in_use(const std::filesystem::path& file);
+
 /// Stores a checksum of all tables, which open_database() compares with them. The compressed clouds
 /// are left out, since they have checksums of their own.
 void seal(SQLite::Database& database);

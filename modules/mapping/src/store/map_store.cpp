@@ -33,7 +33,6 @@ CompactCloud MapStore::File::read_cloud(int keyframe) const {
     if (!row.executeStep()) {
       throw InputError("has no cloud of keyframe " + std::to_string(keyframe));
     }
-    constexpr int most_pixels = 1 << 14;
     CompactCloud cloud{.width_px = integer_in(row, 0, 1, most_pixels),
                        .height_px = integer_in(row, 1, 1, most_pixels),
                        .bytes = {},
@@ -70,6 +69,8 @@ MapStore MapStore::open(const fs::path& file, Access access) {
     return MapStore(std::make_shared<File>(file, open_database(file, access == Access::extend)));
   });
 }
+
+bool MapStore::is_in_use(const fs::path& file) { return tofmap::is_in_use(file); }
 
 MapContent MapStore::content() const {
   return naming_file(file_->path, [&] {
@@ -219,7 +220,10 @@ void MapStore::settle() {
   naming_file(file_->path, [&] {
     seal(file_->database);
     file_->database.exec("PRAGMA wal_checkpoint(TRUNCATE)");
-    file_->database.exec("PRAGMA journal_mode = DELETE");
+    const SQLite::Column mode = file_->database.execAndGet("PRAGMA journal_mode = DELETE");
+    if (mode.getString() != "delete") {
+      throw InputError("cannot be completed: its write-ahead log stays beside it");
+    }
     file_->database.exec("PRAGMA locking_mode = NORMAL");
     file_->database.execAndGet("SELECT COUNT(*) FROM recordings");  // releases the lock
   });

@@ -93,7 +93,6 @@ SensorModel sensor_in(const std::string& json) {
   const Json value = Json::parse(json, nullptr, false);
   SensorModel sensor;
   CameraModel& camera = sensor.camera;
-  constexpr int most_pixels = 1 << 14;
   camera.width_px = integer_in(value, "width_px", 1, most_pixels);
   camera.height_px = integer_in(value, "height_px", 1, most_pixels);
   camera.fx_px = number_in(value, "fx_px");
@@ -135,7 +134,13 @@ SurfaceMapOptions surface_options_in(const std::string& json) {
   options.min_observations = integer_in(value, "min_observations", 1);
   options.max_sigma_m = number_in(value, "max_sigma_m");
   options.drop_free_space_violations = flag_in(value, "drop_free_space_violations");
-  if (!(options.voxel_m > 0)) throw InputError("'voxel_m' is not positive");
+  for (const OptionField<SurfaceMapOptions>& field : SurfaceMapOptions::fields()) {
+    const auto* number = std::get_if<double SurfaceMapOptions::*>(&field.member);
+    if (number == nullptr || (options.**number >= field.min && options.**number <= field.max)) {
+      continue;
+    }
+    throw InputError("'" + std::string(field.name) + "' is out of its range");
+  }
   return options;
 }
 

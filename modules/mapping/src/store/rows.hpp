@@ -12,6 +12,9 @@
 
 namespace tofmap {
 
+/// Largest width or height of an image.
+inline constexpr int most_pixels = 1 << 14;
+
 /// Number of columns of a pose: translation, quaternion, and the exact rotation matrix.
 inline constexpr int pose_columns = 8;
 
@@ -34,8 +37,9 @@ double number_in(SQLite::Statement& row, int index);
 /// An integer from `least` to `most`.
 int integer_in(SQLite::Statement& row, int index, int least, int most);
 
-/// A sensor as JSON, and back. Throws InputError if the camera is none (validate()), or if there is
-/// not one modulation frequency to eight.
+/// A sensor as JSON, and back. Throws InputError if the camera is invalid (validate()), or if there
+/// are more than eight modulation frequencies. There may be none: only maps of described recordings
+/// (RoomMapper::describe_recording()) have them.
 std::string sensor_json(const SensorModel& sensor);
 SensorModel sensor_in(const std::string& json);
 

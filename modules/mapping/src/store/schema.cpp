@@ -5,11 +5,9 @@
 
 namespace tofmap {
 
-const char* map_schema() {
-  return R"sql(
-BEGIN;
-PRAGMA application_id = 1953457773;
-PRAGMA user_version = 1;
+std::string map_schema() {
+  return "BEGIN; PRAGMA application_id = " + std::to_string(map_application_id) +
+         "; PRAGMA user_version = " + std::to_string(map_format_version) + R"sql(;
 
 CREATE TABLE properties (
   name TEXT PRIMARY KEY,

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 namespace tofmap {
 
 /// "tofm": marks an SQLite database as a map (PRAGMA application_id).
@@ -12,6 +14,6 @@ inline constexpr int map_application_id = 0x746f666d;
 inline constexpr int map_format_version = 1;
 
 /// SQL statements that make the tables of a map (docs/map-format.md) in an empty database.
-const char* map_schema();
+std::string map_schema();
 
 }  // namespace tofmap

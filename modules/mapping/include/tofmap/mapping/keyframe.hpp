@@ -15,7 +15,7 @@ namespace tofmap {
 
 /// A frame that is kept, and that later frames are registered with.
 struct Keyframe {
-  int id = 0;           ///< keyframes are numbered from 0, without gaps, in the order of time
+  int id = 0;           ///< numbered from 0, without gaps; in the order of time in a recording
   int frame_index = 0;  ///< index of the frame in the recording
   double timestamp_s = 0;
   Pose world_from_camera = Pose::Identity();
@@ -26,6 +26,9 @@ struct Keyframe {
   int taken_in = 0;            ///< the map it was taken in, before any join
   int recording = 0;           ///< index of the recording in MapContent::recordings
 };
+
+/// Largest number of maps, joined or not, that a run may begin.
+inline constexpr int most_maps = 1 << 20;
 
 /// A keyframe as a target of registration, which keeps its cloud in memory. Throws InputError as
 /// KeyframeCloud::load() does.

@@ -42,6 +42,9 @@ class MapStore {
   /// Opens the file of a map and checks that it is one, of a version that this program reads.
   static MapStore open(const std::filesystem::path& file, Access access = Access::read);
 
+  /// Whether another process is writing a file.
+  static bool is_in_use(const std::filesystem::path& file);
+
   MapStore(MapStore&&) noexcept;
   MapStore& operator=(MapStore&&) noexcept;
   ~MapStore();

@@ -145,9 +145,10 @@ class RoomMapper {
   MapperState state() const;
 
   /// Replaces the state by one that state() returned together with `content`. A mapper that was
-  /// constructed with the same arguments then gives the same results to the bit. Throws InputError
-  /// if the state is damaged or does not fit the content; the mapper is then not to be used.
-  void restore(MapContent content, const MapperState& state);
+  /// constructed with the same arguments then gives the same results to the bit. `frames` is the
+  /// number of frames that the recording has had. Throws InputError if the state is damaged or does
+  /// not fit the content; the mapper is then not to be used.
+  void restore(MapContent content, const MapperState& state, int frames);
 
  private:
   /// Two maps that were joined.
@@ -176,7 +177,7 @@ class RoomMapper {
   bool is_of_another_place(const RegistrationTarget& frame, const Keyframe& other) const;
   TrackingResult track(NewFrame& frame);
   bool was_blind(double timestamp_s) const;
-  TrackingResult track_with(std::span<const Keyframe* const> around, NewFrame& frame);
+  StillTracking track_with(std::span<const Keyframe* const> around, NewFrame& frame);
   std::vector<LateFrame> start_map();
   std::vector<LateFrame> drop_fragment();
   void integrate(const SurfaceCloud& cloud);
@@ -194,10 +195,10 @@ class RoomMapper {
   bool refutes_join(const JoinEvidence& evidence, int into) const;
   std::optional<bool> differs_from_others(const Keyframe& keyframe) const;
   TrackingResult track_apart(NewFrame& frame, std::span<const Keyframe* const> around);
-  std::optional<TrackingResult> track_undisturbed(NewFrame& frame,
-                                                  std::span<const Keyframe* const> around,
-                                                  const TrackingResult& disturbed,
-                                                  const StillOdometry& before);
+  std::optional<StillTracking> track_undisturbed(NewFrame& frame,
+                                                 std::span<const Keyframe* const> around,
+                                                 const StillTracking& disturbed,
+                                                 const StillOdometry& before);
   bool is_of_earlier_recording(int map) const;
   void take_join_back();
   void connect_own_keyframes();

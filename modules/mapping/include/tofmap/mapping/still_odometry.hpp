@@ -19,7 +19,12 @@ struct StillTracking {
   /// stands in front if the background determined the pose. The frame's own cloud if nothing is
   /// left out.
   std::shared_ptr<const SurfaceCloud> still;
+  std::vector<CleanedKeyframe> before;  ///< the keyframes that have other clouds now, as they were
 };
+
+/// Gives keyframes other clouds. Returns those that they had.
+std::vector<CleanedKeyframe> exchange_clouds(std::span<const CleanedKeyframe> others,
+                                             KeyframeGraph& keyframes);
 
 /// Tracks the camera (Odometry) by what does not move: people, doors and other things that move
 /// (MovingRegions) have no part in registration.

@@ -9,8 +9,8 @@
 
 namespace tofmap {
 
-/// Mends the start of a map that was begun in front of surfaces that leave a direction of motion
-/// open, such as a bare wall. How the camera moved was not known yet then, so that its first
+/// Mends the start of a map that was begun in front of surfaces that leave a degenerate direction
+/// of motion, such as a bare wall. How the camera moved was not known yet then, so that its first
 /// keyframes may be far off in that direction.
 ///
 /// These keyframes are registered again, from the last one backwards, from where the motion of the
