@@ -106,9 +106,8 @@ void check_base(const std::vector<MapRecording>& recordings, const fs::path& ont
     return one.source == other.source && one.added == other.added;
   };
   if (std::ranges::equal(std::span(recordings).first(recordings.size() - 1), base, is_same)) return;
-  throw InputError(onto.empty()
-                       ? "the interrupted run goes on with a finished map; give that with --onto"
-                       : "the interrupted run does not go on with " + onto.string());
+  throw InputError(onto.empty() ? "the interrupted run extends a map, which --onto must name"
+                                : "the interrupted run does not extend " + onto.string());
 }
 
 std::optional<Verdict> verdict_named(const std::string& name) {

@@ -270,6 +270,13 @@ TEST_F(InterruptedMap, IsKeptWithoutItsStateIfTheDiskIsFull) {
   EXPECT_FALSE(fs::exists(out_ / "map.db"));
 }
 
+TEST_F(InterruptedMap, DoesNotGoOnWithAMapThatItDoesNotExtend) {
+  const fs::path other = fs::path(TOFMAP_SOURCE_DIR) / "tests/mapping/maps/version_1.db";
+  const Finished resumed = resume({"--onto", other});
+  EXPECT_EQ(resumed.status, 3);
+  EXPECT_THAT(resumed.err, HasSubstr("does not extend " + other.string()));
+}
+
 TEST_F(InterruptedMap, DoesNotGoOnWithAnotherRecording) {
   shorten_recording(1);
   const Finished resumed = resume();
