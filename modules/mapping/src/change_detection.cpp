@@ -110,6 +110,12 @@ std::vector<MapChange> changes_in(const MapContent& content, int map, int record
   return changes;
 }
 
+std::set<int> maps_with_keyframes(const MapContent& content) {
+  std::set<int> maps;
+  for (const Keyframe& keyframe : content.keyframes.all()) maps.insert(keyframe.map);
+  return maps;
+}
+
 }  // namespace
 
 std::vector<MapChange> find_changes(const MapContent& content, int map) {
@@ -121,11 +127,17 @@ std::vector<MapChange> find_changes(const MapContent& content, int map) {
 }
 
 std::vector<MapChange> find_changes(const MapContent& content) {
-  std::set<int> maps;
-  for (const Keyframe& keyframe : content.keyframes.all()) maps.insert(keyframe.map);
   std::vector<MapChange> changes;
-  for (const int map : maps) {
+  for (const int map : maps_with_keyframes(content)) {
     std::ranges::move(find_changes(content, map), std::back_inserter(changes));
+  }
+  return changes;
+}
+
+std::vector<MapChange> changes_since(const MapContent& content, int recording) {
+  std::vector<MapChange> changes;
+  for (const int map : maps_with_keyframes(content)) {
+    std::ranges::move(changes_in(content, map, recording), std::back_inserter(changes));
   }
   return changes;
 }

@@ -78,7 +78,12 @@ void RoomMapper::finish() {
               odometry_options_.prior_translation_sigma_m);
   // From here on, clouds are gone through in order.
   content_.keyframes.keep_clouds_compact();
-  content_.changes = find_changes(content_);
+  if (use_ == MapUse::localise) {
+    // The map stays as it is, and with it what earlier recordings show.
+    std::ranges::move(changes_since(content_, recording()), std::back_inserter(content_.changes));
+  } else {
+    content_.changes = find_changes(content_);
+  }
 }
 
 /// Searches for slips that explain the loops since the last fit, and mends them.

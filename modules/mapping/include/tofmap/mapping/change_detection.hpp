@@ -26,6 +26,9 @@ std::vector<MapChange> find_changes(const MapContent& content, int map);
 /// The changes in all maps.
 std::vector<MapChange> find_changes(const MapContent& content);
 
+/// The changes that one recording shows, in all maps.
+std::vector<MapChange> changes_since(const MapContent& content, int recording);
+
 /// Smallest number of map points of a change. Fewer are mostly edges of things, which each
 /// recording sees a bit differently.
 inline constexpr std::size_t least_points_of_change = 20;
