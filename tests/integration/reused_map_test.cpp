@@ -119,6 +119,11 @@ TEST_F(ReusedMap, IsExtendedByAnotherRecording) {
   EXPECT_EQ(query("extended", "SELECT COUNT(*) FROM recordings"), "2\n");
 }
 
+TEST_F(ReusedMap, IsExtendedWithoutAWordOfLostTracking) {
+  const std::string report = test::read_text(made("extended") + "/report.json");
+  EXPECT_THAT(report, Not(HasSubstr("when tracking was lost")));
+}
+
 TEST_F(ReusedMap, IsExtendedByARunThatSaysResumeWhereThereIsNothingToResume) {
   expect_success(run({"map", made("second"), "--onto", made("map_first"), "--resume"}, "resumed"));
   EXPECT_EQ(test::read_text(at("resumed/trajectory.txt")),

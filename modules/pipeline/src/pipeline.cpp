@@ -360,7 +360,8 @@ RoomMap MapRun::finish() {
   if (content.recordings.size() > 1) map.localised = mapper_.localised_frames();
   map.has_moved_map = has_moved_map(content);
   map.nearness = mapper_.nearness();
-  map.joins = mapper_.joins();
+  // The join with the map that is extended does not tell of lost tracking.
+  map.joins = mapper_.joins() - (map.localised.value_or(0) > 0 ? 1 : 0);
   map.blind_joins = mapper_.blind_joins();
   map.joins_taken_back = mapper_.joins_taken_back();
   map.frames = std::move(frames_);

@@ -91,7 +91,7 @@ struct RoomMap {
   std::vector<SeparateMap> separate_maps;  ///< the other maps, that with the most frames first
   std::vector<Loop> loops;                 ///< all loops that were found, used or not
   int contradicted_loops = 0;              ///< number of those that tell against the map
-  int joins = 0;                           ///< RoomMapper::joins()
+  int joins = 0;                           ///< of maps within the recording (RoomMapper::joins())
   int blind_joins = 0;                     ///< RoomMapper::blind_joins()
   int joins_taken_back = 0;                ///< RoomMapper::joins_taken_back()
   PoseCertainty least_certain;             ///< least_certain_of(); zero without keyframes
