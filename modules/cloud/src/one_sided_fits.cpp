@@ -28,7 +28,7 @@ constexpr double most_sigmas_off = 1.5;
 constexpr int radii_of_window = 3;
 
 /// A part of a window: the pixels whose offsets have no negative product with either direction.
-struct Side {
+struct WindowSide {
   int down_1, right_1;
   int down_2, right_2;
 
@@ -39,18 +39,18 @@ struct Side {
 
 /// Halves, and after them quarters, of which each leaves out pixels of a second fold.
 constexpr std::size_t halves = 8;
-constexpr std::array<Side, 12> sides{{{1, 0, 1, 0},
-                                      {-1, 0, -1, 0},
-                                      {0, 1, 0, 1},
-                                      {0, -1, 0, -1},
-                                      {1, 1, 1, 1},
-                                      {-1, -1, -1, -1},
-                                      {1, -1, 1, -1},
-                                      {-1, 1, -1, 1},
-                                      {1, 0, 0, 1},
-                                      {1, 0, 0, -1},
-                                      {-1, 0, 0, 1},
-                                      {-1, 0, 0, -1}}};
+constexpr std::array<WindowSide, 12> sides{{{1, 0, 1, 0},
+                                            {-1, 0, -1, 0},
+                                            {0, 1, 0, 1},
+                                            {0, -1, 0, -1},
+                                            {1, 1, 1, 1},
+                                            {-1, -1, -1, -1},
+                                            {1, -1, 1, -1},
+                                            {-1, 1, -1, 1},
+                                            {1, 0, 0, 1},
+                                            {1, 0, 0, -1},
+                                            {-1, 0, 0, 1},
+                                            {-1, 0, 0, -1}}};
 
 /// A pixel of a window, relative to the pixel in its centre.
 struct WindowPixel {
