@@ -120,15 +120,15 @@ std::optional<Verdict> verdict_named(const std::string& name) {
 }  // namespace
 
 MapFile::MapFile(OutputFolder& out, std::optional<MapStore> store, std::vector<fs::path> killed,
-                 Origin origin)
+                 bool is_resumed)
     : out_(&out),
       killed_(std::move(killed)),
       store_(std::move(store)),
-      origin_(origin),
-      is_stored_(origin == Origin::interrupted),
+      is_resumed_(is_resumed),
+      is_stored_(is_resumed),
       due_(Clock::now() + shortest_interval) {}
 
-MapFile::MapFile(OutputFolder& out) : MapFile(out, std::nullopt, {}, Origin::fresh) {
+MapFile::MapFile(OutputFolder& out) : MapFile(out, std::nullopt, {}, false) {
   try {
     store_ = MapStore::create(out.path() / map_file_name);
   } catch (const InputError&) {
@@ -148,7 +148,7 @@ MapFile MapFile::resumed(OutputFolder& out, const fs::path& folder, const fs::pa
   const fs::path copy = copied(interrupted, out.path() / map_file_name);
   try {
     MapFile file(out, MapStore::open(copy, MapStore::Access::extend), std::move(killed.folders),
-                 Origin::interrupted);
+                 true);
     const MapContent content = file.store_->content();
     check_base(content.recordings, onto);
     file.note_base(content, content.recordings.size() - 1);
@@ -162,9 +162,9 @@ MapFile MapFile::extending(OutputFolder& out, const fs::path& map) {
   const fs::path file = map_file_in(map);
   MapStore::open(file);  // with messages that name it, not its copy
   const fs::path copy = copied(file, out.path() / map_file_name);
-  MapFile extended(out, MapStore::open(copy, MapStore::Access::extend), {}, Origin::finished);
-  const MapContent content = extended.store_->content();
-  extended.note_base(content, content.recordings.size());
+  MapFile extended(out, MapStore::open(copy, MapStore::Access::extend), {}, false);
+  extended.finished_ = extended.store_->content();
+  extended.note_base(*extended.finished_, extended.finished_->recordings.size());
   return extended;
 }
 
@@ -175,10 +175,7 @@ void MapFile::note_base(const MapContent& content, std::size_t recordings) {
   verdict_before_ = verdict_named(content.recordings[recordings - 1].verdict);
 }
 
-std::optional<MapContent> MapFile::to_extend() const {
-  if (origin_ != Origin::finished) return std::nullopt;
-  return store_->content();
-}
+std::optional<MapContent> MapFile::to_extend() { return std::exchange(finished_, std::nullopt); }
 
 void MapFile::store(MapRun& run, FrameSample& sample, MapInput& input,
                     const PipelineOptions& options) {

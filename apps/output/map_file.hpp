@@ -37,8 +37,8 @@ class MapFile {
   /// that holds it. Throws InputError if that cannot be read.
   static MapFile extending(OutputFolder& out, const std::filesystem::path& map);
 
-  /// The finished map to go on with. Empty if the file is new, or that of an interrupted run.
-  std::optional<MapContent> to_extend() const;
+  /// Takes the finished map to go on with. Empty if the file is new, or that of an interrupted run.
+  std::optional<MapContent> to_extend();
 
   /// The options of the surface of the finished map that the file goes on with, which stay as they
   /// are. Empty if there is none.
@@ -49,7 +49,7 @@ class MapFile {
 
   /// The file of an interrupted or killed run, which resume_run() continues. Null if the file is
   /// new.
-  const MapStore* to_resume() const { return origin_ == Origin::interrupted ? &*store_ : nullptr; }
+  const MapStore* to_resume() const { return is_resumed_ ? &*store_ : nullptr; }
 
   /// Stores a run if enough time has passed: at least half a second, and twenty times what storing
   /// took. If that fails, and the run can be resumed from what was stored before, throws
@@ -73,11 +73,8 @@ class MapFile {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// What the file was at the beginning.
-  enum class Origin { fresh, interrupted, finished };
-
   MapFile(OutputFolder& out, std::optional<MapStore> store,
-          std::vector<std::filesystem::path> killed, Origin origin);
+          std::vector<std::filesystem::path> killed, bool is_resumed);
 
   void note_base(const MapContent& content, std::size_t recordings);
   void store(MapRun& run, FrameSample& sample, MapInput& input, const PipelineOptions& options);
@@ -87,12 +84,13 @@ class MapFile {
   OutputFolder* out_;
   /// Folders that killed runs left, until the map is stored in the new file.
   std::vector<std::filesystem::path> killed_;
-  std::optional<MapStore> store_;  ///< empty if it could not be written
-  std::exception_ptr failure_;     ///< why
+  std::optional<MapStore> store_;       ///< empty if it could not be written
+  std::exception_ptr failure_;          ///< why
+  std::optional<MapContent> finished_;  ///< until to_extend()
   std::optional<SurfaceMapOptions> surface_options_;
   std::optional<Verdict> verdict_before_;
-  Origin origin_;
-  bool is_stored_;  ///< whether there was a commit
+  bool is_resumed_;  ///< whether the file is that of an interrupted run
+  bool is_stored_;   ///< whether there was a commit
   Clock::time_point due_;
 };
 

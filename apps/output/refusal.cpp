@@ -46,8 +46,9 @@ std::string told_refusal(const MapNearness& nearness, std::size_t frames) {
            "map' of the recording by itself says why";
   }
   const std::string near = refused + told_nearness(nearness);
-  if (nearness.obstacle == JoinObstacle::ambiguous)
+  if (nearness.obstacle == JoinObstacle::ambiguous) {
     return near + "; say where the camera begins with --start";
+  }
   if (nearness.obstacle == JoinObstacle::contradicted) {
     return near + ". The recording shows another place that looks alike, or much was moved in it";
   }
