@@ -12,6 +12,7 @@
 #include "output/change_report.hpp"
 #include "output/json_text.hpp"
 #include "output/output_folder.hpp"
+#include "output/pose_printer.hpp"
 #include "output/refusal.hpp"
 
 #include <algorithm>
@@ -41,6 +42,7 @@ struct LocaliseArguments {
   std::filesystem::path out;
   std::string method;
   std::string start;
+  bool poses = false;
   CommonArguments common;
 };
 
@@ -111,17 +113,22 @@ void write_result(OutputFolder& out, const Localisation& result,
   out.commit(result.interrupted ? Completeness::interrupted : Completeness::whole);
 }
 
-void localise_frames(MapRun& run, MapInput& input, bool quiet) {
+/// Localises frames until the input ends, the user interrupts, or the printer cannot print their
+/// poses. The printer may be null. Returns whether it could print.
+bool localise_frames(MapRun& run, MapInput& input, PosePrinter* printer, bool quiet) {
   Progress progress("localising frame", input.frames().frame_count(), quiet);
+  bool are_read = true;
   MapHooks hooks;
   hooks.keep_going = [&](int done) {
+    if (printer != nullptr) are_read = printer->print_new(run.mapper().content());
     const int localised = run.mapper().localised_frames();
     progress.show(done, done == 0        ? ""
                         : localised == 0 ? "not found yet"
                                          : std::to_string(localised) + " localised");
-    return !is_interrupted();
+    return are_read && !is_interrupted();
   };
   run.advance(input.frames(), hooks);
+  return are_read;
 }
 
 int run_localise(const LocaliseArguments& arguments) {
@@ -132,6 +139,7 @@ int run_localise(const LocaliseArguments& arguments) {
   const bool quiet = arguments.common.quiet;
   const std::filesystem::path map_file = map_file_in(arguments.map);
   refuse_to_replace(map_file, arguments.out);
+  refuse_to_replace_grown_map(arguments.out);
   MapContent map = MapStore::open(map_file).content();
   const auto start = start_place(arguments.start, map);
   MapInput input(arguments.recording.sequence, options);
@@ -139,15 +147,23 @@ int run_localise(const LocaliseArguments& arguments) {
   MapRun run(input.frames().sensor(), options.pipeline, arguments.recording.sequence.string());
   OutputFolder out(arguments.out);
   run.go_on_with(std::move(map), MapUse::localise, start);
-  localise_frames(run, input, quiet);
+  std::optional<PosePrinter> printer;
+  if (arguments.poses) printer.emplace();
+  const bool are_read = localise_frames(run, input, printer ? &*printer : nullptr, quiet);
   input.close();
   const Localisation result = run.finish_localised();
   if (result.localised.empty() && !result.interrupted) {
-    throw InputError(told_refusal(result.nearness, result.frames.size()));
+    throw InputError(told_refusal(result.nearness, result.frames, start.has_value()));
   }
   const std::vector<MapRecording>& recordings = run.mapper().content().recordings;
   write_result(out, result, recordings, table.to_yaml(false));
-  if (!quiet) print_summary(result, recordings, out);
+  if (!quiet && !arguments.poses) print_summary(result, recordings, out);
+  if (!are_read) {
+    throw InputError(
+        "poses cannot be printed, since nobody reads them any more; those until then "
+        "are in " +
+        (out.final_path() / "trajectory.txt").string());
+  }
   if (!input.silence().empty()) throw InputError(input.silence());
   return result.interrupted ? exit_status::interrupted : exit_status::done;
 }
@@ -158,9 +174,12 @@ void add_localise_command(CLI::App& program, Outcome& outcome) {
   auto arguments = std::make_shared<LocaliseArguments>();
   CLI::App* app = program.add_subcommand("localise", "find the path of a camera in a finished map");
   arguments->recording.add_to(*app, "folder of the recording, OpenNI2 device or .oni file");
-  app->add_option("--in", arguments->map, "the map: a folder that 'map' wrote, or map.db")
+  app->add_option("--in", arguments->map,
+                  "the map: a folder that 'map' or 'merge' wrote, or map.db")
       ->required();
   app->add_option("--out", arguments->out, "folder for the result")->required();
+  app->add_flag("--poses", arguments->poses,
+                "print the pose of each frame as soon as it is known, as a line of a trajectory");
   add_start_option(*app, arguments->start);
   add_method_option(*app, arguments->method);
   arguments->common.add_to(*app);

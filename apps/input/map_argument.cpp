@@ -33,6 +33,22 @@ void refuse_to_replace(const std::filesystem::path& map_file, const std::filesys
                    "give another --out");
 }
 
+void refuse_to_replace_grown_map(const std::filesystem::path& out) {
+  const std::filesystem::path file = out / map_file_name;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return;
+  std::size_t recordings = 0;
+  try {
+    recordings = MapStore::open(file).content().recordings.size();
+  } catch (const InputError&) {
+    return;  // nothing that could be used is lost
+  }
+  if (recordings <= 1) return;
+  throw UsageError(file.string() + ": is a map of " + std::to_string(recordings) +
+                   " recordings, which the result would replace; give another --out, or remove it "
+                   "if it is not needed");
+}
+
 bool is_map(const std::filesystem::path& argument) {
   std::error_code error;
   if (!std::filesystem::is_directory(argument, error)) return argument.extension() == ".db";

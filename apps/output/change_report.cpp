@@ -66,7 +66,7 @@ Json changes_json(const std::vector<MapChange>& changes,
   for (const MapChange& change : changes) {
     Json json{{"kind", name_of(change.kind)},
               {"recording", change.recording},
-              {"since", recording_of(change, recordings).added},
+              {"noticed", recording_of(change, recordings).added},
               {"points", point_count(change)},
               {"before", box_json(change.before)},
               {"after", box_json(change.after)}};
@@ -84,7 +84,7 @@ void print_changes(const std::vector<MapChange>& changes,
   constexpr std::size_t most_printed = 20;
   for (std::size_t i = 0; i < std::min(most_printed, changes.size()); ++i) {
     const MapChange& change = changes[i];
-    std::printf("%s since %s: %s %s\n", std::string(name_of(change.kind)).c_str(),
+    std::printf("%s, noticed %s: %s %s\n", std::string(name_of(change.kind)).c_str(),
                 recording_of(change, recordings).added.c_str(),
                 counted(point_count(change), "point").c_str(), told_place(change).c_str());
   }
@@ -95,7 +95,7 @@ void print_changes(const std::vector<MapChange>& changes,
 
 PageTable change_table(const std::vector<MapChange>& changes,
                        const std::vector<MapRecording>& recordings) {
-  PageTable table{{"", "since", "points", "where, m"}, {}};
+  PageTable table{{"", "noticed", "points", "where, m"}, {}};
   for (const MapChange& change : changes) {
     table.rows.push_back({std::string(name_of(change.kind)), recording_of(change, recordings).added,
                           std::to_string(point_count(change)), told_place(change)});

@@ -91,7 +91,8 @@ fs::path copied(const fs::path& file, const fs::path& copy) {
   std::error_code error;
   fs::copy_file(file, copy, error);
   if (error) {
-    throw InputError(copy.string() + ": cannot be written (" + error.message() + ")");
+    throw InputError(copy.string() + ": cannot be written (" + error.message() +
+                     "); is the disk full?");
   }
   fs::permissions(copy, fs::perms::owner_write, fs::perm_options::add, error);
   return copy;
@@ -107,7 +108,9 @@ void check_base(const std::vector<MapRecording>& recordings, const fs::path& ont
   };
   if (std::ranges::equal(std::span(recordings).first(recordings.size() - 1), base, is_same)) return;
   throw InputError(onto.empty() ? "the interrupted run extends a map, which --onto must name"
-                                : "the interrupted run does not extend " + onto.string());
+                                : "the interrupted run does not extend " + onto.string() +
+                                      " as it is now; it extends another map, or that has been "
+                                      "extended since");
 }
 
 std::optional<Verdict> verdict_named(const std::string& name) {

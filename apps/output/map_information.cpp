@@ -6,6 +6,7 @@
 #include "output/change_report.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <set>
 
@@ -19,17 +20,24 @@ namespace {
 
 constexpr double bytes_per_megabyte = 1e6;
 
+/// A text from a file, which may be from anyone, without what would control the terminal.
+std::string printable(std::string text) {
+  std::ranges::replace_if(
+      text, [](unsigned char letter) { return std::iscntrl(letter) != 0; }, '?');
+  return text;
+}
+
 void print_recordings(const MapContent& content) {
   for (int i = 0; i < std::ssize(content.recordings); ++i) {
     const MapRecording& recording = content.recordings[static_cast<std::size_t>(i)];
     const auto frames = std::ranges::count(content.frames, i, &RegisteredFrame::recording);
     const auto keyframes = std::ranges::count(content.keyframes.all(), i, &Keyframe::recording);
     std::printf("recording %d: %s, %s, %s, %s, tofmap %s\n", i,
-                recording.source.empty() ? "unknown source" : recording.source.c_str(),
-                recording.added.empty() ? "unknown date" : recording.added.c_str(),
+                recording.source.empty() ? "unknown source" : printable(recording.source).c_str(),
+                recording.added.empty() ? "unknown date" : printable(recording.added).c_str(),
                 counted(static_cast<std::size_t>(frames), "frame").c_str(),
                 counted(static_cast<std::size_t>(keyframes), "keyframe").c_str(),
-                recording.version.c_str());
+                printable(recording.version).c_str());
   }
 }
 

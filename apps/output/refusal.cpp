@@ -3,6 +3,8 @@
 
 #include "output/refusal.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <tofmap/core/text.hpp>
@@ -37,15 +39,24 @@ std::string told_nearness(const MapNearness& nearness) {
       told(nearness.obstacle));
 }
 
-std::string told_refusal(const MapNearness& nearness, std::size_t frames) {
-  const std::string refused = fmt::format(
-      "none of {} could be found in the map, which stays as it was: ", counted(frames, "frame"));
-  if (nearness.keyframes == 0) {
+std::string told_refusal(const MapNearness& nearness, std::span<const FrameRecord> frames,
+                         bool has_start) {
+  const std::string refused =
+      fmt::format("none of {} could be found in the map, which stays as it was: ",
+                  counted(frames.size(), "frame"));
+  const auto is_registered = [](const FrameRecord& frame) { return frame.tracking.registered(); };
+  if (std::ranges::none_of(frames, is_registered)) {
     return refused +
-           "too few of them could be registered with each other to compare them; 'tofmap "
-           "map' of the recording by itself says why";
+           "no frame has enough surface; is the camera covered, or are the phase images "
+           "mislabelled? 'tofmap info' prints more about the recording";
+  }
+  if (nearness.keyframes == 0 && has_start) {
+    return refused + "it shows nothing within reach of --start; correct that, or leave it out";
   }
   const std::string near = refused + told_nearness(nearness);
+  if (nearness.keyframes < static_cast<int>(least_agreeing_keyframes)) {
+    return near + ". The camera hardly moved; move it by half a metre, or turn it by 30 degrees";
+  }
   if (nearness.obstacle == JoinObstacle::ambiguous) {
     return near + "; say where the camera begins with --start";
   }

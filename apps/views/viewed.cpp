@@ -156,6 +156,9 @@ std::unique_ptr<Viewed> open_viewed(const ViewRequest& request, const ProgramOpt
     if (request.cameras) {
       throw UsageError("--cameras is for maps, and " + path.string() + " is a recording");
     }
+    if (request.keyframe) {
+      throw UsageError("--keyframe is for maps, and " + path.string() + " is a recording");
+    }
     return view_recording(request, options);
   }
   if (const auto files = maps_of_methods(path); !files.empty()) {
@@ -164,7 +167,8 @@ std::unique_ptr<Viewed> open_viewed(const ViewRequest& request, const ProgramOpt
   if (fs::exists(path / map_file_name)) return view_map_or_mesh(request, path / map_file_name);
   throw InputError(
       path.string() +
-      ": contains no map.ply, merged.ply, sequence.yaml or METHOD/map.ply; nothing to view");
+      ": contains no map.ply, merged.ply, map.db, sequence.yaml or METHOD/map.ply; nothing to "
+      "view");
 }
 
 }  // namespace tofmap::app

@@ -53,6 +53,11 @@ class ReusedMap : public testing::Test {
     return at(name);
   }
 
+  /// The address of a device that plays a recording. Frames are made when they are asked for.
+  std::string device_of(const std::string& recording) const {
+    return "tofmap://" + made(recording) + "?speed=-1";
+  }
+
   void simulate(const std::string& scene, const std::string& name,
                 const std::vector<std::string>& options) const {
     std::vector<std::string> arguments{"simulate",
@@ -106,6 +111,29 @@ TEST_F(ReusedMap, TellsWhereACameraIs) {
   }
 }
 
+TEST_F(ReusedMap, TellsAProgramWhereADeviceIs) {
+  const test::Finished found =
+      run({"localise", device_of("second"), "--in", made("map_first"), "--poses"}, "found");
+  ASSERT_EQ(found.status, 0) << found.err;
+  const std::string printed = at("printed.txt");
+  std::ofstream(printed) << found.out;
+  // Less is known while the camera moves than at the end.
+  const Trajectory live = read_trajectory(printed);
+  const Trajectory final = read_trajectory(at("found/trajectory.txt"));
+  EXPECT_EQ(live.size(), frames);
+  ASSERT_EQ(live.size(), final.size());
+  for (std::size_t i = 0; i < live.size(); ++i) {
+    EXPECT_EQ(live[i].timestamp_s, final[i].timestamp_s);
+    EXPECT_LT(twist_between(live[i].world_from_camera, final[i].world_from_camera).norm(), 0.05);
+  }
+}
+
+TEST_F(ReusedMap, IsExtendedByADevice) {
+  expect_success(run({"map", device_of("second"), "--onto", made("map_first")}, "extended"));
+  EXPECT_EQ(query("extended", "SELECT COUNT(*) FROM recordings"), "2\n");
+  EXPECT_EQ(read_trajectory(at("extended/trajectory.txt")).size(), frames);
+}
+
 TEST_F(ReusedMap, IsExtendedByAnotherRecording) {
   made("extended");
   EXPECT_THAT(test::names_in(made("extended")),
@@ -142,6 +170,20 @@ TEST_F(ReusedMap, IsNotReplacedByAResultThatIsNoMapOfIt) {
   }
 }
 
+TEST_F(ReusedMap, IsNotReplacedByAMapOfOneRecordingOnceItHasSeveral) {
+  made("extended");
+  const test::Finished refused = run({"map", made("second")}, "extended");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("is a map of 2 recordings"));
+  EXPECT_EQ(query("extended", "SELECT COUNT(*) FROM recordings"), "2\n");
+}
+
+TEST_F(ReusedMap, IsNotExtendedByARecordingThatItHas) {
+  const test::Finished refused = run({"map", made("first"), "--onto", made("map_first")}, "twice");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("would count twice"));
+}
+
 TEST_F(ReusedMap, IsMergedWithAnotherOneInAnyOrder) {
   for (const auto& [one, other] :
        {std::pair("map_first", "map_second"), std::pair("map_second", "map_first")}) {
@@ -176,6 +218,9 @@ TEST_F(ReusedMap, MayBeToldWhereTheCameraBegins) {
   expect_success(localise("0.1,0,0.1", "started_at_position"));
   EXPECT_EQ(localise("20,0,20", "started_elsewhere").status, 3);
   EXPECT_EQ(localise("0,0,0,0,1,0,0", "started_backwards").status, 3);
+  const test::Finished of_no_map = run({"map", made("second"), "--start", "0"}, "started_anew");
+  EXPECT_EQ(of_no_map.status, 2);
+  EXPECT_THAT(of_no_map.err, HasSubstr("--onto"));
   const test::Finished unknown = localise("1000", "started_nowhere");
   EXPECT_NE(unknown.status, 0);
   EXPECT_THAT(unknown.err, HasSubstr("1000"));
@@ -186,7 +231,7 @@ TEST_F(ReusedMap, IsToldWhatIsInIt) {
   ASSERT_EQ(told.status, 0) << told.err;
   EXPECT_THAT(told.out, AllOf(HasSubstr("recording 0: " + made("first")),
                               HasSubstr("recording 1: " + made("second")), HasSubstr("36 frames"),
-                              HasSubstr("new since ")));
+                              HasSubstr("new, noticed ")));
 }
 
 TEST_F(ReusedMap, ShowsItsKeyframes) {

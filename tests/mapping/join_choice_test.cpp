@@ -7,6 +7,8 @@
 #include "tofmap/mapping/odometry.hpp"
 #include "tofmap/mapping/room_mapper.hpp"
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -19,6 +21,7 @@ class MapsOfOneRoom : public testing::Test {
  protected:
   static constexpr int begins[] = {100, 130};
   static constexpr int frames = 50;
+  static constexpr int map_alike = 2;
 
   MapsOfOneRoom() {
     for (int map = 0; map < 2; ++map) add_map(map);
@@ -37,14 +40,17 @@ class MapsOfOneRoom : public testing::Test {
     }
   }
 
-  /// Recognitions, with an error, by the first `count` keyframes of the second map.
-  std::vector<PoseEdge> recognitions(std::size_t count, const Eigen::Vector3d& error_m) const {
+  /// Recognitions, with an error, of a keyframe of the first map by the first `count` keyframes of
+  /// the second one.
+  std::vector<PoseEdge> recognitions(std::size_t count, const Eigen::Vector3d& error_m,
+                                     int from = 3) const {
     std::vector<PoseEdge> edges;
     for (const Keyframe& keyframe : keyframes_) {
       if (keyframe.map == 0 || edges.size() >= count) continue;
-      PoseEdge edge{.from = 3, .to = keyframe.id, .may_be_wrong = true};
+      PoseEdge edge{.from = from, .to = keyframe.id, .may_be_wrong = true};
       edge.from_from_to =
-          room_.pose(keyframes_[3].frame_index).inverse() * room_.pose(keyframe.frame_index);
+          room_.pose(keyframes_[static_cast<std::size_t>(from)].frame_index).inverse() *
+          room_.pose(keyframe.frame_index);
       edge.from_from_to.translation() += error_m;
       edge.covariance = 1e-6 * Eigen::Matrix<double, 6, 6>::Identity();
       edges.push_back(edge);
@@ -57,11 +63,38 @@ class MapsOfOneRoom : public testing::Test {
                              {keyframes_, room_.camera(), spacing_, loops_, registration_});
   }
 
-  /// The choice while the second recording goes on.
-  JoinChoice choose(const std::vector<PoseEdge>& edges) const {
-    return choose_join(1, edges, edges, [](const MapJoin&) { return true; },
+  /// The choice while the second recording goes on, if all recognitions are sure.
+  JoinChoice choose(const std::vector<PoseEdge>& edges) const { return choose(edges, edges); }
+
+  JoinChoice choose(const std::vector<PoseEdge>& sure,
+                    const std::vector<PoseEdge>& possible) const {
+    return choose_join(1, sure, possible, [](const MapJoin&) { return true; },
                        {keyframes_, room_.camera(), spacing_, loops_, registration_});
   }
+
+  /// Adds a map of another room, which looks as the first one does.
+  void add_room_alike() {
+    const std::vector<Keyframe> before = keyframes_;
+    for (Keyframe keyframe : before) {
+      if (keyframe.map != 0) continue;
+      keyframe.id = static_cast<int>(keyframes_.size());
+      keyframe.map = map_alike;
+      keyframes_.push_back(std::move(keyframe));
+    }
+  }
+
+  /// The recognitions, and as many in the room that looks alike.
+  std::vector<PoseEdge> recognitions_in_both(std::size_t count) const {
+    std::vector<PoseEdge> edges = recognitions(count, {0, 0, 0});
+    const auto alike = std::ranges::find(keyframes_, map_alike, &Keyframe::map);
+    for (PoseEdge edge : recognitions(count, {0, 0, 0})) {
+      edge.from += alike->id;
+      edges.push_back(edge);
+    }
+    return edges;
+  }
+
+  Pose true_join() const { return room_.pose(begins[0]).inverse() * room_.pose(begins[1]); }
 
   test::Scenery room_{"room"};
   KeyframeSpacing spacing_{OdometryOptions().keyframe_translation_m,
@@ -77,8 +110,7 @@ TEST_F(MapsOfOneRoom, AreJoinedWhereTwoKeyframesAgreeAndOthersConfirm) {
   EXPECT_EQ(join->into, 0);
   EXPECT_EQ(join->map, 1);
   EXPECT_GT(join->edges.size(), 2U);
-  const Pose truth = room_.pose(begins[0]).inverse() * room_.pose(begins[1]);
-  EXPECT_LT((join->into_from_map.translation() - truth.translation()).norm(), 0.01);
+  EXPECT_LT((join->into_from_map.translation() - true_join().translation()).norm(), 0.01);
 }
 
 TEST_F(MapsOfOneRoom, AreNotJoinedWhereOthersDoNotConfirm) {
@@ -92,8 +124,18 @@ TEST_F(MapsOfOneRoom, AreJoinedAtTheRightOneOfTwoPlaces) {
   for (const PoseEdge& edge : recognitions(2, {0, 0, 0})) edges.push_back(edge);
   const auto join = find(edges);
   ASSERT_TRUE(join);
-  const Pose truth = room_.pose(begins[0]).inverse() * room_.pose(begins[1]);
-  EXPECT_LT((join->into_from_map.translation() - truth.translation()).norm(), 0.01);
+  EXPECT_LT((join->into_from_map.translation() - true_join().translation()).norm(), 0.01);
+}
+
+TEST_F(MapsOfOneRoom, AreJoinedEvenIfOneKeyframeRecognisesAWrongPlaceByManyOthers) {
+  std::vector<PoseEdge> edges = recognitions(2, {0, 0, 0});
+  for (const int from : {2, 3, 4}) {
+    // Along the axes of the keyframe that it was recognised by: nearly the same place for all.
+    edges.push_back(recognitions(1, {1.5, 0, 0}, from).front());
+  }
+  const auto join = find(edges);
+  ASSERT_TRUE(join);
+  EXPECT_LT((join->into_from_map.translation() - true_join().translation()).norm(), 0.01);
 }
 
 TEST_F(MapsOfOneRoom, AwaitSixKeyframesThatAgreeWhileTheRecordingGoesOn) {
@@ -109,6 +151,33 @@ TEST_F(MapsOfOneRoom, AreNotJoinedWhereKeyframesAgreeButContradictThePlace) {
   const JoinChoice choice = choose(recognitions(6, {1.5, 0, 0}));
   EXPECT_FALSE(choice.join);
   EXPECT_EQ(choice.obstacle, JoinObstacle::contradicted);
+}
+
+TEST_F(MapsOfOneRoom, AreJoinedAtAPlaceThatIsLessSureIfTheSureOneIsContradicted) {
+  std::vector<PoseEdge> possible = recognitions(6, {1.5, 0, 0});
+  for (const PoseEdge& edge : recognitions(6, {0, 0, 0})) possible.push_back(edge);
+  const JoinChoice choice = choose(recognitions(6, {1.5, 0, 0}), possible);
+  ASSERT_TRUE(choice.join);
+  EXPECT_EQ(choice.obstacle, JoinObstacle::none);
+  EXPECT_LT((choice.join->into_from_map.translation() - true_join().translation()).norm(), 0.01);
+}
+
+TEST_F(MapsOfOneRoom, AreNotJoinedWherePlacesLookAlike) {
+  add_room_alike();
+  const std::vector<PoseEdge> edges = recognitions_in_both(6);
+  const JoinChoice choice = choose(edges);
+  EXPECT_FALSE(choice.join);
+  EXPECT_EQ(choice.obstacle, JoinObstacle::ambiguous);
+  EXPECT_FALSE(find(edges));
+}
+
+TEST_F(MapsOfOneRoom, AreJoinedAtTheOneOfTwoPlacesAlikeWhereTheCameraCanHaveCome) {
+  add_room_alike();
+  const auto join = find_certain_join(
+      1, recognitions_in_both(6), [](const MapJoin& place) { return place.into == map_alike; },
+      {keyframes_, room_.camera(), spacing_, loops_, registration_});
+  ASSERT_TRUE(join);
+  EXPECT_EQ(join->into, map_alike);
 }
 
 TEST_F(MapsOfOneRoom, AreNotJoinedWhereTheCameraCannotHaveCome) {

@@ -102,7 +102,7 @@ TEST_F(MergedRoom, RefusesMapsThatDoNotGoTogether) {
     }
     return "";
   };
-  EXPECT_THAT(complaint({part(0), part(0)}), HasSubstr("in two of the maps"));
+  EXPECT_THAT(complaint({part(0), part(0)}), HasSubstr("have a recording in common"));
   SurfaceMapOptions coarse;
   coarse.voxel_m = 0.1;
   EXPECT_THAT(complaint({part(0), mapped(room_, 100, 110, "coarse", coarse)}),

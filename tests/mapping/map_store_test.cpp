@@ -3,6 +3,7 @@
 
 #include "tofmap/mapping/map_store.hpp"
 
+#include "state_json.hpp"
 #include "support/scenery.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -322,6 +323,7 @@ TEST_F(StoredMap, IsRefusedIfItsTablesContradictEachOther) {
       "UPDATE keyframes SET rotation = zeroblob(72) WHERE id = 1",
       "UPDATE keyframes SET rotation = x'00' WHERE id = 1",
       "UPDATE keyframes SET x_m = 1e300 WHERE id = 1",
+      "UPDATE keyframes SET x_m = 1e6 WHERE id = 1",
       "UPDATE keyframes SET timestamp_s = 'now' WHERE id = 1",
       "UPDATE keyframes SET place = x'00' WHERE id = 1",
       "DELETE FROM clouds WHERE keyframe = 1",
@@ -334,6 +336,7 @@ TEST_F(StoredMap, IsRefusedIfItsTablesContradictEachOther) {
       "UPDATE constraints SET to_keyframe = 1000000 WHERE id = 0",
       "UPDATE constraints SET covariance = zeroblob(288) WHERE id = 0",
       "UPDATE links SET neighbour = 1000000 WHERE keyframe = 0",
+      "UPDATE links SET neighbour = keyframe WHERE keyframe = 0",
       "UPDATE frames SET keyframe = 1000000 WHERE id = 0",
       "UPDATE frames SET covariance = x'00' WHERE id = 0",
       "UPDATE recordings SET sensor = '{}'",
@@ -354,6 +357,15 @@ TEST_F(StoredMap, IsRefusedIfItsTablesContradictEachOther) {
     std::filesystem::remove(file());
     std::filesystem::copy_file(whole, file());
   }
+}
+
+TEST(StoredCovariance, IsOneThatNumbersCanBeComputedWith) {
+  using Covariance = Eigen::Matrix<double, 6, 6>;
+  EXPECT_NO_THROW(check_covariance(1e-6 * Covariance::Identity()));
+  EXPECT_NO_THROW(check_covariance(Covariance::Identity()));
+  EXPECT_THROW(check_covariance(1e-300 * Covariance::Identity()), InputError);
+  EXPECT_THROW(check_covariance(1e100 * Covariance::Identity()), InputError);
+  EXPECT_THROW(check_covariance(-1 * Covariance::Identity()), InputError);
 }
 
 }  // namespace

@@ -99,6 +99,17 @@ TEST(PathSmoothing, LeavesFramesWhereTheirSurfacesHoldThem) {
   EXPECT_NEAR(error_m(content, 35), 0.01, 0.001);
 }
 
+TEST(PathSmoothing, DoesNotBelieveOneFrameThatIsCertainWhereThoseBesideItAreNot) {
+  MapContent content = path(60);
+  for (int i = 31; i < 40; ++i) slide(content, i, -0.08);
+  for (const int i : {33, 37}) {
+    content.frames[static_cast<std::size_t>(i)].covariance = 1e-6 * Covariance::Identity();
+  }
+  smooth(content);
+  // They still count a little, and the motion holds frames less well than surfaces.
+  for (int i = 31; i < 40; ++i) EXPECT_LT(error_m(content, i), 0.02) << i;
+}
+
 TEST(PathSmoothing, KnowsThatTheMotionMayChangeInAGap) {
   // After two seconds without frames, the camera may be anywhere.
   MapContent content = path(60);

@@ -84,11 +84,12 @@ std::vector<MapJoin> JoinSearch::places(std::span<const PoseEdge> recognitions,
   std::vector<MapJoin> places;
   while (edges.size() >= least_of_place) {
     const auto agreeing = most_that_agree(edges, context_.keyframes, context_.loops);
-    if (recognising_keyframes(agreeing) < least_of_place) break;
-    places.push_back(join_by(agreeing, map_, context_.keyframes));
+    const MapJoin place = join_by(agreeing, map_, context_.keyframes);
     std::erase_if(edges, [&](const PoseEdge* edge) {
-      return is_at(*edge, places.back()) || std::ranges::count(agreeing, edge) > 0;
+      return is_at(*edge, place) || std::ranges::count(agreeing, edge) > 0;
     });
+    // A keyframe may recognise one place by several others.
+    if (recognising_keyframes(agreeing) >= least_of_place) places.push_back(place);
   }
   return places;
 }

@@ -33,6 +33,19 @@ std::set<int> earlier_maps(const MapContent& content) {
   return maps;
 }
 
+/// The first keyframe of each recording that has one.
+std::map<int, const Keyframe*> first_keyframes(const MapContent& content) {
+  std::map<int, const Keyframe*> firsts;
+  for (const Keyframe& keyframe : content.keyframes.all()) {
+    firsts.emplace(keyframe.recording, &keyframe);
+  }
+  return firsts;
+}
+
+bool are_of_one_frame(const Keyframe& one, const Keyframe& other) {
+  return one.frame_index == other.frame_index && one.place.difference(other.place) == 0;
+}
+
 /// The pose graph of one map.
 struct MapGraph {
   MapGraph(const MapContent& content, int map)
@@ -201,11 +214,34 @@ MapCloud surface_of(const MapContent& content, int map) {
                                        content.surface_options.voxel_m);
 }
 
-int localised_frames_of(const MapContent& content) {
+bool have_one_recording(const MapContent& one, const MapContent& other) {
+  const auto firsts = first_keyframes(other);
+  return std::ranges::any_of(first_keyframes(one), [&](const auto& first) {
+    return std::ranges::any_of(firsts, [&](const auto& of_other) {
+      return are_of_one_frame(*first.second, *of_other.second);
+    });
+  });
+}
+
+std::optional<int> repeated_recording(const MapContent& content) {
+  const auto firsts = first_keyframes(content);
+  const auto last = firsts.find(static_cast<int>(content.recordings.size()) - 1);
+  if (last == firsts.end()) return std::nullopt;
+  const auto repeated = std::find_if(firsts.begin(), last, [&](const auto& first) {
+    return are_of_one_frame(*first.second, *last->second);
+  });
+  return repeated == last ? std::nullopt : std::optional(repeated->first);
+}
+
+std::vector<const RegisteredFrame*> localised_frames_of(const MapContent& content) {
   const std::set<int> earlier = earlier_maps(content);
-  return static_cast<int>(std::ranges::count_if(content.frames, [&](const RegisteredFrame& frame) {
-    return is_of_last(frame, content) && earlier.contains(content.keyframes[frame.keyframe].map);
-  }));
+  std::vector<const RegisteredFrame*> localised;
+  for (const RegisteredFrame& frame : content.frames) {
+    if (is_of_last(frame, content) && earlier.contains(content.keyframes[frame.keyframe].map)) {
+      localised.push_back(&frame);
+    }
+  }
+  return localised;
 }
 
 std::vector<int> maps_of(const MapContent& content) {

@@ -106,6 +106,16 @@ class MapMerger {
   /// Joins a map if its places are recognised. Tells how near it came.
   bool join(const MapContent& added, const std::function<void()>& tell, MapNearness& nearness);
 
+  const MapContent& content() const { return content_; }
+
+  /// The first keyframe of the joined maps.
+  const Keyframe& first() const {
+    return *std::ranges::find(content_.keyframes.all(), map_, &Keyframe::map);
+  }
+
+  /// Moves the joined maps so that a keyframe of them gets this pose.
+  void move_to(int keyframe, const Pose& world_from_camera);
+
   MapContent take();
 
  private:
@@ -171,6 +181,11 @@ bool MapMerger::join(const MapContent& added, const std::function<void()>& tell,
   return true;
 }
 
+void MapMerger::move_to(int keyframe, const Pose& world_from_camera) {
+  const Pose before = content_.keyframes[keyframe].world_from_camera;
+  content_.keyframes.join(map_, map_, world_from_camera * before.inverse());
+}
+
 /// Searches loops between the keyframes from `first` on and those before.
 void MapMerger::close_loops(int first, const std::function<void()>& tell) {
   if (!loops_.close) return;
@@ -212,11 +227,38 @@ MapContent MapMerger::take() {
   return std::move(content_);
 }
 
+using Members = std::vector<std::size_t>;
+
+/// Maps that were joined with each other.
+struct Group {
+  MapMerger merger;
+  Members members;  ///< indices of the maps; the first one has the world of the group
+
+  bool join(Group& added, const std::function<void()>& tell, MapNearness& nearness);
+};
+
+/// Joins another group, which must not be used afterwards, if places are recognised: by its
+/// keyframes or, since places that look alike may be closer to the one than to the other, by those
+/// of this group.
+bool Group::join(Group& added, const std::function<void()>& tell, MapNearness& nearness) {
+  if (merger.content().keyframes.size() == 0) return false;  // of a run that was interrupted early
+  if (!merger.join(added.merger.content(), tell, nearness)) {
+    const int first = added.merger.content().keyframes.size() + merger.first().id;
+    const Pose world_from_first = merger.first().world_from_camera;
+    MapNearness reverse;
+    if (!added.merger.join(merger.content(), tell, reverse)) return false;
+    nearness = reverse;
+    merger = std::move(added.merger);
+    merger.move_to(first, world_from_first);
+  }
+  std::ranges::copy(added.members, std::back_inserter(members));
+  return true;
+}
+
 /// Throws UsageError if maps cannot be merged.
 void check_maps(const std::vector<MapContent>& maps) {
   if (maps.empty()) throw UsageError("there is no map to merge");
   const MapContent& first = maps.front();
-  std::set<std::pair<std::string, std::string>> recordings;
   for (std::size_t i = 0; i < maps.size(); ++i) {
     const MapContent& map = maps[i];
     if (!are_same_camera(first.camera, map.camera)) {
@@ -231,11 +273,12 @@ void check_maps(const std::vector<MapContent>& maps) {
           "m; make both with the same options",
           i + 1, map.surface_options.voxel_m, first.surface_options.voxel_m));
     }
-    for (const MapRecording& recording : map.recordings) {
-      if (recordings.emplace(recording.source, recording.added).second) continue;
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!have_one_recording(map, maps[j])) continue;
       throw UsageError(
-          fmt::format("the recording {} of {} is in two of the maps; give one of them only",
-                      recording.source, recording.added));
+          fmt::format("maps {} and {} have a recording in common, which would count twice; give "
+                      "one of them only",
+                      j + 1, i + 1));
     }
   }
 }
@@ -247,21 +290,39 @@ MergedMaps merge_maps(std::vector<MapContent> maps, const KeyframeSpacing& spaci
                       const std::function<void(std::size_t map)>& tell) {
   check_maps(maps);
   std::vector<MapNearness> nearness(maps.size());
-  std::vector<bool> is_joined(maps.size(), false);
-  is_joined.front() = true;
-  MapMerger merger(std::move(maps.front()), spacing, loops, registration);
-  for (bool has_grown = true; has_grown;) {
-    has_grown = false;
-    for (std::size_t i = 1; i < maps.size(); ++i) {
-      if (is_joined[i]) continue;
-      const auto tell_of_map = [&] {
-        if (tell) tell(i);
-      };
-      is_joined[i] = merger.join(maps[i], tell_of_map, nearness[i]);
-      has_grown = has_grown || is_joined[i];
-    }
+  std::vector<Group> groups;
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    groups.push_back({MapMerger(std::move(maps[i]), spacing, loops, registration), {i}});
   }
-  return {merger.take(), std::move(nearness), std::move(is_joined)};
+  std::set<std::pair<Members, Members>> tried;
+  const auto join = [&](Group& group, Group& added) {
+    if (!tried.emplace(group.members, added.members).second) return false;
+    const auto tell_of_map = [&] {
+      if (tell) tell(added.members.front());
+    };
+    MapNearness found;
+    const bool is_joined = group.join(added, tell_of_map, found);
+    if (&group == &groups.front()) {
+      for (const std::size_t i : added.members) nearness[i] = found;
+    }
+    return is_joined;
+  };
+  const auto grow = [&](Group& group) {
+    for (auto added = groups.begin() + (&group - groups.data()) + 1; added < groups.end();) {
+      if (join(group, *added)) {
+        groups.erase(added);
+        return true;
+      }
+      ++added;
+    }
+    return false;
+  };
+  // Only if nothing fits the first ones, others are joined with each other.
+  while (std::ranges::any_of(groups, grow)) continue;
+  MergedMaps merged{groups.front().merger.take(), std::move(nearness), {}};
+  merged.is_joined.resize(merged.nearness.size(), false);
+  for (const std::size_t i : groups.front().members) merged.is_joined[i] = true;
+  return merged;
 }
 
 }  // namespace tofmap

@@ -17,9 +17,13 @@ namespace tofmap {
 
 void check_covariance(const Eigen::Matrix<double, 6, 6>& covariance) {
   constexpr double rounding = 1e-6;
+  constexpr double least = 1e-18;  // of a nanometre: what is less can hardly be inverted
+  constexpr double most = 1e12;
   const bool is_symmetric =
       covariance.allFinite() && covariance.isApprox(covariance.transpose(), rounding);
-  if (!is_symmetric || covariance.llt().info() != Eigen::Success) {
+  const bool is_plausible =
+      covariance.diagonal().minCoeff() >= least && covariance.diagonal().maxCoeff() <= most;
+  if (!is_symmetric || !is_plausible || covariance.llt().info() != Eigen::Success) {
     throw InputError("a covariance is invalid");
   }
 }

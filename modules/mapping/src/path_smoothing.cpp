@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 namespace tofmap {
 namespace {
@@ -138,6 +139,32 @@ bool goes_on(std::span<const Step> path, const RegisteredFrame& frame) {
   return step_s <= longest_gap_periods * (path.back().frame->timestamp_s - before_last.timestamp_s);
 }
 
+/// The covariance of what two measurements, of which each may be missing, tell on average.
+Covariance mean_of(const Step* one, const Step* other) {
+  if (one == nullptr || other == nullptr) return (one ? one : other)->by_surfaces;
+  return 2 * (one->by_surfaces.inverse() + other->by_surfaces.inverse()).inverse();
+}
+
+/// From one frame to the next, a camera sees nearly the same. If the surfaces hold a frame in a
+/// direction in which they do not hold those beside it, it has probably been deceived: a few edges
+/// were taken for others. So a frame is as certain as those beside it, but for a factor.
+void distrust_lone_certainty(std::span<Step> path) {
+  constexpr double most_times_more_certain = 5;
+  const auto frame_at = [&](std::size_t i) {
+    return i < path.size() && !path[i].is_held ? &path[i] : nullptr;
+  };
+  std::vector<Covariance> doubts;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const Step* before = frame_at(i - 1);
+    const Step* after = frame_at(i + 1);
+    const bool is_alone = path[i].is_held || (before == nullptr && after == nullptr);
+    doubts.push_back(is_alone ? Covariance(Covariance::Zero()) : mean_of(before, after));
+  }
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    path[i].by_surfaces += doubts[i] / (most_times_more_certain * most_times_more_certain);
+  }
+}
+
 /// The paths of a recording: frames of one map that follow each other without a gap.
 std::vector<std::vector<Step>> paths_of(MapContent& content, int recording) {
   std::vector<std::vector<Step>> paths;
@@ -172,7 +199,8 @@ void correct(const Step& step, const Estimate& estimate, const KeyframeGraph& ke
 void smooth_path(MapContent& content, int recording, double rotation_sigma_rad,
                  double translation_sigma_m) {
   const MotionUncertainty motion(rotation_sigma_rad, translation_sigma_m);
-  for (const std::vector<Step>& path : paths_of(content, recording)) {
+  for (std::vector<Step>& path : paths_of(content, recording)) {
+    distrust_lone_certainty(path);
     for (std::size_t begin = 0; begin < path.size(); begin += frames_at_once) {
       const std::size_t end = std::min(begin + frames_at_once, path.size());
       const std::size_t before = begin - std::min(begin, frames_beside);

@@ -3,6 +3,7 @@
 
 #include "tofmap/mapping/place_descriptor.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -58,6 +59,11 @@ PlaceDescriptor place_from_bytes(std::string_view bytes) {
     throw InputError("the descriptor of a place has another size");
   }
   std::memcpy(place.log_range_.data(), bytes.data(), bytes.size());
+  constexpr float largest = 100;  // of the logarithm of a range
+  const auto is_plausible = [](float value) { return !(std::abs(value) > largest); };  // may be NaN
+  if (!std::ranges::all_of(place.log_range_, is_plausible)) {
+    throw InputError("the descriptor of a place has numbers that are not plausible");
+  }
   return place;
 }
 

@@ -127,7 +127,8 @@ inline Json json_of(const PoseEdge& edge) {
           {"may_be_wrong", edge.may_be_wrong}};
 }
 
-/// Throws InputError unless a matrix can be a covariance: symmetric and positive definite.
+/// Throws InputError unless a matrix can be the covariance of a pose: symmetric and positive
+/// definite, of variances that numbers can be computed with.
 void check_covariance(const Eigen::Matrix<double, 6, 6>& covariance);
 
 /// An edge between two of this many poses.

@@ -4,12 +4,12 @@
 #include "change_rows.hpp"
 
 #include "../state_json.hpp"
+#include "crc_sum.hpp"
+#include "insertion.hpp"
 #include "rows.hpp"
 
 #include <limits>
 #include <string>
-
-#include <zlib.h>
 
 #include <tofmap/core/bytes.hpp>
 
@@ -57,29 +57,24 @@ MapCloud cloud_in(std::string_view bytes, int recordings) {
 }  // namespace
 
 std::uint32_t checksum_of(std::span<const MapChange> changes) {
-  uLong checksum = crc32(0, nullptr, 0);
-  const auto add = [&](const std::string& bytes) {
-    checksum = crc32(checksum, reinterpret_cast<const Bytef*>(bytes.data()),
-                     static_cast<uInt>(bytes.size()));
-  };
+  CrcSum sum;
   for (const MapChange& change : changes) {
     ByteWriter out;
     out.number(static_cast<int>(change.kind));
     out.number(change.map);
     out.number(change.recording);
     out.numbers({change.after_from_before.data(), 16});
-    add(out.take());
-    add(bytes_of(change.before));
-    add(bytes_of(change.after));
+    sum.add(out.take());
+    sum.add(bytes_of(change.before));
+    sum.add(bytes_of(change.after));
   }
-  return static_cast<std::uint32_t>(checksum);
+  return sum.value();
 }
 
 void write_changes(std::span<const MapChange> changes, SQLite::Database& database) {
   database.exec("DELETE FROM changes");
-  std::string sql = "INSERT INTO changes VALUES (?";
-  for (int i = 1; i < Column::count; ++i) sql += ", ?";
-  SQLite::Statement row(database, sql + ")");
+  Insertion insertion(database, "changes", Column::count);
+  SQLite::Statement& row = insertion.statement;
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const MapChange& change = changes[i];
     // Parameters count from 1, columns from 0.
@@ -99,9 +94,7 @@ void write_changes(std::span<const MapChange> changes, SQLite::Database& databas
     const std::string after_bytes = bytes_of(change.after);
     bind_bytes(row, 1 + Column::before, before_bytes);
     bind_bytes(row, 1 + Column::after, after_bytes);
-    row.exec();
-    row.reset();
-    row.clearBindings();
+    insertion.execute();
   }
 }
 

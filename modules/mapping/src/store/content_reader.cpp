@@ -126,6 +126,7 @@ void read_links(SQLite::Database& database, MapContent& content) {
                       .registered = std::nullopt};
     constexpr int registered = 5;
     if (!row.isColumnNull(registered)) link.registered = spread_in(row, registered);
+    if (link.to == from) throw InputError("a keyframe is linked with itself");
     links[static_cast<std::size_t>(from)].push_back(link);
   });
   for (int id = 0; id < keyframes; ++id) {

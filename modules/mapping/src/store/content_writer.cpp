@@ -4,6 +4,7 @@
 #include "content_writer.hpp"
 
 #include "change_rows.hpp"
+#include "insertion.hpp"
 #include "rows.hpp"
 
 #include <algorithm>
@@ -39,26 +40,6 @@ bool is_same(const RegisteredFrame& one, const RegisteredFrame& other) {
          is_same(one.keyframe_from_camera, other.keyframe_from_camera) &&
          one.covariance == other.covariance;
 }
-
-/// A reusable statement.
-struct Insertion {
-  Insertion(SQLite::Database& database, const std::string& table, int columns)
-      : statement(database, text(table, columns)) {}
-
-  void execute() {
-    statement.exec();
-    statement.reset();
-    statement.clearBindings();
-  }
-
-  static std::string text(const std::string& table, int columns) {
-    std::string sql = "INSERT OR REPLACE INTO " + table + " VALUES (?";
-    for (int i = 1; i < columns; ++i) sql += ", ?";
-    return sql + ")";
-  }
-
-  SQLite::Statement statement;
-};
 
 /// Removes the rows whose number in a column is at least `first`, if there are any.
 void remove_from(SQLite::Database& database, const std::string& table, const std::string& column,

@@ -3,6 +3,8 @@
 
 #include "database.hpp"
 
+#include "crc_sum.hpp"
+#include "insertion.hpp"
 #include "schema.hpp"
 
 #include <array>
@@ -10,7 +12,6 @@
 #include <fstream>
 
 #include <sqlite3.h>
-#include <zlib.h>
 
 #include <tofmap/core/error.hpp>
 
@@ -19,6 +20,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int wait_for_lock_ms = 2000;
+
+constexpr const char* damaged_file =
+    "is damaged; map the recordings again, or use a copy of the file";
 
 /// Whether a database was left by a process that was to write it: changes may then be in a second
 /// file, the write-ahead log, and reading merges them. Byte 18 of the file says so.
@@ -43,10 +47,11 @@ int number_of(SQLite::Database& database, const char* pragma) {
 
 void check_version(SQLite::Database& database) {
   if (number_of(database, "PRAGMA application_id") != map_application_id) {
-    throw InputError("is an SQLite database, but not a map of tofmap");
+    throw InputError("is not a map of tofmap; give map.db, or the folder that holds it");
   }
   const int version = number_of(database, "PRAGMA user_version");
-  if (version < 1 || version > map_format_version) {
+  if (version < 1) throw InputError(damaged_file);
+  if (version > map_format_version) {
     throw InputError("is a map of version " + std::to_string(version) +
                      ", and this program reads versions up to " +
                      std::to_string(map_format_version) + "; install a newer version of tofmap");
@@ -57,7 +62,7 @@ void check_version(SQLite::Database& database) {
 void check_integrity(SQLite::Database& database) {
   SQLite::Statement pages(database, "PRAGMA quick_check(1)");
   if (!pages.executeStep() || pages.getColumn(0).getString() != "ok") {
-    throw InputError("is damaged; map the recordings again, or use a copy of the file");
+    throw InputError(damaged_file);
   }
   SQLite::Statement references(database, "PRAGMA foreign_key_check");
   if (references.executeStep()) {
@@ -75,9 +80,9 @@ class Checksum {
  public:
   void add(char type, std::string_view bytes) {
     const std::uint64_t length = bytes.size();
-    add_bytes({&type, 1});
-    add_bytes({reinterpret_cast<const char*>(&length), sizeof length});
-    add_bytes(bytes);
+    sum_.add({&type, 1});
+    sum_.add({reinterpret_cast<const char*>(&length), sizeof length});
+    sum_.add(bytes);
   }
 
   void add(const SQLite::Column& column) {
@@ -91,16 +96,10 @@ class Checksum {
     }
   }
 
-  std::string text() const { return std::to_string(sum_); }
+  std::string text() const { return std::to_string(sum_.value()); }
 
  private:
-  void add_bytes(std::string_view bytes) {
-    if (bytes.empty()) return;  // zlib would begin anew
-    sum_ =
-        crc32(sum_, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size()));
-  }
-
-  uLong sum_ = crc32(0, nullptr, 0);
+  CrcSum sum_;
 };
 
 /// A checksum of all rows of the tables but that of the checksum itself.
@@ -137,10 +136,10 @@ void check_checksum(SQLite::Database& database) {
 
 void seal(SQLite::Database& database) {
   unseal(database);
-  SQLite::Statement row(database, "INSERT INTO properties VALUES (?, ?)");
-  row.bind(1, checksum_name);
-  row.bind(2, checksum_of(database));
-  row.exec();
+  Insertion row(database, "properties", 2);
+  row.statement.bind(1, checksum_name);
+  row.statement.bind(2, checksum_of(database));
+  row.execute();
 }
 
 void unseal(SQLite::Database& database) {
@@ -154,7 +153,10 @@ std::string told(const SQLite::Exception& error) {
     case SQLITE_NOTADB:
       return "is not a map of tofmap; give map.db, or the folder that holds it";
     case SQLITE_CORRUPT:
-      return "is damaged; map the recordings again, or use a copy of the file";
+      return damaged_file;
+    case SQLITE_ERROR:  // a table is missing, or has other columns
+      return std::string("is damaged (") + error.what() +
+             "); map the recordings again, or use a copy of the file";
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
       return "is in use by another program that writes it; wait until that ends";
@@ -184,6 +186,7 @@ SQLite::Database create_database(const fs::path& file) {
 SQLite::Database open_database(const fs::path& file, bool is_locked) {
   if (!fs::exists(file)) throw InputError("does not exist; 'tofmap map' makes one");
   if (fs::is_directory(file)) throw InputError("is a folder; give the file map.db in it");
+  if (!fs::is_regular_file(file)) throw InputError("is no file; give map.db");
   const bool may_write = is_locked || has_write_ahead_log(file);
   SQLite::Database database(
       file.string(), may_write ? SQLite::OPEN_READWRITE : SQLite::OPEN_READONLY, wait_for_lock_ms);

@@ -6,6 +6,7 @@
 #include "content_reader.hpp"
 #include "content_writer.hpp"
 #include "database.hpp"
+#include "insertion.hpp"
 #include "rows.hpp"
 
 #include <limits>
@@ -167,10 +168,10 @@ void MapStore::Commit::write(const MapContent& content) {
 
 void MapStore::Commit::put(const std::string& name, std::string_view bytes) {
   naming_file(store_.file_->path, [&] {
-    SQLite::Statement row(store_.file_->database, "INSERT OR REPLACE INTO entries VALUES (?, ?)");
-    row.bind(1, name);
-    bind_bytes(row, 2, bytes);
-    row.exec();
+    Insertion row(store_.file_->database, "entries", 2);
+    row.statement.bind(1, name);
+    bind_bytes(row.statement, 2, bytes);
+    row.execute();
   });
 }
 
@@ -185,16 +186,14 @@ void MapStore::Commit::remove(const std::string& beginning) {
 
 void MapStore::Commit::put(std::span<const FrameRow> rows) {
   naming_file(store_.file_->path, [&] {
-    SQLite::Statement row(store_.file_->database,
-                          "INSERT OR REPLACE INTO tracking VALUES (?, ?, ?, ?, ?)");
+    Insertion row(store_.file_->database, "tracking", 5);
     for (const FrameRow& frame : rows) {
-      row.bind(1, frame.recording);
-      row.bind(2, frame.frame);
-      row.bind(3, frame.timestamp_s);
-      row.bind(4, frame.status);
-      row.bind(5, frame.details);
-      row.exec();
-      row.reset();
+      row.statement.bind(1, frame.recording);
+      row.statement.bind(2, frame.frame);
+      row.statement.bind(3, frame.timestamp_s);
+      row.statement.bind(4, frame.status);
+      row.statement.bind(5, frame.details);
+      row.execute();
     }
   });
 }

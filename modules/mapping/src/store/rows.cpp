@@ -16,6 +16,9 @@ namespace {
 
 constexpr int translation_columns = 3;
 
+/// Larger coordinates are damage. Voxels of a centimetre reach as far.
+constexpr double farthest_position_m = 1e4;
+
 }  // namespace
 
 void bind_pose(SQLite::Statement& statement, int first, const Pose& pose) {
@@ -35,6 +38,9 @@ Pose pose_in(SQLite::Statement& row, int first) {
   Pose pose = Pose::Identity();
   for (int axis = 0; axis < translation_columns; ++axis) {
     pose.translation()[axis] = number_in(row, first + axis);
+    if (std::abs(pose.translation()[axis]) > farthest_position_m) {
+      throw InputError("a position is more than 10 km from the origin");
+    }
   }
   Eigen::Matrix3d matrix;
   read_numbers(row, first + pose_columns - 1, matrix.data(), static_cast<int>(matrix.size()));

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -84,13 +85,22 @@ int largest_map(const MapContent& content);
 /// The pose of a frame in the world of its map.
 Pose pose_of(const RegisteredFrame& frame, const KeyframeGraph& keyframes);
 
+/// Whether two maps have a recording in common: one whose first keyframes are of the same frame and
+/// look the same to the bit, which noise does not allow otherwise.
+bool have_one_recording(const MapContent& one, const MapContent& other);
+
+/// The earlier recording of a map that the last one repeats, by the same rule. Empty if it repeats
+/// none.
+std::optional<int> repeated_recording(const MapContent& content);
+
 /// The numbers of the maps in which frames of the last recording are registered: first those of
 /// earlier recordings that they extend, then the others, each time that with the most of these
 /// frames first. Empty if there are none.
 std::vector<int> maps_of(const MapContent& content);
 
-/// Number of frames of the last recording that are registered in maps of earlier ones.
-int localised_frames_of(const MapContent& content);
+/// The frames of the last recording that are registered in maps of earlier ones, in order. The
+/// pointers are valid until `content` changes.
+std::vector<const RegisteredFrame*> localised_frames_of(const MapContent& content);
 
 /// Poses of the frames of a recording that are registered in a map, from the current poses of their
 /// keyframes.

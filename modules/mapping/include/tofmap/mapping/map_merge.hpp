@@ -26,9 +26,11 @@ struct MergedMaps {
 ///
 /// The keyframes of each map are compared with those of the maps that are joined already. Maps are
 /// joined where places are recognised with certainty (choose_join() or find_certain_join()).
-/// `spacing` is the distance at which the keyframes were taken. Those that fit nowhere are tried
-/// again when others were joined. Loops between the maps then correct the poses of all keyframes.
-/// The world frame is that of the first map. Recordings are put in the order of their dates.
+/// `spacing` is the distance at which the keyframes were taken. Those that do not fit the first one
+/// are tried again when others were joined, and if none fits, are joined with each other first: two
+/// maps may have too little in common with the first one, and together enough. Loops between the
+/// maps then correct the poses of all keyframes. The world frame is that of the first map.
+/// Recordings are put in the order of their dates.
 ///
 /// Of a map that consists of several that could not be joined, the one with the most keyframes is
 /// joined; the others stay separate.

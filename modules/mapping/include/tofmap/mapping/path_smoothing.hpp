@@ -11,6 +11,10 @@ namespace tofmap {
 /// through the frames before and after it. When frames were tracked, only the motion before them
 /// was known, and keyframes may have been moved by loops since.
 ///
+/// A frame counts as at most five times as certain, in each direction, as the frames beside it: a
+/// camera sees nearly the same from one frame to the next, and what holds a single frame in a
+/// direction is probably an edge that was taken for another.
+///
 /// RegisteredFrame::covariance must be what the surfaces alone tell; it becomes that of the
 /// smoothed pose. The sigmas are the largest standard deviations of MotionUncertainty. A
 /// fixed-interval smoother (Rauch, Tung and Striebel, AIAA Journal 1965) for constant velocity,

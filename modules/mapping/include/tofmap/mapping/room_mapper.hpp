@@ -9,6 +9,8 @@
 #include <vector>
 
 #include <tofmap/mapping/camera_travel.hpp>
+#include <tofmap/mapping/join_choice.hpp>
+#include <tofmap/mapping/join_evidence.hpp>
 #include <tofmap/mapping/loop_options.hpp>
 #include <tofmap/mapping/map_content.hpp>
 #include <tofmap/mapping/map_join.hpp>
@@ -116,8 +118,8 @@ class RoomMapper {
   /// How near the frames came to being found in the finished map.
   const MapNearness& nearness() const { return nearness_; }
 
-  /// localised_frames_of() the map so far.
-  int localised_frames() const { return localised_frames_of(content_); }
+  /// Number of localised_frames_of() the map so far.
+  int localised_frames() const { return static_cast<int>(localised_frames_of(content_).size()); }
 
   /// Registers a frame. If that succeeds, adds its surface to the map and, if it becomes a
   /// keyframe, searches for a loop. Frames must come in the order of time.
@@ -164,15 +166,6 @@ class RoomMapper {
   /// other, and are fitted together.
   static constexpr int keyframes_between_fits = 10;
 
-  /// What keyframes of the newest map tell about a join with another one.
-  struct JoinEvidence {
-    int compared = 0;   ///< number of keyframes that see what the other map sees
-    int differing = 0;  ///< number of those that differ from it
-
-    /// Adds a keyframe: whether it differs. Empty if it sees nothing of what the other map sees.
-    void add(std::optional<bool> differs);
-  };
-
   std::span<const RegisteredFrame> own_frames() const;
   bool is_of_another_place(const RegistrationTarget& frame, const Keyframe& other) const;
   TrackingResult track(NewFrame& frame);
@@ -184,6 +177,7 @@ class RoomMapper {
   void close_loops();
   void recognise_place();
   bool agrees_with_start(const MapJoin& join) const;
+  IsPossibleJoin possible_after(std::span<const Stretch> travelled) const;
   std::vector<Stretch> stretches() const;
   void recognise_among(const Keyframe& keyframe, std::vector<const Keyframe*> candidates,
                        const IsPossiblePlace& is_possible);
