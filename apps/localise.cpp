@@ -52,7 +52,7 @@ std::string status_of(const FrameRecord& record) {
   return absence ? std::string(name_of(*absence)) : "elsewhere";
 }
 
-Json frame_json(const FrameRecord& record, const LocalisedFrame* localised) {
+Json localised_frame_json(const FrameRecord& record, const LocalisedFrame* localised) {
   Json json{{"index", record.index}, {"timestamp", record.timestamp_s}};
   if (localised == nullptr) {
     json["status"] = status_of(record);
@@ -78,7 +78,7 @@ Json report_json(const Localisation& result, const std::vector<MapRecording>& re
   auto next = result.localised.begin();
   for (const FrameRecord& record : result.frames) {
     const bool is_localised = next != result.localised.end() && next->index == record.index;
-    report["frames"].push_back(frame_json(record, is_localised ? &*next : nullptr));
+    report["frames"].push_back(localised_frame_json(record, is_localised ? &*next : nullptr));
     if (is_localised) ++next;
   }
   return report;
