@@ -120,11 +120,12 @@ bool localise_frames(MapRun& run, MapInput& input, PosePrinter* printer, bool qu
   bool are_read = true;
   MapHooks hooks;
   hooks.keep_going = [&](int done) {
-    if (printer != nullptr) are_read = printer->print_new(run.mapper().content());
-    const int localised = run.mapper().localised_frames();
-    progress.show(done, done == 0        ? ""
-                        : localised == 0 ? "not found yet"
-                                         : std::to_string(localised) + " localised");
+    const MapContent& content = run.mapper().content();
+    const auto localised = localised_frames_of(content);
+    if (printer != nullptr) are_read = printer->print_new(localised, content.keyframes);
+    progress.show(done, done == 0           ? ""
+                        : localised.empty() ? "not found yet"
+                                            : std::to_string(localised.size()) + " localised");
     return are_read && !is_interrupted();
   };
   run.advance(input.frames(), hooks);

@@ -133,7 +133,8 @@ void map_frames(MapRun& run, MapInput& input, MapFile& file, MapOutput& output, 
   Progress progress("mapping frame", input.frames().frame_count(), output.choices.quiet);
   MapHooks hooks;
   hooks.keep_going = [&](int done) {
-    refuse_repetition(run.mapper().content(), output.choices.onto);
+    const std::filesystem::path& onto = output.choices.onto;
+    if (!onto.empty()) refuse_repetition(run.mapper().content(), onto);
     file.store_if_due(run, output.sample, input, output.options.pipeline);
     const std::string status = status_line(run, input);
     progress.show(done, status);

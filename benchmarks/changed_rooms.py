@@ -28,14 +28,13 @@ python3-scipy and python3-opencv.
 import argparse
 import json
 import pathlib
-import shutil
 
 import cv2
 import numpy
 import scipy.spatial
 from scipy.spatial.transform import Rotation
 
-from recording import frames, rays, run
+from recording import frames, make, rays
 from surface import PLY_TYPES, Surface, read_ply, thinned
 
 SCENES = ["wall", "room", "slope", "hall", "corridor", "flat", "passage", "atrium", "beyond",
@@ -43,16 +42,6 @@ SCENES = ["wall", "room", "slope", "hall", "corridor", "flat", "passage", "atriu
 NEAR_M = 0.06  # one and a half voxels of the map: as far as the mean of a voxel may be off
 FREE_M = 0.02  # a range that is longer by this much passes a surface
 LEAST_VIEWS = 3
-
-
-def make(folder, *command):
-    """Makes a folder by a command, unless it is there."""
-    if folder.exists():
-        return
-    unfinished = folder.with_suffix(".unfinished")
-    shutil.rmtree(unfinished, ignore_errors=True)
-    run(*command, "--out", unfinished, "--quiet")
-    unfinished.rename(folder)
 
 
 def poses(file):
@@ -265,8 +254,8 @@ def evaluate(tofmap, folder, scene, seed, arguments):
     near = right_near_keyframes(first, maps["first"], second, maps["found"])
     points, right, truth, recalled = changes(first, second, maps, world)
     moved = moved_pieces(second, maps["onto"])
-    print(f"{scene:9} {seed:4} {found[0]:6.1f} {found[1]:6.1f} {near:6.1f} {found[2]:6.1f} {found[3]:5.2f} "
-          f"{percent(right, points):6.1f} {percent(recalled, truth):6.1f} {points:7} {truth:7} "
+    print(f"{scene:9} {seed:4} {found[0]:6.1f} {found[1]:6.1f} {near:6.1f} {found[2]:6.1f} "
+          f"{found[3]:5.2f} {percent(right, points):6.1f} {percent(recalled, truth):6.1f} {points:7} {truth:7} "
           f"{moved[0]:3} {moved[1]:3}", flush=True)
 
 

@@ -28,7 +28,7 @@ import sqlite3
 import numpy
 from scipy.spatial.transform import Rotation
 
-from recording import best_alignment, frames, position_errors_m, run
+from recording import best_alignment, frames, make
 from surface import Surface, read_ply
 
 FAR_M = 0.1
@@ -49,13 +49,12 @@ def cut(recording, folder, first, end):
     unfinished.rename(folder)
 
 
-def make(out, *command):
+def is_made(out, *command):
     """Makes a map. Returns whether there is one: a recording may be refused."""
-    if not out.exists():
-        try:
-            run(*command, "--out", out, "--quiet")
-        except RuntimeError as error:
-            print(f"{out.name}: {str(error).strip().splitlines()[-1]}", flush=True)
+    try:
+        make(out, *command)
+    except RuntimeError as error:
+        print(f"{out.name}: {str(error).strip().splitlines()[-1]}", flush=True)
     return out.exists()
 
 
@@ -79,8 +78,8 @@ def show(folder, recording, surface):
     stamps, path = path_in(folder / "map.db")
     nearest = numpy.abs(truth[:, 0] - stamps[:, None]).argmin(axis=1)
     true = truth[nearest, 1:4]
-    errors_mm = 1000 * position_errors_m(path, true)
     rotation, translation = best_alignment(path, true)
+    errors_mm = 1000 * numpy.linalg.norm(path @ rotation.T + translation - true, axis=1)
     distances_m = surface.distances_m(read_ply(folder / "map.ply")[0] @ rotation.T + translation)
     print(f"{folder.name:14} {100 * len(path) / len(frames(recording)):6.1f} "
           f"{numpy.sqrt((errors_mm ** 2).mean()):6.1f} {errors_mm.max():6.1f} "
@@ -103,20 +102,20 @@ def main():
     recordings = [out / f"piece_{i + 1}" for i in range(pieces)]
     maps = [out / f"map_{i + 1}" for i in range(pieces)]
     whole = out / "in_one_go"
-    if make(whole, tofmap, "map", arguments.recording):
+    if is_made(whole, tofmap, "map", arguments.recording):
         show(whole, arguments.recording, surface)
     for i in range(pieces):
         cut(arguments.recording, recordings[i], i * count // pieces, (i + 1) * count // pieces)
-        make(maps[i], tofmap, "map", recordings[i])
+        is_made(maps[i], tofmap, "map", recordings[i])
     for order in itertools.permutations(range(pieces)):
         digits = "".join(str(i + 1) for i in order)
         merged = out / f"merged_{digits}"
-        if make(merged, tofmap, "merge", *(maps[i] for i in order)):
+        if is_made(merged, tofmap, "merge", *(maps[i] for i in order)):
             show(merged, arguments.recording, surface)
         last = maps[order[0]]
         for length in range(2, pieces + 1):
             onto = out / f"onto_{digits[:length]}"
-            if not make(onto, tofmap, "map", recordings[order[length - 1]], "--onto", last):
+            if not is_made(onto, tofmap, "map", recordings[order[length - 1]], "--onto", last):
                 break
             last = onto
         else:

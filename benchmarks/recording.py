@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 the tofmap authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Functions of the benchmarks that make and read recordings and score trajectories."""
+import shutil
 import subprocess
 
 import numpy
@@ -13,6 +14,16 @@ def run(*command):
                           text=True)
     if done.returncode != 0:
         raise RuntimeError(f"{' '.join(map(str, command))}: {done.stderr}")
+
+
+def make(folder, *command):
+    """Makes a folder by a command, unless it is there."""
+    if folder.exists():
+        return
+    unfinished = folder.with_suffix(".unfinished")
+    shutil.rmtree(unfinished, ignore_errors=True)
+    run(*command, "--out", unfinished, "--quiet")
+    unfinished.rename(folder)
 
 
 def rays(sequence):

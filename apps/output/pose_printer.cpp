@@ -12,10 +12,11 @@ namespace tofmap::app {
 
 PosePrinter::PosePrinter() { std::signal(SIGPIPE, SIG_IGN); }
 
-bool PosePrinter::print_new(const MapContent& content) {
-  for (const RegisteredFrame* frame : localised_frames_of(content)) {
+bool PosePrinter::print_new(std::span<const RegisteredFrame* const> localised,
+                            const KeyframeGraph& keyframes) {
+  for (const RegisteredFrame* frame : localised) {
     if (!printed_.insert(frame->index).second) continue;
-    write_pose(std::cout, {frame->timestamp_s, pose_of(*frame, content.keyframes)});
+    write_pose(std::cout, {frame->timestamp_s, pose_of(*frame, keyframes)});
   }
   return static_cast<bool>(std::cout.flush());
 }

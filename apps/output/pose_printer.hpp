@@ -3,6 +3,7 @@
 #pragma once
 
 #include <set>
+#include <span>
 
 #include <tofmap/mapping/map_content.hpp>
 
@@ -15,10 +16,11 @@ class PosePrinter {
   /// From here on, the program is not ended by a reader of stdout that goes away.
   PosePrinter();
 
-  /// Prints the frames of the last recording that have been localised since the last call, each as
-  /// a line of a trajectory (write_pose()), on stdout. Frames from before the camera was found, or
-  /// while it was lost, come all at once afterwards. Returns false if nobody reads stdout any more.
-  bool print_new(const MapContent& content);
+  /// Prints those of the frames that were not printed before, each as a line of a trajectory
+  /// (write_pose()), on stdout. `localised` are localised_frames_of() a map with these keyframes:
+  /// frames from before the camera was found, or while it was lost, come all at once afterwards.
+  /// Returns false if nobody reads stdout any more.
+  bool print_new(std::span<const RegisteredFrame* const> localised, const KeyframeGraph& keyframes);
 
  private:
   std::set<int> printed_;  ///< indices of frames

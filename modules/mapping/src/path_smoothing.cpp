@@ -153,15 +153,15 @@ void distrust_lone_certainty(std::span<Step> path) {
   const auto frame_at = [&](std::size_t i) {
     return i < path.size() && !path[i].is_held ? &path[i] : nullptr;
   };
-  std::vector<Covariance> doubts;
+  std::vector<Covariance> beside;
   for (std::size_t i = 0; i < path.size(); ++i) {
     const Step* before = frame_at(i - 1);
     const Step* after = frame_at(i + 1);
     const bool is_alone = path[i].is_held || (before == nullptr && after == nullptr);
-    doubts.push_back(is_alone ? Covariance(Covariance::Zero()) : mean_of(before, after));
+    beside.push_back(is_alone ? Covariance(Covariance::Zero()) : mean_of(before, after));
   }
   for (std::size_t i = 0; i < path.size(); ++i) {
-    path[i].by_surfaces += doubts[i] / (most_times_more_certain * most_times_more_certain);
+    path[i].by_surfaces += beside[i] / (most_times_more_certain * most_times_more_certain);
   }
 }
 

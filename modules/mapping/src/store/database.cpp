@@ -21,6 +21,7 @@ namespace {
 
 constexpr int wait_for_lock_ms = 2000;
 
+constexpr const char* no_map = "is not a map of tofmap; give map.db, or the folder that holds it";
 constexpr const char* damaged_file =
     "is damaged; map the recordings again, or use a copy of the file";
 
@@ -47,7 +48,7 @@ int number_of(SQLite::Database& database, const char* pragma) {
 
 void check_version(SQLite::Database& database) {
   if (number_of(database, "PRAGMA application_id") != map_application_id) {
-    throw InputError("is not a map of tofmap; give map.db, or the folder that holds it");
+    throw InputError(no_map);
   }
   const int version = number_of(database, "PRAGMA user_version");
   if (version < 1) throw InputError(damaged_file);
@@ -151,7 +152,7 @@ void unseal(SQLite::Database& database) {
 std::string told(const SQLite::Exception& error) {
   switch (error.getErrorCode()) {
     case SQLITE_NOTADB:
-      return "is not a map of tofmap; give map.db, or the folder that holds it";
+      return no_map;
     case SQLITE_CORRUPT:
       return damaged_file;
     case SQLITE_ERROR:  // a table is missing, or has other columns
