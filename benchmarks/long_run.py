@@ -50,12 +50,13 @@ def write_laps(lap_file, out_file, frames):
             out.write(" ".join(f"{number:.9g}" for number in pose) + "\n")
 
 
-def simulate(tofmap, recording, folder, frames):
-    subprocess.run([tofmap, "simulate", "room", "--out", f"{folder}/lap", "--quiet",
-                    "--set", "simulator.subpixels=1"], check=True)
-    write_laps(f"{folder}/lap/groundtruth.txt", f"{folder}/laps.txt", frames)
-    subprocess.run([tofmap, "simulate", "room", "--out", recording, "--quiet",
-                    "--set", f"simulator.trajectory_file={folder}/laps.txt"], check=True)
+def simulate(tofmap, recording, frames, options=()):
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([tofmap, "simulate", "room", "--out", f"{folder}/lap", "--quiet",
+                        "--set", "simulator.subpixels=1"], check=True)
+        write_laps(f"{folder}/lap/groundtruth.txt", f"{folder}/laps.txt", frames)
+        subprocess.run([tofmap, "simulate", "room", "--out", recording, "--quiet", "--set",
+                        f"simulator.trajectory_file={folder}/laps.txt", *options], check=True)
 
 
 def resident_mb(pid):
@@ -90,7 +91,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         recording = sys.argv[4] if len(sys.argv) > 4 else f"{folder}/run"
         if not os.path.exists(recording):
-            simulate(tofmap, recording, folder, frames)
+            simulate(tofmap, recording, frames)
         memory = map_and_watch(tofmap, recording, f"{folder}/map")
         with open(f"{folder}/map/report.json", encoding="utf-8") as file:
             report = json.load(file)

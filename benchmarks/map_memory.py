@@ -3,11 +3,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures memory and the size of the map while a recording is mapped.
 
-    benchmarks/map_memory.py BUILD_DIR RECORDING MAP [--set OPTION=VALUE ...]
+    benchmarks/map_memory.py BUILD_DIR RECORDING MAP [--laps FRAMES] [--set OPTION=VALUE ...]
 
-MAP is the folder of the result. A line for each tenth of the frames has the number of frames that
-are done, the memory that the process takes (resident), and the size of the file of the map with its
-log. The last line has the largest memory of the whole run, including surface, mesh and report.
+MAP is the folder of the result. With --laps, RECORDING is simulated if it is not there: the laps of
+long_run.py, with one ray a pixel, which needs Debian's python3-numpy and python3-matplotlib.
+
+A line for each tenth of the frames has the number of frames that are done, the memory that the
+process takes (resident), and the size of the file of the map with its log. The last line has the
+largest memory of the whole run, including surface, mesh and report, and the size of the final file.
 """
 import argparse
 import os
@@ -50,10 +53,14 @@ def main():
     parser.add_argument("build", type=pathlib.Path, help="folder of the build")
     parser.add_argument("recording", type=pathlib.Path)
     parser.add_argument("map", type=pathlib.Path, help="folder of the result")
+    parser.add_argument("--laps", type=int, help="frames of a recording to be simulated")
     parser.add_argument("--set", nargs="+", default=[], help="options of the map")
     arguments = parser.parse_args()
     tofmap = arguments.build / "apps" / "tofmap"
     out = arguments.map
+    if arguments.laps and not arguments.recording.exists():
+        import long_run  # needs more than this script does
+        long_run.simulate(tofmap, arguments.recording, arguments.laps, ["simulator.subpixels=1"])
     out.parent.mkdir(parents=True, exist_ok=True)
     shutil.rmtree(out, ignore_errors=True)
     lines = (arguments.recording / "frames.txt").read_text(encoding="utf-8").splitlines()

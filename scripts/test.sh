@@ -14,4 +14,7 @@ cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DTOFMAP_PRECOMPILE_HEADERS=ON -DCMAKE_UNITY_BUILD=ON \
   -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
 cmake --build "$build"
+# As many tests run at once as there are cores, and each may use all of them: threads that wait must
+# not spin.
+export OMP_WAIT_POLICY=passive
 ctest --test-dir "$build" --output-on-failure -j "$(nproc)"

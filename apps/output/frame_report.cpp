@@ -22,8 +22,8 @@ Json times_json(const StageTimes& times) {
   return json;
 }
 
-Json tracking_json(const TrackingResult& tracking) {
-  const RegistrationResult& registration = tracking.registration;
+Json tracking_json(const FrameTracking& tracking) {
+  const RegistrationFigures& registration = tracking.registration;
   return {{"status", name_of(tracking.status)},
           {"is_keyframe", tracking.is_keyframe},
           {"registration", name_of(registration.status)},

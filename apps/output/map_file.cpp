@@ -21,6 +21,8 @@ namespace {
 
 constexpr std::chrono::milliseconds shortest_interval(500);
 constexpr int intervals_of_its_duration = 20;
+/// Number of voxels in memory that make storing due. They take about 120 MB.
+constexpr std::size_t most_voxels_at_rest = 1'500'000;
 
 /// The temporary folders of a result that hold the map of a killed or running program, the newest
 /// first.
@@ -113,6 +115,15 @@ void check_base(const std::vector<MapRecording>& recordings, const fs::path& ont
                                       "extended since");
 }
 
+/// Number of voxels in memory that need not stay there once the map is stored.
+std::size_t voxels_at_rest(const MapContent& content) {
+  std::size_t voxels = 0;
+  for (const int submap : submaps_at_rest(content)) {
+    voxels += content.submaps[static_cast<std::size_t>(submap)].surface.size();
+  }
+  return voxels;
+}
+
 std::optional<Verdict> verdict_named(const std::string& name) {
   for (const Verdict verdict : {Verdict::good, Verdict::check, Verdict::bad}) {
     if (name_of(verdict) == name) return verdict;
@@ -129,7 +140,8 @@ MapFile::MapFile(OutputFolder& out, std::optional<MapStore> store, std::vector<f
       store_(std::move(store)),
       is_resumed_(is_resumed),
       is_stored_(is_resumed),
-      due_(Clock::now() + shortest_interval) {}
+      soonest_(Clock::now() + shortest_interval),
+      due_(soonest_) {}
 
 MapFile::MapFile(OutputFolder& out) : MapFile(out, std::nullopt, {}, false) {
   try {
@@ -200,8 +212,10 @@ void MapFile::remove_killed() {
 
 void MapFile::store_if_due(MapRun& run, FrameSample& sample, MapInput& input,
                            const PipelineOptions& options) {
+  if (!store_ || run.frames().empty()) return;
   const Clock::time_point start = Clock::now();
-  if (!store_ || start < due_ || run.frames().empty()) return;
+  const bool is_large = voxels_at_rest(run.mapper().content()) > most_voxels_at_rest;
+  if (start < (is_large ? soonest_ : due_)) return;
   try {
     store(run, sample, input, options);
   } catch (const InputError& error) {
@@ -214,8 +228,8 @@ void MapFile::store_if_due(MapRun& run, FrameSample& sample, MapInput& input,
                      "; what was mapped before is kept there, and --resume continues from it");
   }
   const Clock::time_point end = Clock::now();
-  due_ =
-      end + std::max<Clock::duration>(shortest_interval, intervals_of_its_duration * (end - start));
+  soonest_ = end + shortest_interval;
+  due_ = std::max(soonest_, end + intervals_of_its_duration * (end - start));
 }
 
 void MapFile::store_last(MapRun& run, FrameSample& sample, MapInput& input,

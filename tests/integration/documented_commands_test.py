@@ -23,10 +23,11 @@ except ImportError as missing:
     sys.exit(77)
 
 SOURCE, TOFMAP = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
+FAST = ["--set", "simulator.subpixels=1"]
 SMALL = ["--set", "simulator.width_px=44", "--set", "simulator.height_px=36"]
 # Large and long enough for a recording to be found in the map of another.
-KNOWN = ["--frames", "60", "--set", "simulator.width_px=88", "--set", "simulator.height_px=72"]
-FAST = ["--set", "simulator.subpixels=1"]  # for packets of a Kinect v2, which have one size
+KNOWN = ["--frames", "60", "--set", "simulator.width_px=88", "--set", "simulator.height_px=72",
+         *FAST]
 
 # Two frames of correlation images of 4 x 3 pixels.
 DESCRIPTION = """format: tofmap-correlation
@@ -144,7 +145,7 @@ class DocumentedCommands(unittest.TestCase):
         if words[1] == "simulate":
             if "--frames" in out:
                 del out[out.index("--frames"):out.index("--frames") + 2]
-            if "kinect2" in out:
+            if "kinect2" in out:  # packets have one size
                 out += ["--frames", "2", *FAST]
             else:
                 out += ["--frames", "8"] if "--from-tum" in out else ["--frames", "8", *SMALL]

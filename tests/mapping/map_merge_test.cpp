@@ -42,28 +42,29 @@ class MergedRoom : public testing::Test {
   static constexpr int begins[] = {100, 140, 180};
   static constexpr int frames = 60;
 
-  MapContent part(int i) {
-    auto& known = parts_[static_cast<std::size_t>(i)];
-    if (!known) known = mapped(room_, begins[i], begins[i] + frames, std::to_string(i));
+  /// The room, and the maps of three parts of the path, which all cases share.
+  static const test::Scenery& room() {
+    static const test::Scenery room("room");
+    return room;
+  }
+  static MapContent part(int i) {
+    static std::array<std::optional<MapContent>, 3> parts;
+    auto& known = parts[static_cast<std::size_t>(i)];
+    if (!known) known = mapped(room(), begins[i], begins[i] + frames, std::to_string(i));
     return *known;
   }
 
   /// Largest error of the paths of all recordings in the world of a map that began at this frame.
   double worst_error_m(const MapContent& content, int first) const {
     double worst_m = 0;
-    const Pose world_from_scene = room_.pose(first).inverse();
+    const Pose world_from_scene = room().pose(first).inverse();
     for (const RegisteredFrame& frame : content.frames) {
-      const Pose truth = world_from_scene * room_.pose(frame.index);
+      const Pose truth = world_from_scene * room().pose(frame.index);
       worst_m = std::max(
           worst_m, (truth.translation() - pose_of(frame, content.keyframes).translation()).norm());
     }
     return worst_m;
   }
-
-  test::Scenery room_{"room"};
-
- private:
-  std::array<std::optional<MapContent>, 3> parts_;
 };
 
 TEST_F(MergedRoom, IsTheSameInAnyOrder) {
@@ -105,7 +106,7 @@ TEST_F(MergedRoom, RefusesMapsThatDoNotGoTogether) {
   EXPECT_THAT(complaint({part(0), part(0)}), HasSubstr("have a recording in common"));
   SurfaceMapOptions coarse;
   coarse.voxel_m = 0.1;
-  EXPECT_THAT(complaint({part(0), mapped(room_, 100, 110, "coarse", coarse)}),
+  EXPECT_THAT(complaint({part(0), mapped(room(), 100, 110, "coarse", coarse)}),
               HasSubstr("other options"));
   EXPECT_THAT(complaint({}), HasSubstr("no map"));
 }

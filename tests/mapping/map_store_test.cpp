@@ -176,21 +176,26 @@ TEST_F(StoredMap, NeedsNoCloudInMemoryThatIsInTheFile) {
   }
 }
 
-TEST_F(StoredMap, NeedsNoSubmapInMemoryThatIsNotChangedAnyMore) {
-  const std::vector<Submap>& submaps = mapper_.content().submaps;
+TEST_F(StoredMap, NeedsNoSubmapInMemoryButTheLatest) {
+  const MapContent& content = mapper_.content();
+  const auto latest = [&]() -> const SubmapSurface& {
+    return content.submaps[*latest_submap(content)].surface;
+  };
+  ASSERT_GT(*latest_submap(content), 0U);
+  EXPECT_FALSE(content.submaps[0].surface.is_aside());
+  EXPECT_EQ(submaps_at_rest(content).size(), content.submaps.size() - 1);
+  const std::string before = content.submaps[0].surface.load()->to_bytes();
   MapStore made = MapStore::create(file());
   store(made);
-  EXPECT_FALSE(submaps[0].surface.is_aside());
-  const std::string before = submaps[0].surface.load()->to_bytes();
-  store(made);
-  EXPECT_TRUE(submaps[0].surface.is_aside());
-  EXPECT_EQ(submaps[0].surface.load()->to_bytes(), before);
+  EXPECT_TRUE(content.submaps[0].surface.is_aside());
+  EXPECT_FALSE(latest().is_aside());
+  EXPECT_THAT(submaps_at_rest(content), testing::IsEmpty());
+  EXPECT_EQ(content.submaps[0].surface.load()->to_bytes(), before);
   add(frames);
-  EXPECT_FALSE(
-      submaps[static_cast<std::size_t>(mapper_.content().submap_of.back())].surface.is_aside());
+  EXPECT_FALSE(latest().is_aside());
   store(made);
   made.settle();
-  expect_same(MapStore::open(file()).content(), mapper_.content());
+  expect_same(MapStore::open(file()).content(), content);
 }
 
 TEST_F(StoredMap, KeepsEntriesByTheirNames) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "support/stored_map.hpp"
+#include "support/temporary_folder.hpp"
 
 // Composition: what holds of the whole, whatever its stages do.
 
@@ -10,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <tofmap/core/error.hpp>
 #include <tofmap/evaluation/trajectory_score.hpp>
 #include <tofmap/pipeline/frame_sample.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
@@ -118,8 +120,8 @@ void expect_same_bits(const MapCloud& a, const MapCloud& b) {
 void expect_same_bits(const RoomMap& a, const RoomMap& b) {
   ASSERT_EQ(a.frames.size(), b.frames.size());
   for (std::size_t i = 0; i < a.frames.size(); ++i) {
-    const TrackingResult& one = a.frames[i].tracking;
-    const TrackingResult& other = b.frames[i].tracking;
+    const FrameTracking& one = a.frames[i].tracking;
+    const FrameTracking& other = b.frames[i].tracking;
     EXPECT_EQ(one.registration.residual_scale, other.registration.residual_scale) << i;
     EXPECT_EQ(one.registration.overlap, other.registration.overlap) << i;
     EXPECT_EQ(one.registration.rmse_m, other.registration.rmse_m) << i;
@@ -332,6 +334,12 @@ TEST(MapRun, GoesOnToTheSameBitsAfterItWasPutAside) {
   expect_same_bits(resumed, at_once);
 }
 
+/// Whether two images have the same values, or none, everywhere.
+bool same_bits(const ImageF& one, const ImageF& other) {
+  return one.rows() == other.rows() && one.cols() == other.cols() &&
+         ((one == other) || (one.isNaN() && other.isNaN())).all();
+}
+
 /// A run with a sample of its frames.
 struct SampledRun {
   static constexpr int frames = 30;
@@ -391,6 +399,47 @@ TEST(MapRun, GoesOnToTheSameConsistencyAfterItWasPutAside) {
   EXPECT_EQ(found.ambiguous_percent, expected.ambiguous_percent);
   EXPECT_EQ(found.plane_thickness_m, expected.plane_thickness_m);
   EXPECT_EQ(found.view_disagreement_m, expected.view_disagreement_m);
+}
+
+TEST(MapRun, KeepsNoSampledFrameInMemoryThatIsInTheFile) {
+  SimulatorOptions options;
+  options.width_px = 44;
+  options.height_px = 36;
+  options.frames = 4;
+  Simulator source(make_scene("room"), options);
+  SampledRun run(source.sensor());
+  run.advance(source, options.frames);
+  FrameSample& sample = run.sample;
+  const std::vector<SampledFrame> before = sample.frames();
+  const test::TemporaryFolder folder;
+  MapStore store = MapStore::create(folder.path() / map_file_name);
+  {
+    MapStore::Commit commit(store);
+    sample.save(commit);
+    commit.finish();
+  }
+  sample.note_saved(store);
+  EXPECT_THROW(sample.frames(), UsageError);
+  sample.bring_back();
+  ASSERT_EQ(sample.frames().size(), before.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const SampledFrame& after = sample.frames()[i];
+    EXPECT_EQ(after.recorded.index, before[i].recorded.index);
+    for (std::size_t f = 0; f < before[i].recorded.phases.size(); ++f) {
+      EXPECT_TRUE(same_bits(after.recorded.phases[f], before[i].recorded.phases[f])) << i;
+      EXPECT_TRUE(same_bits(after.returns.phases[f], before[i].returns.phases[f])) << i;
+    }
+    EXPECT_TRUE(same_bits(after.filtered.range_m, before[i].filtered.range_m)) << i;
+  }
+
+  sample.note_saved(store);
+  {
+    MapStore::Commit commit(store);
+    commit.remove("run/sample/");
+    commit.finish();
+  }
+  sample.bring_back();
+  EXPECT_TRUE(sample.frames().empty()) << "they cannot be read any more";
 }
 
 TEST(MapRoom, ShowsEveryReadableFrameInOrder) {

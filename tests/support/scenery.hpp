@@ -70,6 +70,7 @@ class Scenery {
     SimulatorOptions options;
     options.width_px = 88;
     options.height_px = 72;
+    options.subpixels = 1;  // true ranges are those of one ray a pixel anyway
     return options;
   }
 

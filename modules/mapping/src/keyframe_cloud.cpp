@@ -3,6 +3,7 @@
 
 #include "tofmap/mapping/keyframe_cloud.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <list>
 #include <mutex>
@@ -109,6 +110,13 @@ void KeyframeCloud::put_aside(std::function<CompactCloud()> read) const {
 std::uint64_t KeyframeCloud::number() const { return on_shelf_ ? on_shelf_->number : 0; }
 
 bool KeyframeCloud::is_aside() const { return on_shelf_ && on_shelf_->read; }
+
+std::size_t CloudShelf::default_budget_bytes(const CameraModel& camera) {
+  constexpr std::size_t least_bytes = std::size_t{128} << 20U;
+  constexpr std::size_t least_clouds = 16;
+  const auto pixels = static_cast<std::size_t>(camera.width_px) * camera.height_px;
+  return std::max(least_bytes, least_clouds * pixels * sizeof(SurfacePoint));
+}
 
 CloudShelf::CloudShelf(const CameraModel& camera, std::size_t budget_bytes)
     : stock_(std::make_shared<Stock>(camera, budget_bytes)) {}

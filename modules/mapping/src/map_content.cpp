@@ -102,6 +102,22 @@ int largest_map(const MapContent& content) {
   return largest == counts.end() ? 0 : largest->first;
 }
 
+std::optional<std::size_t> latest_submap(const MapContent& content) {
+  if (content.frames.empty()) return std::nullopt;
+  const auto keyframe = static_cast<std::size_t>(content.frames.back().keyframe);
+  return static_cast<std::size_t>(content.submap_of[keyframe]);
+}
+
+std::vector<int> submaps_at_rest(const MapContent& content) {
+  const auto latest = latest_submap(content);
+  std::vector<int> indices;
+  for (std::size_t i = 0; i < content.submaps.size(); ++i) {
+    const bool is_in_memory = !content.submaps[i].surface.is_aside();
+    if (i != latest && is_in_memory) indices.push_back(static_cast<int>(i));
+  }
+  return indices;
+}
+
 Pose pose_of(const RegisteredFrame& frame, const KeyframeGraph& keyframes) {
   return keyframes[frame.keyframe].world_from_camera * frame.keyframe_from_camera;
 }

@@ -102,28 +102,22 @@ FrameRecord prepared_record(const PreparedFrame& frame) {
 }
 
 /// What a record keeps of the tracking of a frame.
-TrackingResult told(const TrackingResult& tracking) {
-  TrackingResult kept;
-  kept.status = tracking.status;
-  kept.is_keyframe = tracking.is_keyframe;
-  kept.registration = tracking.registration;
-  kept.registration.world_from_camera = Pose::Identity();
-  kept.registration.covariance.setZero();
-  kept.registration.direction_shares.setZero();
-  kept.registration.target_information = {};
-  return kept;
+FrameTracking kept(const TrackingResult& tracking) {
+  return {.status = tracking.status,
+          .is_keyframe = tracking.is_keyframe,
+          .registration = tracking.registration};
 }
 
 /// Tells the mapper about a frame that repeats the frame before it, and returns its record.
 FrameRecord repeated(const SourcedFrame& frame, RoomMapper& mapper) {
   FrameRecord record = plain_record(frame);
   record.repeats = true;
-  record.tracking = mapper
-                        .add_frame({.index = frame.index,
-                                    .timestamp_s = frame.timestamp_s,
-                                    .cloud = nullptr,
-                                    .repeats = true})
-                        .tracking;
+  record.tracking = kept(mapper
+                             .add_frame({.index = frame.index,
+                                         .timestamp_s = frame.timestamp_s,
+                                         .cloud = nullptr,
+                                         .repeats = true})
+                             .tracking);
   return record;
 }
 
@@ -287,12 +281,12 @@ void MapRun::add(const PreparedFrame& frame, const MapHooks& hooks) {
     tell_motion(late.index, late.still);
     const auto record =
         std::ranges::find(frames_.rbegin(), frames_.rend(), late.index, &FrameRecord::index);
-    record->tracking = told(late.tracking);
+    record->tracking = kept(late.tracking);
     const auto place = static_cast<std::size_t>(frames_.rend() - record) - 1;
     first_unsaved_ = std::min(first_unsaved_, place);
   }
   FrameRecord& record = frames_.emplace_back(prepared_record(frame));
-  record.tracking = told(added.tracking);
+  record.tracking = kept(added.tracking);
   record.times.register_ms = added.register_ms;
   record.times.map_ms = added.integrate_ms;
   record.times.loop_ms = added.loop_ms;

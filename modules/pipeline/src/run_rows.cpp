@@ -17,7 +17,7 @@ using Json = nlohmann::json;
 
 constexpr const char* damaged_status = "damaged";
 
-Json registration_json(const RegistrationResult& result) {
+Json registration_json(const RegistrationFigures& result) {
   return {{"status", name_of(result.status)},
           {"iterations", result.iterations},
           {"correspondences", result.correspondences},
@@ -35,8 +35,8 @@ Enumeration named_in(const Json& object, const char* name) {
   return *value;
 }
 
-RegistrationResult registration_in(const Json& json) {
-  RegistrationResult result;
+RegistrationFigures registration_in(const Json& json) {
+  RegistrationFigures result;
   result.status = named_in<RegistrationStatus>(json, "status");
   result.iterations = json.at("iterations").get<int>();
   result.correspondences = json.at("correspondences").get<int>();

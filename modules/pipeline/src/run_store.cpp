@@ -116,7 +116,7 @@ void store_run(MapStore& store, MapRun& run, FrameSample& sample, const Sequence
   sample.save(commit);
   commit.finish();
   run.note_saved();
-  sample.note_saved();
+  sample.note_saved(store);
 }
 
 void store_map(MapStore& store, MapRun& run) {

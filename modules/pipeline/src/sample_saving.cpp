@@ -125,13 +125,52 @@ std::string bytes_of(const SampledFrame& frame) {
   return out.take();
 }
 
+std::string entry_of(const SampledFrame& frame) {
+  return fmt::format("{}{:09}", sample_entries, frame.recorded.index);
+}
+
+bool is_in_memory(const SampledFrame& frame) { return !frame.recorded.phases.empty(); }
+
 }  // namespace
 
 void FrameSample::save(MapStore::Commit& commit) const {
   for (const SampledFrame& frame : frames_) {
     if (!unsaved_.contains(frame.recorded.index)) continue;
-    commit.put(fmt::format("{}{:09}", sample_entries, frame.recorded.index), bytes_of(frame));
+    commit.put(entry_of(frame), bytes_of(frame));
   }
+}
+
+void FrameSample::note_saved(const MapStore& store) {
+  unsaved_.clear();
+  read_ = store.reader();
+  for (SampledFrame& frame : frames_) {
+    const int index = frame.recorded.index;
+    frame = {};
+    frame.recorded.index = index;
+  }
+}
+
+/// Reads a frame into memory if it is in the file alone. Returns whether it is in memory.
+bool FrameSample::bring_back(SampledFrame& frame) const {
+  if (is_in_memory(frame)) return true;
+  try {
+    const std::string bytes = read_(entry_of(frame));
+    frame = SampleReader(bytes, camera_).sampled();
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+void FrameSample::bring_back() {
+  std::erase_if(frames_, [&](SampledFrame& frame) { return !bring_back(frame); });
+}
+
+const std::vector<SampledFrame>& FrameSample::frames() const {
+  if (!std::ranges::all_of(frames_, is_in_memory)) {
+    throw UsageError("frames of the sample are in the file alone");
+  }
+  return frames_;
 }
 
 void FrameSample::load(const MapStore& store, int frames_done) {

@@ -301,12 +301,12 @@ std::span<const NamedValue<RegistrationStatus>> named_values(RegistrationStatus)
   return statuses;
 }
 
-bool converged_slowly(const RegistrationResult& result, const RegistrationOptions& options) {
+bool converged_slowly(const RegistrationFigures& figures, const RegistrationOptions& options) {
   // Twelve iterations of the twenty by default. Chosen so that frames above it are frequent in
   // recordings with a wrong path, and rare in others: those of benchmarks/troubled_rooms.py with
   // the seeds 11 to 15.
   constexpr double slow_share = 0.6;
-  return result.iterations > slow_share * options.max_iterations;
+  return figures.iterations > slow_share * options.max_iterations;
 }
 
 RegistrationResult register_to_targets(const SurfaceCloud& source,

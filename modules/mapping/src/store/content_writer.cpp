@@ -4,12 +4,15 @@
 #include "content_writer.hpp"
 
 #include "change_rows.hpp"
+#include "crc_sum.hpp"
 #include "insertion.hpp"
 #include "rows.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <string>
+
+#include <tofmap/core/bytes.hpp>
 
 namespace tofmap {
 namespace {
@@ -34,11 +37,16 @@ WrittenKeyframe row_of(const Keyframe& keyframe, const MapContent& content) {
           .cloud = keyframe.cloud.number()};
 }
 
-bool is_same(const RegisteredFrame& one, const RegisteredFrame& other) {
-  return one.index == other.index && one.recording == other.recording &&
-         one.keyframe == other.keyframe &&
-         is_same(one.keyframe_from_camera, other.keyframe_from_camera) &&
-         one.covariance == other.covariance;
+std::uint32_t checksum_of(const RegisteredFrame& frame) {
+  ByteWriter bytes;
+  bytes.number(frame.index);
+  bytes.number(frame.recording);
+  bytes.number(frame.keyframe);
+  for (const double number : frame.keyframe_from_camera.matrix().reshaped()) bytes.number(number);
+  for (const double number : frame.covariance.reshaped()) bytes.number(number);
+  CrcSum sum;
+  sum.add(bytes.take());
+  return sum.value();
 }
 
 /// Removes the rows whose number in a column is at least `first`, if there are any.
@@ -70,17 +78,14 @@ void write_recordings(const MapContent& content, SQLite::Database& database) {
   }
 }
 
-/// Returns the ids of the submaps that need not be written.
-std::vector<int> write_submaps(const MapContent& content, const WrittenContent& before,
-                               SQLite::Database& database) {
+void write_submaps(const MapContent& content, const WrittenContent& before,
+                   SQLite::Database& database) {
   const std::size_t known = before.submap_revisions.size();
-  std::vector<int> unchanged;
   Insertion row(database, "submaps", 4);
   for (std::size_t i = 0; i < content.submaps.size(); ++i) {
     const Submap& submap = content.submaps[i];
     if (i < known && before.submap_revisions[i] == submap.surface.revision() &&
         before.submap_anchors[i] == submap.anchor) {
-      unchanged.push_back(static_cast<int>(i));
       continue;
     }
     const std::string bytes = submap.surface.load()->to_bytes();
@@ -91,7 +96,6 @@ std::vector<int> write_submaps(const MapContent& content, const WrittenContent& 
     row.execute();
   }
   remove_from(database, "submaps", "id", content.submaps.size());
-  return unchanged;
 }
 
 void write_cloud(const Keyframe& keyframe, Insertion& row) {
@@ -202,7 +206,7 @@ void write_frames(const MapContent& content, const WrittenContent& before,
   Insertion row(database, "frames", 6 + pose_columns);
   for (std::size_t i = 0; i < content.frames.size(); ++i) {
     const RegisteredFrame& frame = content.frames[i];
-    if (i < before.frames.size() && is_same(frame, before.frames[i])) continue;
+    if (i < before.frames.size() && checksum_of(frame) == before.frames[i]) continue;
     int column = 1;
     row.statement.bind(column++, static_cast<std::int64_t>(i));
     row.statement.bind(column++, frame.recording);
@@ -230,7 +234,7 @@ WrittenContent written(const MapContent& content) {
     written.submap_anchors.push_back(submap.anchor);
     written.submap_revisions.push_back(submap.surface.revision());
   }
-  written.frames = content.frames;
+  for (const RegisteredFrame& frame : content.frames) written.frames.push_back(checksum_of(frame));
   written.changes = checksum_of(content.changes);
   return written;
 }
@@ -240,7 +244,8 @@ StoredParts write_content(const MapContent& content, const WrittenContent& befor
   write_properties(content, database);
   write_recordings(content, database);
   StoredParts stored;
-  stored.submaps = write_submaps(content, before, database);
+  write_submaps(content, before, database);
+  stored.submaps = submaps_at_rest(content);
   stored.clouds = write_keyframes(content, before, database);
   write_links(content, before, database);
   write_constraints(content, database);

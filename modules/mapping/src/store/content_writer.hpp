@@ -28,8 +28,8 @@ struct WrittenContent {
   std::vector<std::vector<KeyframeLink>> links;
   std::vector<int> submap_anchors;
   std::vector<std::uint64_t> submap_revisions;
-  std::vector<RegisteredFrame> frames;
-  std::uint32_t changes = 0;  ///< checksum_of() them; 0 without changes
+  std::vector<std::uint32_t> frames;  ///< a checksum of each
+  std::uint32_t changes = 0;          ///< checksum_of() them; 0 without changes
 };
 
 /// The same of a map that was just read from the file or written to it.
@@ -38,7 +38,7 @@ WrittenContent written(const MapContent& content);
 /// What need not stay in memory once the tables are committed.
 struct StoredParts {
   std::vector<int> clouds;   ///< ids of the keyframes whose clouds were written
-  std::vector<int> submaps;  ///< ids of the submaps that have not changed since they were written
+  std::vector<int> submaps;  ///< submaps_at_rest()
 };
 
 /// Brings the tables up to date with a map, given what they hold. Must be called in a transaction.

@@ -104,6 +104,10 @@ std::string MapStore::expected_entry(const std::string& name) const {
   return *std::move(bytes);
 }
 
+std::function<std::string(const std::string& name)> MapStore::reader() const {
+  return [file = file_](const std::string& name) { return MapStore(file).expected_entry(name); };
+}
+
 std::vector<std::string> MapStore::entries(const std::string& beginning) const {
   return naming_file(file_->path, [&] {
     std::vector<std::string> names;

@@ -57,11 +57,13 @@ class KeyframeCloud {
 /// expanded, as far as a budget allows. Clouds may be loaded from several threads.
 class CloudShelf {
  public:
-  /// 256 MB: at 640 x 480 pixels 17 expanded clouds, more than the keyframes around a camera.
-  static constexpr std::size_t default_budget_bytes = std::size_t{256} << 20U;
+  /// 128 MB, but at least 16 clouds: more than the keyframes around a camera.
+  static std::size_t default_budget_bytes(const CameraModel& camera);
 
   /// `budget_bytes` is the memory that expanded clouds may take which nobody holds.
-  explicit CloudShelf(const CameraModel& camera, std::size_t budget_bytes = default_budget_bytes);
+  CloudShelf(const CameraModel& camera, std::size_t budget_bytes);
+  explicit CloudShelf(const CameraModel& camera)
+      : CloudShelf(camera, default_budget_bytes(camera)) {}
   ~CloudShelf();
 
   /// Makes a cloud compact and keeps it. What it loads differs from `cloud` by the errors of

@@ -82,6 +82,12 @@ bool are_same_camera(const CameraModel& one, const CameraModel& other);
 /// The map that has the most keyframes (Keyframe::map). 0 if there are none.
 int largest_map(const MapContent& content);
 
+/// Index of the submap that the latest frame belongs to. Empty without frames.
+std::optional<std::size_t> latest_submap(const MapContent& content);
+
+/// Indices of the submaps in memory that the next frame will hardly change: of all but the latest.
+std::vector<int> submaps_at_rest(const MapContent& content);
+
 /// The pose of a frame in the world of its map.
 Pose pose_of(const RegisteredFrame& frame, const KeyframeGraph& keyframes);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -59,6 +60,9 @@ class MapStore {
   /// The same, but throws if nothing was stored under the name.
   std::string expected_entry(const std::string& name) const;
 
+  /// expected_entry() as a function that may be called after this object is gone.
+  std::function<std::string(const std::string& name)> reader() const;
+
   /// The names of all entries that begin like this, in alphabetical order.
   std::vector<std::string> entries(const std::string& beginning) const;
 
@@ -74,7 +78,8 @@ class MapStore {
     ~Commit();
 
     /// Brings the file up to date with the map. What the file has already is not written again.
-    /// Clouds may be read from the file from now on, so that they need not stay in memory.
+    /// After finish(), clouds and surfaces are read from the file when they are needed, but for the
+    /// surface of the latest submap.
     void write(const MapContent& content);
 
     /// Stores bytes under a name, or replaces them.

@@ -69,6 +69,12 @@ enum class TrackingStatus {
 
 std::span<const NamedValue<TrackingStatus>> named_values(TrackingStatus);
 
+/// Whether the pose of a frame of this status was found.
+constexpr bool is_registered(TrackingStatus status) {
+  return status == TrackingStatus::first || status == TrackingStatus::tracked ||
+         status == TrackingStatus::relocalised;
+}
+
 /// What the motion since the latest keyframe, and the surfaces of that keyframe, tell of a pose.
 struct SinceKeyframe {
   int keyframe = 0;  ///< id of the latest keyframe
@@ -102,10 +108,7 @@ struct TrackingResult {
   PoseSpread spread;  ///< of `covariance`
 
   /// Whether the pose of the frame was found.
-  bool registered() const {
-    return status == TrackingStatus::first || status == TrackingStatus::tracked ||
-           status == TrackingStatus::relocalised;
-  }
+  bool registered() const { return is_registered(status); }
 };
 
 /// Tracks the camera: registers each frame with those keyframes around it that overlap it most,

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <set>
+#include <string>
 #include <vector>
 
 #include <tofmap/diagnostics/consistency.hpp>
@@ -53,8 +55,13 @@ class FrameSample {
   /// Stores the frames kept so far, but for those that note_saved() tells are stored already. The
   /// length of the run must be known.
   void save(MapStore::Commit& commit) const;
-  /// Must be called after the commit was finished.
-  void note_saved() { unsaved_.clear(); }
+  /// Must be called after the commit was finished. From then on, the frames are read from the file
+  /// when they are needed.
+  void note_saved(const MapStore& store);
+
+  /// Reads the frames that are in the file alone into memory. Those that cannot be read any more
+  /// are left out of the sample.
+  void bring_back();
 
   /// Replaces the frames by saved ones. The sample of a resumed run, whose first `frames_done`
   /// frames are processed, is then the same as without the interruption. If it was constructed with
@@ -62,20 +69,23 @@ class FrameSample {
   /// of the run must be known. Throws InputError if they are damaged.
   void load(const MapStore& store, int frames_done);
 
-  /// The frames kept so far, in ascending order of their indices.
-  const std::vector<SampledFrame>& frames() const { return frames_; }
+  /// The frames kept so far, in ascending order of their indices. Throws UsageError if some are in
+  /// the file alone.
+  const std::vector<SampledFrame>& frames() const;
 
  private:
   bool is_its_turn(int index);
+  bool bring_back(SampledFrame& frame) const;
   void drop_every_second();
 
   std::vector<int> wanted_indices_;  ///< empty if the length is unknown
   bool has_known_length_;
-  std::size_t most_;        ///< number of frames at which every second one is dropped
-  std::size_t step_ = 1;    ///< keeps every step_-th frame if the length is unknown
-  std::size_t passed_ = 0;  ///< frames offered to add() so far if the length is unknown
-  std::vector<SampledFrame> frames_;
+  std::size_t most_;                  ///< number of frames at which every second one is dropped
+  std::size_t step_ = 1;              ///< keeps every step_-th frame if the length is unknown
+  std::size_t passed_ = 0;            ///< frames offered to add() so far if the length is unknown
+  std::vector<SampledFrame> frames_;  ///< those in the file alone have no phases
   std::set<int> unsaved_;  ///< indices of frames that were added or changed since note_saved()
+  std::function<std::string(const std::string& name)> read_;  ///< of the file: MapStore::reader()
   CameraModel camera_;
 };
 

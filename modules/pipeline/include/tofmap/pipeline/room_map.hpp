@@ -44,6 +44,16 @@ inline constexpr std::array<std::pair<const char*, double StageTimes::*>, 6> sta
      {"map", &StageTimes::map_ms},
      {"loops", &StageTimes::loop_ms}}};
 
+/// What is kept of the tracking of each frame (TrackingResult).
+struct FrameTracking {
+  TrackingStatus status = TrackingStatus::lost;
+  bool is_keyframe = false;
+  RegistrationFigures registration;  ///< all defaults if registration was not tried
+
+  /// Whether the pose of the frame was found.
+  bool registered() const { return is_registered(status); }
+};
+
 /// The result of processing one frame.
 struct FrameRecord {
   int index = 0;
@@ -60,7 +70,7 @@ struct FrameRecord {
   int valid_pixels = 0;           ///< valid pixels after unwrapping
   int kept_pixels = 0;            ///< valid pixels after filtering
   std::vector<FilterCount> filters;
-  TrackingResult tracking;  ///< without poses, covariances and targets
+  FrameTracking tracking;
   StageTimes times;
   /// The map that the frame is registered in: 1 is the main map, k + 2 is separate_maps[k]. 0:
   /// none, or the run is not finished.

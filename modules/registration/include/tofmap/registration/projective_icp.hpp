@@ -86,16 +86,24 @@ enum class RegistrationStatus {
 bool succeeded(RegistrationStatus status);
 std::span<const NamedValue<RegistrationStatus>> named_values(RegistrationStatus);
 
-/// The pose that register_to_targets() found, and how well it fits.
-struct RegistrationResult {
+/// How a registration ended, and how well the pose fits.
+struct RegistrationFigures {
   RegistrationStatus status = RegistrationStatus::few_correspondences;
-  Pose world_from_camera = Pose::Identity();  ///< to be used only if the registration succeeded()
-  int iterations = 0;                         ///< of the fine stage, which uses all points
-  int correspondences = 0;                    ///< in the last iteration
+  int iterations = 0;         ///< of the fine stage, which uses all points
+  int correspondences = 0;    ///< in the last iteration
   double overlap = 0;         ///< share of the source's points with a correspondence
   double inlier_ratio = 0;    ///< share of correspondences whose kernel weight is at least one half
   double rmse_m = 0;          ///< RMS distance from point to plane over those inliers, metres
   double residual_scale = 0;  ///< robust ratio of residuals to predicted noise, at least 1
+  /// Number of degenerate directions of motion, of six: those in which the surfaces give less
+  /// information than the prior, without what is noise-induced. Along these, the pose depends on
+  /// the prior more than on the surfaces.
+  int degenerate_directions = 0;
+};
+
+/// The pose that register_to_targets() found, and how well it fits.
+struct RegistrationResult : RegistrationFigures {
+  Pose world_from_camera = Pose::Identity();  ///< to be used only if the registration succeeded()
 
   /// Covariance of the pose error as a twist: rotation vector about the camera's centre, radians,
   /// then translation, metres, both along the world's axes. Includes the prior.
@@ -108,10 +116,6 @@ struct RegistrationResult {
   /// correspondences were found.
   std::vector<Eigen::Matrix<double, 6, 6>> target_information;
 
-  /// Number of degenerate directions of motion, of six: those in which the surfaces give less
-  /// information than the prior, without what is noise-induced. Along these, the pose depends on
-  /// the prior more than on the surfaces.
-  int degenerate_directions = 0;
   /// Share of the observations that constrain each direction of motion, in ascending order, from 0
   /// (unconstrained) to 1. Rotations are measured as the motion of points at the median range of
   /// the source.
@@ -121,7 +125,7 @@ struct RegistrationResult {
 /// Whether a registration took more than 60 % of the iterations that the options allow. Then its
 /// surfaces hardly constrain some direction of motion: correspondences slide along it with the
 /// source, and the error of the pose may be larger than its covariance says.
-bool converged_slowly(const RegistrationResult& result, const RegistrationOptions& options);
+bool converged_slowly(const RegistrationFigures& figures, const RegistrationOptions& options);
 
 /// Finds the pose of an organised cloud by projecting its points into clouds of known pose and
 /// minimising the distances from the points to the planes that they fall on (Chen and Medioni 1991,
