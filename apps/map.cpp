@@ -211,7 +211,6 @@ int run_map(const MapArguments& arguments) {
     output.losses = input.losses();
     output.acquisition = input.acquisition();
     file.store_last(run, output.sample, input, options.pipeline);
-    output.sample.bring_back();
     output.recordings = run.mapper().content().recordings;
     finished = finish_map(run, file, out, output);
   });

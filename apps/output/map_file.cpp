@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::chrono::milliseconds shortest_interval(500);
 constexpr int intervals_of_its_duration = 20;
+constexpr int least_intervals_of_its_duration = 4;  // if submaps take much memory
 /// Number of voxels in memory that make storing due. They take about 120 MB.
 constexpr std::size_t most_voxels_at_rest = 1'500'000;
 
@@ -228,7 +229,8 @@ void MapFile::store_if_due(MapRun& run, FrameSample& sample, MapInput& input,
                      "; what was mapped before is kept there, and --resume continues from it");
   }
   const Clock::time_point end = Clock::now();
-  soonest_ = end + shortest_interval;
+  soonest_ = end + std::max<Clock::duration>(shortest_interval,
+                                             least_intervals_of_its_duration * (end - start));
   due_ = std::max(soonest_, end + intervals_of_its_duration * (end - start));
 }
 

@@ -52,9 +52,9 @@ class MapFile {
   const MapStore* to_resume() const { return is_resumed_ ? &*store_ : nullptr; }
 
   /// Stores a run if enough time has passed: at least half a second, and twenty times what storing
-  /// took, unless submaps take much memory that storing frees. If that fails, and the run can be
-  /// resumed from what was stored before, throws InputError, which says where that is kept.
-  /// Otherwise the map is made without the file.
+  /// took; or four times that, if submaps take much memory that storing frees. If that fails, and
+  /// the run can be resumed from what was stored before, throws InputError, which says where that
+  /// is kept. Otherwise the map is made without the file.
   void store_if_due(MapRun& run, FrameSample& sample, MapInput& input,
                     const PipelineOptions& options);
 
@@ -92,8 +92,8 @@ class MapFile {
   std::optional<Verdict> verdict_before_;
   bool is_resumed_;            ///< whether the file is that of an interrupted run
   bool is_stored_;             ///< whether there was a commit
-  Clock::time_point soonest_;  ///< before, nothing is stored
-  Clock::time_point due_;      ///< then, the run is stored in any case
+  Clock::time_point soonest_;  ///< nothing is stored before this time
+  Clock::time_point due_;      ///< the run is stored at this time, however little memory it takes
 };
 
 /// Prints a note if a killed run has left its map beside a result.

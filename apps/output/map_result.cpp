@@ -105,8 +105,8 @@ void keeping_map(const OutputFolder& out, const Step& step) {
   }
 }
 
-/// Adds consistency measures, mesh and map.pcd. A failure of one of them is stored, and the others
-/// are still added.
+/// Brings the sampled frames back, and adds consistency measures, mesh and map.pcd. A failure of
+/// one of them is stored, and the others are still added.
 void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput& output) {
   const auto add_file = [&](const char* name, const auto& write) {
     const std::filesystem::path file = out.path() / name;
@@ -115,6 +115,7 @@ void add_what_follows(const OutputFolder& out, FinishedMap& finished, MapOutput&
       std::filesystem::remove(file, ignored);
     }
   };
+  output.failures.attempt("some frames of the page", [&] { output.sample.bring_back(); });
   output.failures.attempt("consistency", [&] {
     finished.consistency = consistency_of(finished.map, output.sample, output.sensor,
                                           output.options.pipeline.unwrap.method);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "support/stored_map.hpp"
-#include "support/temporary_folder.hpp"
 
 // Composition: what holds of the whole, whatever its stages do.
 
@@ -13,6 +12,7 @@
 
 #include <tofmap/core/error.hpp>
 #include <tofmap/evaluation/trajectory_score.hpp>
+#include <tofmap/mapping/moving_regions.hpp>
 #include <tofmap/pipeline/frame_sample.hpp>
 #include <tofmap/pipeline/pipeline.hpp>
 #include <tofmap/simulation/simulator.hpp>
@@ -334,12 +334,6 @@ TEST(MapRun, GoesOnToTheSameBitsAfterItWasPutAside) {
   expect_same_bits(resumed, at_once);
 }
 
-/// Whether two images have the same values, or none, everywhere.
-bool same_bits(const ImageF& one, const ImageF& other) {
-  return one.rows() == other.rows() && one.cols() == other.cols() &&
-         ((one == other) || (one.isNaN() && other.isNaN())).all();
-}
-
 /// A run with a sample of its frames.
 struct SampledRun {
   static constexpr int frames = 30;
@@ -411,35 +405,45 @@ TEST(MapRun, KeepsNoSampledFrameInMemoryThatIsInTheFile) {
   run.advance(source, options.frames);
   FrameSample& sample = run.sample;
   const std::vector<SampledFrame> before = sample.frames();
-  const test::TemporaryFolder folder;
-  MapStore store = MapStore::create(folder.path() / map_file_name);
-  {
-    MapStore::Commit commit(store);
-    sample.save(commit);
-    commit.finish();
-  }
-  sample.note_saved(store);
-  EXPECT_THROW(sample.frames(), UsageError);
+  const test::StoredMap file;
+  const auto put_aside = [&] {
+    file.save(sample);
+    sample.note_saved(file.store());
+    EXPECT_THROW(sample.frames(), UsageError);
+  };
+
+  put_aside();
   sample.bring_back();
   ASSERT_EQ(sample.frames().size(), before.size());
   for (std::size_t i = 0; i < before.size(); ++i) {
     const SampledFrame& after = sample.frames()[i];
     EXPECT_EQ(after.recorded.index, before[i].recorded.index);
     for (std::size_t f = 0; f < before[i].recorded.phases.size(); ++f) {
-      EXPECT_TRUE(same_bits(after.recorded.phases[f], before[i].recorded.phases[f])) << i;
-      EXPECT_TRUE(same_bits(after.returns.phases[f], before[i].returns.phases[f])) << i;
+      EXPECT_TRUE(same_values(after.recorded.phases[f], before[i].recorded.phases[f])) << i;
+      EXPECT_TRUE(same_values(after.returns.phases[f], before[i].returns.phases[f])) << i;
     }
-    EXPECT_TRUE(same_bits(after.filtered.range_m, before[i].filtered.range_m)) << i;
+    EXPECT_TRUE(same_values(after.filtered.range_m, before[i].filtered.range_m)) << i;
   }
 
-  sample.note_saved(store);
-  {
-    MapStore::Commit commit(store);
-    commit.remove("run/sample/");
-    commit.finish();
-  }
+  // A frame that was put aside is changed, and put aside again.
+  SurfacePoint moving{};
+  moving.getVector3fMap().setConstant(1);
+  moving.confidence = moving_confidence;
+  const SurfaceCloud all_moves(44, 36, moving);
+  put_aside();
+  sample.drop_moving(2, all_moves);
+  put_aside();
   sample.bring_back();
-  EXPECT_TRUE(sample.frames().empty()) << "they cannot be read any more";
+  ASSERT_EQ(sample.frames().size(), before.size());
+  EXPECT_TRUE(sample.frames()[2].filtered.range_m.isNaN().all());
+  EXPECT_TRUE(same_values(sample.frames()[1].filtered.range_m, before[1].filtered.range_m));
+
+  put_aside();
+  MapStore::Commit commit(file.store());
+  commit.remove("run/sample/");
+  commit.finish();
+  EXPECT_THROW(sample.bring_back(), InputError) << "they cannot be read any more";
+  EXPECT_TRUE(sample.frames().empty());
 }
 
 TEST(MapRoom, ShowsEveryReadableFrameInOrder) {

@@ -54,8 +54,16 @@ std::vector<LateFrame> RoomMapper::drop_fragment() {
   content_.loops.resize(static_cast<std::size_t>(kept_loops));
   std::erase_if(recognitions_, refers_to_dropped);
   std::erase_if(possible_places_, refers_to_dropped);
-  std::erase_if(content_.submaps, [&](const Submap& submap) { return submap.anchor >= kept; });
+  const auto is_dropped = [&](const Submap& submap) { return submap.anchor >= kept; };
+  std::vector<int> new_index;  // halves of submaps that a slip separated may be behind dropped ones
+  int kept_submaps = 0;
+  for (const Submap& submap : content_.submaps) {
+    new_index.push_back(kept_submaps);
+    kept_submaps += is_dropped(submap) ? 0 : 1;
+  }
+  std::erase_if(content_.submaps, is_dropped);
   content_.submap_of.resize(static_cast<std::size_t>(kept));
+  for (int& submap : content_.submap_of) submap = new_index[static_cast<std::size_t>(submap)];
   content_.keyframes.shrink(kept);
   searched_ = std::min(searched_, kept);
   last_slip_search_ = std::min(last_slip_search_, kept - 1);

@@ -71,7 +71,8 @@ void FrameSample::add(const Frame& recorded, const PreparedFrame& prepared) {
 void FrameSample::drop_moving(int index, const SurfaceCloud& still) {
   const auto sampled = std::ranges::find(
       frames_, index, [](const SampledFrame& frame) { return frame.recorded.index; });
-  if (sampled == frames_.end() || !bring_back(*sampled)) return;
+  if (sampled == frames_.end()) return;
+  read(*sampled);
   unsaved_.insert(index);
   RangeImage& image = sampled->filtered;
   for (Eigen::Index row = 0; row < image.range_m.rows(); ++row) {

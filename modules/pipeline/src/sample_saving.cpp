@@ -6,6 +6,8 @@
 #include "tofmap/pipeline/frame_sample.hpp"
 
 #include <algorithm>
+#include <exception>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -142,7 +144,7 @@ void FrameSample::save(MapStore::Commit& commit) const {
 
 void FrameSample::note_saved(const MapStore& store) {
   unsaved_.clear();
-  read_ = store.reader();
+  read_entry_ = store.reader();
   for (SampledFrame& frame : frames_) {
     const int index = frame.recorded.index;
     frame = {};
@@ -150,20 +152,25 @@ void FrameSample::note_saved(const MapStore& store) {
   }
 }
 
-/// Reads a frame into memory if it is in the file alone. Returns whether it is in memory.
-bool FrameSample::bring_back(SampledFrame& frame) const {
-  if (is_in_memory(frame)) return true;
-  try {
-    const std::string bytes = read_(entry_of(frame));
-    frame = SampleReader(bytes, camera_).sampled();
-    return true;
-  } catch (const InputError&) {
-    return false;
-  }
+/// Reads a frame into memory if it is in the file alone. Throws InputError if that fails.
+void FrameSample::read(SampledFrame& frame) const {
+  if (is_in_memory(frame)) return;
+  const std::string name = entry_of(frame);
+  const std::string bytes = read_entry_(name);
+  frame = naming(name, [&] { return SampleReader(bytes, camera_).sampled(); });
 }
 
 void FrameSample::bring_back() {
-  std::erase_if(frames_, [&](SampledFrame& frame) { return !bring_back(frame); });
+  std::exception_ptr failure;
+  for (SampledFrame& frame : frames_) {
+    try {
+      read(frame);
+    } catch (const InputError&) {
+      if (!failure) failure = std::current_exception();
+    }
+  }
+  std::erase_if(frames_, std::not_fn(is_in_memory));
+  if (failure) std::rethrow_exception(failure);
 }
 
 const std::vector<SampledFrame>& FrameSample::frames() const {

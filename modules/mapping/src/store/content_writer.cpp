@@ -37,6 +37,8 @@ WrittenKeyframe row_of(const Keyframe& keyframe, const MapContent& content) {
           .cloud = keyframe.cloud.number()};
 }
 
+/// Of all that the row of a frame holds but its time. Two different ones have the same checksum
+/// once in four thousand million times; then the row keeps the earlier pose.
 std::uint32_t checksum_of(const RegisteredFrame& frame) {
   ByteWriter bytes;
   bytes.number(frame.index);
@@ -96,6 +98,18 @@ void write_submaps(const MapContent& content, const WrittenContent& before,
     row.execute();
   }
   remove_from(database, "submaps", "id", content.submaps.size());
+}
+
+/// Indices of all submaps but the latest. Those that are aside already may have been in other rows.
+std::vector<int> submaps_to_put_aside(const MapContent& content) {
+  const auto latest = latest_submap(content);
+  std::vector<int> indices;
+  for (std::size_t i = 0; i < content.submaps.size(); ++i) {
+    if (i != latest || content.submaps[i].surface.is_aside()) {
+      indices.push_back(static_cast<int>(i));
+    }
+  }
+  return indices;
 }
 
 void write_cloud(const Keyframe& keyframe, Insertion& row) {
@@ -245,7 +259,7 @@ StoredParts write_content(const MapContent& content, const WrittenContent& befor
   write_recordings(content, database);
   StoredParts stored;
   write_submaps(content, before, database);
-  stored.submaps = submaps_at_rest(content);
+  stored.submaps = submaps_to_put_aside(content);
   stored.clouds = write_keyframes(content, before, database);
   write_links(content, before, database);
   write_constraints(content, database);

@@ -38,7 +38,7 @@ WrittenContent written(const MapContent& content);
 /// What need not stay in memory once the tables are committed.
 struct StoredParts {
   std::vector<int> clouds;   ///< ids of the keyframes whose clouds were written
-  std::vector<int> submaps;  ///< submaps_at_rest()
+  std::vector<int> submaps;  ///< indices of the submaps, but for the latest, which changes next
 };
 
 /// Brings the tables up to date with a map, given what they hold. Must be called in a transaction.

@@ -26,8 +26,9 @@ struct SampledFrame {
   RangeImage filtered;
 };
 
-/// Keeps some frames of a run in memory, spread evenly over it, for report pages, pictures and
-/// consistency measures, so that no frame is read or unwrapped a second time for them.
+/// Keeps some frames of a run, spread evenly over it, for report pages, pictures and consistency
+/// measures, so that no frame is unwrapped a second time for them. Frames that were saved are in
+/// the file of the map, not in memory, until bring_back().
 class FrameSample {
  public:
   /// `total` is the number of frames of the run. If it is known, the sample keeps the frames at
@@ -46,7 +47,8 @@ class FrameSample {
 
   /// Invalidates the filtered ranges of what moves in a frame that was added (reason
   /// `free_space_violation`). `still` is its cloud without the surface of what moves
-  /// (Motion::still). Ignored if the frame is not kept.
+  /// (Motion::still). Ignored if the frame is not kept. Throws InputError if the frame is in the
+  /// file alone and cannot be read.
   void drop_moving(int index, const SurfaceCloud& still);
 
   /// Keeps `count` of the frames, spread evenly, and frees the memory of the others.
@@ -55,12 +57,12 @@ class FrameSample {
   /// Stores the frames kept so far, but for those that note_saved() tells are stored already. The
   /// length of the run must be known.
   void save(MapStore::Commit& commit) const;
-  /// Must be called after the commit was finished. From then on, the frames are read from the file
-  /// when they are needed.
+  /// Must be called after the commit to this store was finished, before another frame is added.
+  /// From then on, the frames are in the file alone.
   void note_saved(const MapStore& store);
 
-  /// Reads the frames that are in the file alone into memory. Those that cannot be read any more
-  /// are left out of the sample.
+  /// Reads all frames that are in the file alone into memory. If some cannot be read any more, they
+  /// are left out of the sample; then throws InputError, once the others are there.
   void bring_back();
 
   /// Replaces the frames by saved ones. The sample of a resumed run, whose first `frames_done`
@@ -70,12 +72,12 @@ class FrameSample {
   void load(const MapStore& store, int frames_done);
 
   /// The frames kept so far, in ascending order of their indices. Throws UsageError if some are in
-  /// the file alone.
+  /// the file alone: after note_saved(), bring_back() must be called first.
   const std::vector<SampledFrame>& frames() const;
 
  private:
   bool is_its_turn(int index);
-  bool bring_back(SampledFrame& frame) const;
+  void read(SampledFrame& frame) const;
   void drop_every_second();
 
   std::vector<int> wanted_indices_;  ///< empty if the length is unknown
@@ -85,13 +87,14 @@ class FrameSample {
   std::size_t passed_ = 0;            ///< frames offered to add() so far if the length is unknown
   std::vector<SampledFrame> frames_;  ///< those in the file alone have no phases
   std::set<int> unsaved_;  ///< indices of frames that were added or changed since note_saved()
-  std::function<std::string(const std::string& name)> read_;  ///< of the file: MapStore::reader()
+  std::function<std::string(const std::string& name)>
+      read_entry_;  ///< of the file: MapStore::reader()
   CameraModel camera_;
 };
 
 /// The consistency measures of a map, computed from at most consistency_frames() of the sampled
 /// frames. `map` must be finished: the poses come from its trajectory, and a frame without a pose
-/// counts as not registered.
+/// counts as not registered. Throws UsageError as FrameSample::frames() does.
 Consistency consistency_of(const RoomMap& map, const FrameSample& sample, const SensorModel& sensor,
                            UnwrapMethod method);
 
