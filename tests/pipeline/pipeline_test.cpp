@@ -396,13 +396,10 @@ TEST(MapRun, GoesOnToTheSameConsistencyAfterItWasPutAside) {
 }
 
 TEST(MapRun, KeepsNoSampledFrameInMemoryThatIsInTheFile) {
-  SimulatorOptions options;
-  options.width_px = 44;
-  options.height_px = 36;
-  options.frames = 4;
-  Simulator source(make_scene("room"), options);
+  Simulator source = small_room();
+  const CameraModel& camera = source.sensor().camera;
   SampledRun run(source.sensor());
-  run.advance(source, options.frames);
+  run.advance(source, total_frames);
   FrameSample& sample = run.sample;
   const std::vector<SampledFrame> before = sample.frames();
   const test::StoredMap file;
@@ -429,7 +426,8 @@ TEST(MapRun, KeepsNoSampledFrameInMemoryThatIsInTheFile) {
   SurfacePoint moving{};
   moving.getVector3fMap().setConstant(1);
   moving.confidence = moving_confidence;
-  const SurfaceCloud all_moves(44, 36, moving);
+  const SurfaceCloud all_moves(static_cast<std::uint32_t>(camera.width_px),
+                               static_cast<std::uint32_t>(camera.height_px), moving);
   put_aside();
   sample.drop_moving(2, all_moves);
   put_aside();

@@ -11,9 +11,9 @@ namespace tofmap {
 
 /// Brings the file of a map up to date with a run, in one commit: the map, and what resume_run()
 /// needs to continue the run later. `sample` has frames of the run, which are in the file alone
-/// afterwards (FrameSample::bring_back()). `source` is the recording that
-/// the run reads, `options` are the run's options; both are stored to recognise them. Throws
-/// InputError if the file cannot be written.
+/// afterwards (FrameSample::bring_back()). `source` is the recording that the run reads, `options`
+/// are the run's options; both are stored to recognise them. Throws InputError if the file cannot
+/// be written.
 void store_run(MapStore& store, MapRun& run, FrameSample& sample, const SequenceReader& source,
                const PipelineOptions& options);
 
