@@ -123,14 +123,14 @@ void write_cloud(const Keyframe& keyframe, Insertion& row) {
 
 /// Returns the ids of the keyframes whose clouds were written.
 std::vector<int> write_keyframes(const MapContent& content, const WrittenContent& before,
-                                 SQLite::Database& database) {
+                                 const WrittenContent& after, SQLite::Database& database) {
   const std::size_t known = before.keyframes.size();
   std::vector<int> written_clouds;
   Insertion row(database, "keyframes", 9 + pose_columns);
   Insertion cloud_row(database, "clouds", 4);
   for (const Keyframe& keyframe : content.keyframes.all()) {
     const auto id = static_cast<std::size_t>(keyframe.id);
-    const WrittenKeyframe now = row_of(keyframe, content);
+    const WrittenKeyframe& now = after.keyframes[id];
     if (id >= known || now.cloud != before.keyframes[id].cloud) {
       write_cloud(keyframe, cloud_row);
       written_clouds.push_back(keyframe.id);
@@ -215,12 +215,12 @@ void write_constraints(const MapContent& content, SQLite::Database& database) {
 }
 
 void write_frames(const MapContent& content, const WrittenContent& before,
-                  SQLite::Database& database) {
+                  const WrittenContent& after, SQLite::Database& database) {
   remove_from(database, "frames", "id", content.frames.size());
   Insertion row(database, "frames", 6 + pose_columns);
   for (std::size_t i = 0; i < content.frames.size(); ++i) {
     const RegisteredFrame& frame = content.frames[i];
-    if (i < before.frames.size() && checksum_of(frame) == before.frames[i]) continue;
+    if (i < before.frames.size() && after.frames[i] == before.frames[i]) continue;
     int column = 1;
     row.statement.bind(column++, static_cast<std::int64_t>(i));
     row.statement.bind(column++, frame.recording);
@@ -254,17 +254,17 @@ WrittenContent written(const MapContent& content) {
 }
 
 StoredParts write_content(const MapContent& content, const WrittenContent& before,
-                          SQLite::Database& database) {
+                          const WrittenContent& after, SQLite::Database& database) {
   write_properties(content, database);
   write_recordings(content, database);
   StoredParts stored;
   write_submaps(content, before, database);
   stored.submaps = submaps_to_put_aside(content);
-  stored.clouds = write_keyframes(content, before, database);
+  stored.clouds = write_keyframes(content, before, after, database);
   write_links(content, before, database);
   write_constraints(content, database);
-  write_frames(content, before, database);
-  if (checksum_of(content.changes) != before.changes) write_changes(content.changes, database);
+  write_frames(content, before, after, database);
+  if (after.changes != before.changes) write_changes(content.changes, database);
   return stored;
 }
 

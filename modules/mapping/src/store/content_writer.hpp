@@ -41,8 +41,9 @@ struct StoredParts {
   std::vector<int> submaps;  ///< indices of the submaps, but for the latest, which changes next
 };
 
-/// Brings the tables up to date with a map, given what they hold. Must be called in a transaction.
+/// Brings the tables up to date with a map, given what they hold, and what they are to hold, which
+/// is written() of the map. Must be called in a transaction.
 StoredParts write_content(const MapContent& content, const WrittenContent& before,
-                          SQLite::Database& database);
+                          const WrittenContent& after, SQLite::Database& database);
 
 }  // namespace tofmap

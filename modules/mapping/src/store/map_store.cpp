@@ -158,7 +158,8 @@ MapStore::Commit::~Commit() = default;
 void MapStore::Commit::write(const MapContent& content) {
   naming_file(store_.file_->path, [&] {
     File& file = *store_.file_;
-    const StoredParts stored = write_content(content, file.written, file.database);
+    open_->written = written(content);
+    const StoredParts stored = write_content(content, file.written, *open_->written, file.database);
     for (const int id : stored.clouds) {
       open_->clouds.emplace_back(id, content.keyframes[id].cloud);
     }
@@ -166,7 +167,6 @@ void MapStore::Commit::write(const MapContent& content) {
       open_->surfaces.emplace_back(id, content.submaps[static_cast<std::size_t>(id)].surface);
     }
     open_->surface_options = content.surface_options;
-    open_->written = written(content);
   });
 }
 
