@@ -14,6 +14,8 @@ in it. For each scene, a line has
     right    share of its frames that were localised within 1 cm and 0.5 degrees, %
     near     the same relative to the keyframe of the map that sees most nearly the same, so that
              most of the map's own errors have no part in it, %
+    exact    share of frames that are localised rightly in a copy of the map whose keyframes have
+             their true poses, %: what this camera path allows, whatever the errors of the map
     mm, deg  largest error of a localised pose. The frame of the map is aligned with the truth by
              the path of the first recording, from which it was made; the second one has no part
              in that
@@ -34,6 +36,8 @@ import numpy
 import scipy.spatial
 from scipy.spatial.transform import Rotation
 
+from exact_map import make_exact_map
+from pose_file import poses
 from recording import frames, make, rays
 from surface import PLY_TYPES, Surface, read_ply, thinned
 
@@ -42,17 +46,6 @@ SCENES = ["wall", "room", "slope", "hall", "corridor", "flat", "passage", "atriu
 NEAR_M = 0.06  # one and a half voxels of the map: as far as the mean of a voxel may be off
 FREE_M = 0.02  # a range that is longer by this much passes a surface
 LEAST_VIEWS = 3
-
-
-def poses(file):
-    """The matrices of a trajectory, by their timestamps."""
-    matrices = {}
-    for row in numpy.atleast_2d(numpy.loadtxt(file)):
-        matrix = numpy.eye(4)
-        matrix[:3, :3] = Rotation.from_quat(row[4:8]).as_matrix()
-        matrix[:3, 3] = row[1:4]
-        matrices[round(row[0], 4)] = matrix
-    return matrices
 
 
 def world_of(sequence, result):
@@ -250,12 +243,15 @@ def evaluate(tofmap, folder, scene, seed, arguments):
     make(maps["onto"], tofmap, "map", second, "--onto", maps["first"])
     make(maps["found"], tofmap, "localise", second, "--in", maps["first"])
     world = world_of(first, maps["first"])
+    make_exact_map(folder / "exact.db", first, maps["first"], world)
+    make(folder / "found_exact", tofmap, "localise", second, "--in", folder / "exact.db")
     found = localisation(world, second, maps["found"])
+    exact = localisation(world, second, folder / "found_exact")
     near = right_near_keyframes(first, maps["first"], second, maps["found"])
     points, right, truth, recalled = changes(first, second, maps, world)
     moved = moved_pieces(second, maps["onto"])
-    print(f"{scene:9} {seed:4} {found[0]:6.1f} {found[1]:6.1f} {near:6.1f} {found[2]:6.1f} "
-          f"{found[3]:5.2f} {percent(right, points):6.1f} {percent(recalled, truth):6.1f} "
+    print(f"{scene:9} {seed:4} {found[0]:6.1f} {found[1]:6.1f} {near:6.1f} {exact[1]:6.1f} "
+          f"{found[2]:6.1f} {found[3]:5.2f} {percent(right, points):6.1f} {percent(recalled, truth):6.1f} "
           f"{points:7} {truth:7} {moved[0]:3} {moved[1]:3}", flush=True)
 
 
@@ -270,7 +266,8 @@ def main():
     parser.add_argument("--set", nargs="+", default=[], help="options of the simulator")
     arguments = parser.parse_args()
     tofmap = arguments.build / "apps" / "tofmap"
-    print("scene     seed  found  right   near     mm   deg   prec recall  points   truth moved as")
+    print("scene     seed  found  right   near  exact     mm   deg   prec recall  points   truth "
+          "moved as")
     for scene in arguments.scenes:
         for seed in arguments.seeds:
             folder = arguments.out / f"{scene}_{seed}"

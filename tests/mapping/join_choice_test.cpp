@@ -72,6 +72,15 @@ class MapsOfOneRoom : public testing::Test {
                        {keyframes_, room_.camera(), spacing_, loops_, registration_});
   }
 
+  /// What the second recording tells at its end of a join, whose place has an error.
+  JoinReview review(const Eigen::Vector3d& error_m, const std::vector<PoseEdge>& possible) const {
+    MapJoin join{.into = 0, .map = 1, .into_from_map = true_join(), .edges = {}};
+    join.into_from_map.translation() += error_m;
+    return review_join(
+        join, possible, [](const MapJoin&) { return true; },
+        {keyframes_, room_.camera(), spacing_, loops_, registration_}, least_agreeing_keyframes);
+  }
+
   /// Adds a map of another room, which looks as the first one does.
   void add_room_alike() {
     const std::vector<Keyframe> before = keyframes_;
@@ -169,6 +178,41 @@ TEST_F(MapsOfOneRoom, AreNotJoinedWherePlacesLookAlike) {
   EXPECT_FALSE(choice.join);
   EXPECT_EQ(choice.obstacle, JoinObstacle::ambiguous);
   EXPECT_FALSE(find(edges));
+}
+
+TEST_F(MapsOfOneRoom, StayJoinedAtTheRightPlace) {
+  std::vector<PoseEdge> edges = recognitions(2, {0, 0, 0});
+  for (const PoseEdge& edge : recognitions(3, {1.5, 0, 0})) edges.push_back(edge);
+  const JoinReview at_the_end = review({0, 0, 0}, edges);
+  EXPECT_EQ(at_the_end.obstacle, JoinObstacle::none);
+  EXPECT_FALSE(at_the_end.elsewhere);
+}
+
+TEST_F(MapsOfOneRoom, AreJoinedElsewhereIfLaterKeyframesShowThatThePlaceWasWrong) {
+  std::vector<PoseEdge> edges = recognitions(3, {1.5, 0, 0});
+  for (const PoseEdge& edge : recognitions(2, {0, 0, 0})) edges.push_back(edge);
+  const JoinReview at_the_end = review({1.5, 0, 0}, edges);
+  ASSERT_TRUE(at_the_end.elsewhere);
+  EXPECT_LT((at_the_end.elsewhere->into_from_map.translation() - true_join().translation()).norm(),
+            0.01);
+}
+
+TEST_F(MapsOfOneRoom, DoNotStayJoinedIfAllKeyframesFitElsewhereAsWell) {
+  add_room_alike();
+  const JoinReview at_the_end = review({0, 0, 0}, recognitions_in_both(3));
+  EXPECT_EQ(at_the_end.obstacle, JoinObstacle::ambiguous);
+  EXPECT_FALSE(at_the_end.elsewhere);
+}
+
+TEST_F(MapsOfOneRoom, StayJoinedIfFewKeyframesFitElsewhere) {
+  add_room_alike();
+  // Of the room that looks alike, the map has only a corner.
+  std::erase_if(keyframes_, [](const Keyframe& keyframe) {
+    return keyframe.map == map_alike && keyframe.frame_index > begins[0] + 20;
+  });
+  const JoinReview at_the_end = review({0, 0, 0}, recognitions_in_both(3));
+  EXPECT_EQ(at_the_end.obstacle, JoinObstacle::none);
+  EXPECT_FALSE(at_the_end.elsewhere);
 }
 
 TEST_F(MapsOfOneRoom, AreJoinedAtTheOneOfTwoPlacesAlikeWhereTheCameraCanHaveCome) {

@@ -30,10 +30,6 @@ constexpr double least_ratio = 1.5;
 /// Number of keyframes that must agree on a place for it to be tried, or to be a runner-up.
 constexpr std::size_t least_of_place = 2;
 
-/// Number of keyframes that must agree while others are still to come: of places that look alike,
-/// the right one may be recognised last.
-constexpr std::size_t least_agreeing_so_far = 2 * least_agreeing_keyframes;
-
 std::vector<const PoseEdge*> pointers_to(std::span<const PoseEdge> edges) {
   std::vector<const PoseEdge*> pointers;
   for (const PoseEdge& edge : edges) pointers.push_back(&edge);
@@ -52,8 +48,11 @@ class JoinSearch {
                               const MapJoin* but = nullptr) const;
   std::vector<double> violations_at(const MapJoin& join) const;
   std::optional<MapJoin> confirmed(const MapJoin& join, std::size_t least_agreeing) const;
+  std::size_t fitting(const MapJoin& join) const;
+  bool are_same(const MapJoin& one, const MapJoin& other) const;
 
  private:
+  std::vector<const Keyframe*> some_of_own() const;
   const Keyframe& at(int id) const { return context_.keyframes[static_cast<std::size_t>(id)]; }
   bool is_at(const PoseEdge& edge, const MapJoin& join) const;
   const Keyframe* nearest_of_others(const Pose& pose, const MapJoin& join) const;
@@ -72,14 +71,22 @@ bool JoinSearch::is_at(const PoseEdge& edge, const MapJoin& join) const {
                   recognition_reach_rad);
 }
 
+/// Whether two joins put the map about there as well.
+bool JoinSearch::are_same(const MapJoin& one, const MapJoin& other) const {
+  const Pose& first = own_.front()->world_from_camera;
+  return one.into == other.into && are_near(one.into_from_map * first, other.into_from_map * first,
+                                            recognition_reach_m, recognition_reach_rad);
+}
+
 /// The places that keyframes agree on, those of most recognitions first; without that of a join, if
 /// one is given.
 std::vector<MapJoin> JoinSearch::places(std::span<const PoseEdge> recognitions,
                                         const MapJoin* but) const {
   std::vector<const PoseEdge*> edges;
   for (const PoseEdge& edge : recognitions) {
+    const bool is_of_another = at(edge.to).map == map_ && at(edge.from).map != map_;
     const bool is_left_out = but != nullptr && is_at(edge, *but);
-    if (at(edge.to).map == map_ && !is_left_out) edges.push_back(&edge);
+    if (is_of_another && !is_left_out) edges.push_back(&edge);
   }
   std::vector<MapJoin> places;
   while (edges.size() >= least_of_place) {
@@ -135,17 +142,31 @@ std::optional<MapJoin> JoinSearch::confirmed(const MapJoin& join,
   return join_by(agreeing, map_, context_.keyframes);
 }
 
+/// Keyframes of the map, all along it, that stand for the others.
+std::vector<const Keyframe*> JoinSearch::some_of_own() const {
+  constexpr std::size_t most = 20;
+  const std::size_t step = 1 + (own_.size() - 1) / most;
+  std::vector<const Keyframe*> some;
+  for (std::size_t i = 0; i < own_.size(); i += step) some.push_back(own_[i]);
+  return some;
+}
+
+/// Number of some keyframes of the map that fit at a place.
+std::size_t JoinSearch::fitting(const MapJoin& join) const {
+  std::size_t count = 0;
+  for (const Keyframe* keyframe : some_of_own()) count += registered(*keyframe, join) ? 1 : 0;
+  return count;
+}
+
 /// The shares of free-space violations of the keyframes at a place, the least first. Empty if they
 /// see nothing there that was seen before.
 std::vector<double> JoinSearch::violations_at(const MapJoin& join) const {
-  constexpr std::size_t most_compared = 20;
-  const std::size_t step = 1 + (own_.size() - 1) / most_compared;
   std::vector<double> shares;
-  for (std::size_t i = 0; i < own_.size(); i += step) {
-    const Pose pose = join.into_from_map * own_[i]->world_from_camera;
+  for (const Keyframe* keyframe : some_of_own()) {
+    const Pose pose = join.into_from_map * keyframe->world_from_camera;
     const Keyframe* other = nearest_of_others(pose, join);
     if (other == nullptr) continue;
-    const auto cloud = own_[i]->cloud.load();
+    const auto cloud = keyframe->cloud.load();
     shares.push_back(free_space_violation_share({cloud.get(), pose}, target_of(*other),
                                                 context_.camera, tolerated_pose_error_m));
   }
@@ -193,18 +214,6 @@ std::optional<MapJoin> certain_join(int map, std::span<const PoseEdge> possible,
   return std::nullopt;
 }
 
-/// Whether all places are tried again when a map has this number of keyframes: always up to a
-/// dozen, then whenever their number has grown by 7 %. Otherwise the effort, which grows with the
-/// number of keyframes, would grow with its square.
-bool are_all_tried_at(std::ptrdiff_t keyframes) {
-  constexpr std::ptrdiff_t always_up_to = 12;
-  constexpr double per_doubling = 10;
-  const auto steps_at = [](std::ptrdiff_t count) {
-    return std::floor(per_doubling * std::log2(static_cast<double>(count)));
-  };
-  return keyframes <= always_up_to || steps_at(keyframes) > steps_at(keyframes - 1);
-}
-
 }  // namespace
 
 const Keyframe* nearest_view(const Pose& pose, std::span<const Keyframe> keyframes,
@@ -220,6 +229,15 @@ const Keyframe* nearest_view(const Pose& pose, std::span<const Keyframe> keyfram
     least_steps = steps;
   }
   return nearest;
+}
+
+bool are_places_compared_at(std::ptrdiff_t keyframes) {
+  constexpr std::ptrdiff_t always_up_to = 12;
+  constexpr double per_doubling = 10;
+  const auto steps_at = [](std::ptrdiff_t count) {
+    return std::floor(per_doubling * std::log2(static_cast<double>(count)));
+  };
+  return keyframes <= always_up_to || steps_at(keyframes) > steps_at(keyframes - 1);
 }
 
 std::optional<MapJoin> find_certain_join(int map, std::span<const PoseEdge> possible,
@@ -242,12 +260,31 @@ JoinChoice choose_join(int map, std::span<const PoseEdge> sure, std::span<const 
     if (is_sure) choice.obstacle = JoinObstacle::too_few;
   } else if (!is_sure) {
     choice.join.reset();
-    if (are_all_tried_at(std::ranges::count(context.keyframes, map, &Keyframe::map))) {
+    if (are_places_compared_at(std::ranges::count(context.keyframes, map, &Keyframe::map))) {
       choice.join = certain_join(map, possible, is_possible, context, least_agreeing_so_far);
     }
     if (choice.join) choice.obstacle = JoinObstacle::none;
   }
   return choice;
+}
+
+JoinReview review_join(const MapJoin& join, std::span<const PoseEdge> possible,
+                       const IsPossibleJoin& is_possible, const JoinContext& context,
+                       std::size_t least_agreeing) {
+  JoinReview review{.obstacle = obstacle_of(join, possible, is_possible, context), .elsewhere = {}};
+  if (review.obstacle == JoinObstacle::none) return review;
+  review.elsewhere = certain_join(join.map, possible, is_possible, context, least_agreeing);
+  const JoinSearch search(join.map, context);
+  if (review.elsewhere) {
+    if (search.are_same(*review.elsewhere, join)) review = {};
+    return review;
+  }
+  const std::size_t fitting = search.fitting(join);
+  const auto is_rival = [&](const MapJoin& place) {
+    return is_possible(place) && 2 * search.fitting(place) >= fitting;
+  };
+  review.obstacle = obstacle_of(join, possible, is_rival, context);
+  return review;
 }
 
 }  // namespace tofmap

@@ -3,7 +3,9 @@
 
 // How RoomMapper checks a join of maps by what later frames show, and takes it back.
 
+#include "registration_choice.hpp"
 #include "tofmap/mapping/free_space.hpp"
+#include "tofmap/mapping/place_recognition.hpp"
 #include "tofmap/mapping/room_mapper.hpp"
 
 #include <algorithm>
@@ -49,6 +51,21 @@ bool RoomMapper::refutes_join(const JoinEvidence& evidence, int into) const {
   return evidence.refutes(is_of_earlier_recording(into));
 }
 
+/// Checks the join of the newest map by the newest keyframe.
+void RoomMapper::check_join() {
+  if (!is_joined()) return;
+  evidence_.add(differs_from_others(content_.keyframes[content_.keyframes.size() - 1]));
+  if (refutes_join(evidence_, map_)) {
+    forget_place();
+    take_join_back();
+    return;
+  }
+  const auto is_own_keyframe = [&](const Keyframe& keyframe) { return is_own(keyframe); };
+  if (are_places_compared_at(std::ranges::count_if(content_.keyframes.all(), is_own_keyframe))) {
+    review_join_of_newest(least_agreeing_so_far, false);
+  }
+}
+
 /// Whether earlier recordings have keyframes in a map.
 bool RoomMapper::is_of_earlier_recording(int map) const {
   return std::ranges::any_of(content_.keyframes.all(), [&](const Keyframe& keyframe) {
@@ -88,6 +105,7 @@ TrackingResult RoomMapper::track_apart(NewFrame& frame, std::span<const Keyframe
     evidence_.add(true);
     if (other->recording != recording() && !refutes_join(evidence_, map_)) return result;
     const Pose before = content_.keyframes[current_].world_from_camera;
+    forget_place();
     take_join_back();
     move(result, content_.keyframes[current_].world_from_camera * before.inverse());
   }
@@ -115,6 +133,47 @@ std::optional<StillTracking> RoomMapper::track_undisturbed(NewFrame& frame,
   exchange_clouds(cleaned, content_.keyframes);
   odometry_ = std::move(joined);
   return std::nullopt;
+}
+
+/// Compares the place of the newest map in that of earlier recordings, which it was joined with,
+/// with other places. If another one is certain now, where `least_agreeing` keyframes must agree,
+/// the map is joined there instead. At the end, the join is taken back if no place is certain.
+void RoomMapper::review_join_of_newest(std::size_t least_agreeing, bool at_the_end) {
+  if (!is_joined() || !is_of_earlier_recording(map_)) return;
+  const auto all = content_.keyframes.all();
+  std::vector<Keyframe> apart(all.begin(), all.end());
+  for (Keyframe& keyframe : apart) {
+    if (is_own(keyframe)) keyframe.map = newest_map();
+  }
+  const MapJoin join{.into = map_, .map = newest_map(), .edges = {}};
+  const KeyframeSpacing spacing = keyframe_spacing();
+  const std::vector<Stretch> travelled = stretches(apart);
+  const JoinReview review =
+      review_join(join, possible_places_, possible_after(travelled, apart),
+                  {apart, camera_, spacing, loop_options_, registration_}, least_agreeing);
+  if (!review.elsewhere && (review.obstacle == JoinObstacle::none || !at_the_end)) return;
+  if (review.elsewhere) forget_place();
+  take_join_back();
+  nearness_.obstacle = review.obstacle;
+  if (!review.elsewhere) return;
+  std::vector<const PoseEdge*> agreeing;
+  for (const PoseEdge& edge : review.elsewhere->edges) agreeing.push_back(&edge);
+  this->join(join_by(agreeing, map_, content_.keyframes.all()),
+             stretches(content_.keyframes.all()));
+}
+
+/// Forgets that keyframes of the newest map recognise the place of earlier recordings where a join
+/// has put them, since it is the wrong one.
+void RoomMapper::forget_place() {
+  const auto is_followed = [&](const PoseEdge& edge) {
+    const Keyframe& from = content_.keyframes[edge.from];
+    const Keyframe& to = content_.keyframes[edge.to];
+    return is_own(to) && from.map == to.map &&
+           are_near(from.world_from_camera * edge.from_from_to, to.world_from_camera,
+                    recognition_reach_m, recognition_reach_rad);
+  };
+  std::erase_if(recognitions_, is_followed);
+  std::erase_if(possible_places_, is_followed);
 }
 
 /// Undoes the joins that keyframes of the newest map have led to.

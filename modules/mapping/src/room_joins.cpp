@@ -30,37 +30,40 @@ int RoomMapper::blind_joins() const {
   return static_cast<int>(std::ranges::count_if(joins_, &JoinedMaps::is_blind));
 }
 
-/// The path of the camera through the maps.
-std::vector<Stretch> RoomMapper::stretches() const {
+/// The path of the camera through the maps that keyframes are in.
+std::vector<Stretch> RoomMapper::stretches(std::span<const Keyframe> keyframes) const {
   std::vector<Stretch> stretches;
   if (start_ && !own_frames().empty()) {
     add_position(stretches, start_->map, own_frames().front().timestamp_s,
                  start_->world_from_camera.translation());
   }
   for (const RegisteredFrame& frame : own_frames()) {
-    add_position(stretches, content_.keyframes[frame.keyframe].map, frame.timestamp_s,
-                 pose_of(frame, content_.keyframes).translation());
+    const Keyframe& keyframe = keyframes[static_cast<std::size_t>(frame.keyframe)];
+    add_position(stretches, keyframe.map, frame.timestamp_s,
+                 (keyframe.world_from_camera * frame.keyframe_from_camera).translation());
   }
   return stretches;
 }
 
 /// Whether a join puts the beginning of the recording into the direction that go_on_with() was
 /// told.
-bool RoomMapper::agrees_with_start(const MapJoin& join) const {
+bool RoomMapper::agrees_with_start(const MapJoin& join, std::span<const Keyframe> keyframes) const {
   constexpr double most_rad = M_PI / 4;
   if (!start_ || !start_->has_rotation) return true;
   const RegisteredFrame& first = own_frames().front();
-  if (content_.keyframes[first.keyframe].map != join.map) return true;
-  const Pose joined = join.into_from_map * pose_of(first, content_.keyframes);
+  const Keyframe& keyframe = keyframes[static_cast<std::size_t>(first.keyframe)];
+  if (keyframe.map != join.map) return true;
+  const Pose joined = join.into_from_map * keyframe.world_from_camera * first.keyframe_from_camera;
   return Eigen::AngleAxisd(start_->world_from_camera.linear().transpose() * joined.linear())
              .angle() <= most_rad;
 }
 
 /// Tells the joins that the camera's path through the maps, and the start that it was given, allow.
-/// The stretches must live as long as the result.
-IsPossibleJoin RoomMapper::possible_after(std::span<const Stretch> travelled) const {
-  return [this, travelled](const MapJoin& join) {
-    return can_travel(travelled, join) && agrees_with_start(join);
+/// `travelled` are the stretches of the keyframes. Both must live as long as the result.
+IsPossibleJoin RoomMapper::possible_after(std::span<const Stretch> travelled,
+                                          std::span<const Keyframe> keyframes) const {
+  return [this, travelled, keyframes](const MapJoin& join) {
+    return can_travel(travelled, join) && agrees_with_start(join, keyframes);
   };
 }
 
@@ -70,7 +73,7 @@ void RoomMapper::recognise_place() {
   const auto is_of_this = [&](const Keyframe& other) { return other.map == map_; };
   if (std::ranges::all_of(content_.keyframes.all(), is_of_this)) return;
   const Keyframe& keyframe = content_.keyframes[content_.keyframes.size() - 1];
-  const std::vector<Stretch> travelled = stretches();
+  const std::vector<Stretch> travelled = stretches(content_.keyframes.all());
   const auto join_at = [&](const Keyframe& other, const Pose& pose) {
     return MapJoin{.into = other.map,
                    .map = map_,
@@ -90,8 +93,8 @@ void RoomMapper::recognise_place() {
       candidates.push_back(&other);
     }
   }
-  const auto is_possible = [&, is_possible_join = possible_after(travelled)](const Keyframe& other,
-                                                                             const Pose& pose) {
+  const auto is_possible_join = possible_after(travelled, content_.keyframes.all());
+  const auto is_possible = [&](const Keyframe& other, const Pose& pose) {
     return is_possible_join(join_at(other, pose));
   };
   recognise_among(keyframe, std::move(candidates), is_possible);
@@ -128,13 +131,16 @@ std::optional<MapJoin> RoomMapper::found_join(std::span<const Stretch> travelled
   std::vector<PoseEdge> own;
   std::vector<PoseEdge> earlier;
   for (const PoseEdge& edge : recognitions_) {
-    (content_.keyframes[edge.from].recording < recording() ? earlier : own).push_back(edge);
+    const Keyframe& from = content_.keyframes[edge.from];
+    if (from.map == content_.keyframes[edge.to].map) continue;  // joined already
+    (from.recording < recording() ? earlier : own).push_back(edge);
   }
   const auto all = content_.keyframes.all();
   if (auto join = find_join(own, map_, all, loop_options_)) return join;
   const KeyframeSpacing spacing = keyframe_spacing();
-  const JoinChoice choice = choose_join(map_, earlier, possible_places_, possible_after(travelled),
-                                        {all, camera_, spacing, loop_options_, registration_});
+  const JoinChoice choice =
+      choose_join(map_, earlier, possible_places_, possible_after(travelled, all),
+                  {all, camera_, spacing, loop_options_, registration_});
   nearness_.agreeing = choice.agreeing;
   // Later keyframes may disagree with a place that was ambiguous, and make none certain.
   if (choice.obstacle != JoinObstacle::too_few) nearness_.obstacle = choice.obstacle;
@@ -167,11 +173,11 @@ void RoomMapper::join(const MapJoin& join, std::span<const Stretch> travelled) {
     map_ = join.into;
   }
   for (const PoseEdge& edge : join.edges) add_loop(edge);
-  const auto is_joined_now = [&](const PoseEdge& edge) {
-    return content_.keyframes[edge.from].map == content_.keyframes[edge.to].map;
-  };
-  std::erase_if(recognitions_, is_joined_now);
-  std::erase_if(possible_places_, is_joined_now);
+  // Places of earlier recordings are compared again when more is known (review_join()).
+  std::erase_if(recognitions_, [&](const PoseEdge& edge) {
+    const Keyframe& from = content_.keyframes[edge.from];
+    return from.map == content_.keyframes[edge.to].map && from.recording == recording();
+  });
   fit();
 }
 
@@ -180,12 +186,15 @@ void RoomMapper::join(const MapJoin& join, std::span<const Stretch> travelled) {
 void RoomMapper::join_afterwards() {
   const KeyframeSpacing spacing = keyframe_spacing();
   std::set<int> maps;
-  for (const PoseEdge& edge : possible_places_) maps.insert(content_.keyframes[edge.to].map);
+  for (const PoseEdge& edge : possible_places_) {
+    const int map = content_.keyframes[edge.to].map;
+    if (map != content_.keyframes[edge.from].map) maps.insert(map);
+  }
   for (const int map : maps) {
-    const std::vector<Stretch> travelled = stretches();  // a join before has moved them
-    const auto found = find_certain_join(
-        map, possible_places_, possible_after(travelled),
-        {content_.keyframes.all(), camera_, spacing, loop_options_, registration_});
+    const auto all = content_.keyframes.all();
+    const std::vector<Stretch> travelled = stretches(all);  // a join before has moved them
+    const auto found = find_certain_join(map, possible_places_, possible_after(travelled, all),
+                                         {all, camera_, spacing, loop_options_, registration_});
     if (!found || refutes_join(evidence_of(*found), found->into)) continue;
     std::vector<int> joined;
     for (const Keyframe& keyframe : content_.keyframes.all()) {

@@ -23,10 +23,7 @@ namespace tofmap {
 void RoomMapper::close_loops() {
   if (searched_ == content_.keyframes.size()) return;
   searched_ = content_.keyframes.size();
-  if (is_joined()) {
-    evidence_.add(differs_from_others(content_.keyframes[content_.keyframes.size() - 1]));
-    if (refutes_join(evidence_, map_)) take_join_back();
-  }
+  check_join();
   recognise_place();
   if (!loop_options_.close) return;
   const Keyframe& keyframe = content_.keyframes[content_.keyframes.size() - 1];
@@ -72,6 +69,7 @@ bool RoomMapper::loop_awaits_others() const {
 void RoomMapper::finish() {
   if (unfitted_loops_ > 0) fit();
   mend_uncertain_starts();
+  review_join_of_newest(least_agreeing_keyframes, true);
   join_afterwards();
   if (unfitted_loops_ > 0) fit();
   smooth_path(content_, recording(), odometry_options_.prior_rotation_sigma_rad,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <span>
 
@@ -19,6 +20,15 @@ inline constexpr double steps_of_same_view = 3;
 const Keyframe* nearest_view(const Pose& pose, std::span<const Keyframe> keyframes,
                              const KeyframeSpacing& spacing,
                              const std::function<bool(const Keyframe&)>& counts);
+
+/// Number of keyframes that must agree while others are still to come: of places that look alike,
+/// the right one may be recognised last.
+inline constexpr std::size_t least_agreeing_so_far = 2 * least_agreeing_keyframes;
+
+/// Whether all places are compared again when a map has this number of keyframes: always up to a
+/// dozen, then whenever their number has grown by 7 %. Otherwise the effort, which grows with the
+/// number of keyframes, would grow with its square.
+bool are_places_compared_at(std::ptrdiff_t keyframes);
 
 /// What the search for a join knows of all maps.
 struct JoinContext {
@@ -66,5 +76,21 @@ struct JoinChoice {
 /// are as for find_certain_join(), `sure` some of them.
 JoinChoice choose_join(int map, std::span<const PoseEdge> sure, std::span<const PoseEdge> possible,
                        const IsPossibleJoin& is_possible, const JoinContext& context);
+
+/// What later keyframes tell about a join with a map of earlier recordings.
+struct JoinReview {
+  JoinObstacle obstacle = JoinObstacle::none;  ///< why the join would not be made now
+  std::optional<MapJoin> elsewhere;            ///< the place that is certain now, if there is one
+};
+
+/// Compares the place of a join with all others again, since more of the map is known now. In
+/// `context`, the keyframes of the map have the map's number, as before the join. `elsewhere` is a
+/// place that is certain as for find_certain_join(), if `least_agreeing` keyframes agree there.
+/// Without one, other places are an obstacle only if at least half as many keyframes fit there as
+/// at the place of the join: in a building whose rooms look alike, only parts of a recording fit to
+/// wrong places.
+JoinReview review_join(const MapJoin& join, std::span<const PoseEdge> possible,
+                       const IsPossibleJoin& is_possible, const JoinContext& context,
+                       std::size_t least_agreeing);
 
 }  // namespace tofmap

@@ -89,9 +89,10 @@ struct MapNearness {
 /// (can_travel()); when three keyframes recognise places of another map and agree, both maps are
 /// joined; for a map of earlier recordings, see choose_join(). Others stay separate. The keyframes
 /// and submaps of a map stay apart from those of the maps that it was joined with, so that the join
-/// can be taken back: when two later keyframes differ from what the other map has there, or when a
-/// frame fits only its own map and contradicts the other. A map of fewer than three frames is
-/// dropped again when the next one begins.
+/// can be taken back: when two later keyframes differ from what the other map has there, when a
+/// frame fits only its own map and contradicts the other, or when later keyframes show that another
+/// place of a map of earlier recordings fits clearly better (review_join()). A map of fewer than
+/// three frames is dropped again when the next one begins.
 ///
 /// People, doors and other things that move are found (StillOdometry); they have no part in
 /// registration, keyframes and surface.
@@ -176,9 +177,10 @@ class RoomMapper {
   void integrate(const SurfaceCloud& cloud);
   void close_loops();
   void recognise_place();
-  bool agrees_with_start(const MapJoin& join) const;
-  IsPossibleJoin possible_after(std::span<const Stretch> travelled) const;
-  std::vector<Stretch> stretches() const;
+  bool agrees_with_start(const MapJoin& join, std::span<const Keyframe> keyframes) const;
+  IsPossibleJoin possible_after(std::span<const Stretch> travelled,
+                                std::span<const Keyframe> keyframes) const;
+  std::vector<Stretch> stretches(std::span<const Keyframe> keyframes) const;
   void recognise_among(const Keyframe& keyframe, std::vector<const Keyframe*> candidates,
                        const IsPossiblePlace& is_possible);
   std::optional<MapJoin> found_join(std::span<const Stretch> travelled);
@@ -194,6 +196,9 @@ class RoomMapper {
                                                  const StillTracking& disturbed,
                                                  const StillOdometry& before);
   bool is_of_earlier_recording(int map) const;
+  void check_join();
+  void review_join_of_newest(std::size_t least_agreeing, bool at_the_end);
+  void forget_place();
   void take_join_back();
   void connect_own_keyframes();
   void drop_edges_between_maps();
