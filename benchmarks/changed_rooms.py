@@ -21,7 +21,8 @@ in it. For each scene, a line has
              in that
     prec     share of the points of changes that are on surfaces that changed, %
     recall   share of the surfaces that changed, and that both recordings tell of, that have a
-             point of a change nearby, %
+             point of a change nearby, %: three frames of one see the surface, three of the other
+             see through it, and the map has it
     moved    pieces that were moved, and changes that are called moved
 
 Recordings and maps that are in OUT_DIR are not made again. Needs Debian's python3-numpy,
@@ -45,6 +46,7 @@ SCENES = ["wall", "room", "slope", "hall", "corridor", "flat", "passage", "atriu
           "random"]
 NEAR_M = 0.06  # one and a half voxels of the map: as far as the mean of a voxel may be off
 FREE_M = 0.02  # a range that is longer by this much passes a surface
+STORED_M = 0.002  # to how much true ranges are stored, with some reserve
 LEAST_VIEWS = 3
 
 
@@ -119,15 +121,13 @@ def sampled(triangles):
     return numpy.concatenate(points)
 
 
-def views_through(points, sequence):
-    """For each point, the number of frames of a recording that see through it."""
+def seen_in_frames(points, sequence):
+    """For each frame of a recording: which points are in its image, their pixels (u, v) and
+    distances from the camera, and the true ranges of all pixels."""
     directions = rays(sequence)
     height, width = directions.shape[:2]
-    middle = directions[height // 2, width // 2]
-    count = numpy.zeros(len(points), int)
     truth = poses(sequence / "groundtruth.txt")
     focal = camera_of(directions)
-    assert middle[2] > 0
     for line in frames(sequence):
         file = sequence / "range_truth" / (pathlib.Path(line[1]).stem.split("_")[0] + ".png")
         ranges = cv2.imread(str(file), cv2.IMREAD_UNCHANGED) / 1000
@@ -138,8 +138,27 @@ def views_through(points, sequence):
         pixels[front] = numpy.round(
             seen[front, :2] / seen[front, 2:] * focal[0] + focal[1]).astype(int)
         inside = ((pixels >= 0) & (pixels < (width, height))).all(axis=1)
-        u, v = pixels[inside].T
-        count[inside] += ranges[v, u] > numpy.linalg.norm(seen[inside], axis=1) + FREE_M
+        yield inside, pixels[inside].T, numpy.linalg.norm(seen[inside], axis=1), ranges
+
+
+def views_through(points, sequence):
+    """For each point, the number of frames of a recording that see through it."""
+    count = numpy.zeros(len(points), int)
+    for inside, (u, v), distances, ranges in seen_in_frames(points, sequence):
+        count[inside] += ranges[v, u] > distances + FREE_M
+    return count
+
+
+def views_of(points, sequence):
+    """For each point, the number of frames of a recording that see it: its distance is between the
+    true ranges of its pixel and of those around it, which are stored in millimetres."""
+    around = numpy.ones((3, 3))
+    count = numpy.zeros(len(points), int)
+    for inside, (u, v), distances, ranges in seen_in_frames(points, sequence):
+        least = cv2.erode(ranges, around)[v, u]  # 0 where a ray hits nothing
+        largest = cv2.dilate(ranges, around)[v, u]
+        count[inside] += ((least > 0) & (distances > least - STORED_M) &
+                          (distances < largest + STORED_M))
     return count
 
 
@@ -188,6 +207,8 @@ class Side:
             mapped = scipy.spatial.cKDTree(read_ply(own_map / "map.ply")[0])
             is_mapped = mapped.query(placed)[0] <= 0.04
             points = points[is_mapped]
+        if len(points) > 0:  # sides that face a wall are never seen
+            points = points[views_of(points, own) >= LEAST_VIEWS]
         if len(points) > 0:
             points = points[views_through(points, other) >= LEAST_VIEWS]
         self.points = points @ world[:3, :3].T + world[:3, 3]
