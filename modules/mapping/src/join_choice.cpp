@@ -185,6 +185,11 @@ double mean_of_half(std::span<const double> shares) {
   return mean_of(shares.first((shares.size() + 1) / 2));
 }
 
+/// Whether keyframes contradict a place clearly less than another one, by mean_of_half().
+bool is_clearly_less(double contradicted, double other) {
+  return other >= std::max(contradicted + least_difference, contradicted * least_ratio);
+}
+
 /// None if keyframes contradict the place of a join little, and all others clearly more.
 JoinObstacle obstacle_of(const MapJoin& join, std::span<const PoseEdge> possible,
                          const IsPossibleJoin& is_possible, const JoinContext& context) {
@@ -194,8 +199,8 @@ JoinObstacle obstacle_of(const MapJoin& join, std::span<const PoseEdge> possible
   const double half = mean_of_half(violations);
   const auto runners_up = search.places(possible, &join);
   const bool is_ambiguous = std::ranges::any_of(runners_up, [&](const MapJoin& runner_up) {
-    return is_possible(runner_up) && mean_of_half(search.violations_at(runner_up)) <
-                                         std::max(half + least_difference, half * least_ratio);
+    return is_possible(runner_up) &&
+           !is_clearly_less(half, mean_of_half(search.violations_at(runner_up)));
   });
   return is_ambiguous ? JoinObstacle::ambiguous : JoinObstacle::none;
 }
@@ -273,8 +278,14 @@ JoinReview review_join(const MapJoin& join, std::span<const PoseEdge> possible,
                        std::size_t least_agreeing) {
   JoinReview review{.obstacle = obstacle_of(join, possible, is_possible, context), .elsewhere = {}};
   if (review.obstacle == JoinObstacle::none) return review;
-  review.elsewhere = certain_join(join.map, possible, is_possible, context, least_agreeing);
   const JoinSearch search(join.map, context);
+  const double half = mean_of_half(search.violations_at(join));
+  const auto others = search.places(possible, &join);
+  if (std::ranges::any_of(others, [&](const MapJoin& other) {
+        return is_clearly_less(mean_of_half(search.violations_at(other)), half);
+      })) {
+    review.elsewhere = certain_join(join.map, possible, is_possible, context, least_agreeing);
+  }
   if (review.elsewhere) {
     if (search.are_same(*review.elsewhere, join)) review = {};
     return review;
