@@ -229,7 +229,7 @@ class Side:
 
 
 def changes(first, second, maps, world):
-    """Numbers of points: of changes, of these the right ones, of the truth, of these those found."""
+    """Numbers of points: of changes, of those the right ones, of the truth, of those found ones."""
     points, is_now = changed_points(maps["onto"] / "changes.ply")
     gone = Side(first, second, maps["first"], world)
     new = Side(second, first, maps["onto"], world)
@@ -272,8 +272,9 @@ def evaluate(tofmap, folder, scene, seed, arguments):
     points, right, truth, recalled = changes(first, second, maps, world)
     moved = moved_pieces(second, maps["onto"])
     print(f"{scene:9} {seed:4} {found[0]:6.1f} {found[1]:6.1f} {near:6.1f} {exact[1]:6.1f} "
-          f"{found[2]:6.1f} {found[3]:5.2f} {percent(right, points):6.1f} {percent(recalled, truth):6.1f} "
-          f"{points:7} {truth:7} {moved[0]:3} {moved[1]:3}", flush=True)
+          f"{found[2]:6.1f} {found[3]:5.2f} {percent(right, points):6.1f} "
+          f"{percent(recalled, truth):6.1f} {points:7} {truth:7} {moved[0]:3} {moved[1]:3}",
+          flush=True)
 
 
 def main():

@@ -276,26 +276,31 @@ JoinChoice choose_join(int map, std::span<const PoseEdge> sure, std::span<const 
 JoinReview review_join(const MapJoin& join, std::span<const PoseEdge> possible,
                        const IsPossibleJoin& is_possible, const JoinContext& context,
                        std::size_t least_agreeing) {
-  JoinReview review{.obstacle = obstacle_of(join, possible, is_possible, context), .elsewhere = {}};
-  if (review.obstacle == JoinObstacle::none) return review;
   const JoinSearch search(join.map, context);
-  const double half = mean_of_half(search.violations_at(join));
-  const auto others = search.places(possible, &join);
-  if (std::ranges::any_of(others, [&](const MapJoin& other) {
-        return is_clearly_less(mean_of_half(search.violations_at(other)), half);
-      })) {
-    review.elsewhere = certain_join(join.map, possible, is_possible, context, least_agreeing);
+  const std::vector<double> violations = search.violations_at(join);
+  const double half = mean_of_half(violations);
+  std::vector<MapJoin> rivals;
+  bool is_another_better = false;
+  for (const MapJoin& other : search.places(possible, &join)) {
+    if (!is_possible(other)) continue;
+    const double half_there = mean_of_half(search.violations_at(other));
+    if (!is_clearly_less(half, half_there)) rivals.push_back(other);
+    if (is_clearly_less(half_there, half)) is_another_better = true;
   }
-  if (review.elsewhere) {
-    if (search.are_same(*review.elsewhere, join)) review = {};
-    return review;
+  const bool is_contradicted = mean_of(violations) >= most_violations_of_join;
+  if (!is_contradicted && rivals.empty()) return {};
+  const JoinObstacle obstacle =
+      is_contradicted ? JoinObstacle::contradicted : JoinObstacle::ambiguous;
+  if (is_another_better) {
+    const auto certain = certain_join(join.map, possible, is_possible, context, least_agreeing);
+    if (certain && search.are_same(*certain, join)) return {};
+    if (certain) return {obstacle, certain};
   }
+  if (is_contradicted) return {obstacle, std::nullopt};
   const std::size_t fitting = search.fitting(join);
-  const auto is_rival = [&](const MapJoin& place) {
-    return is_possible(place) && 2 * search.fitting(place) >= fitting;
-  };
-  review.obstacle = obstacle_of(join, possible, is_rival, context);
-  return review;
+  const bool is_ambiguous = std::ranges::any_of(
+      rivals, [&](const MapJoin& rival) { return 2 * search.fitting(rival) >= fitting; });
+  return {is_ambiguous ? obstacle : JoinObstacle::none, std::nullopt};
 }
 
 }  // namespace tofmap
