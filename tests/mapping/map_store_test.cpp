@@ -112,6 +112,17 @@ void expect_same(const MapContent& found, const MapContent& expected) {
     EXPECT_EQ(one.keyframe, other.keyframe) << i;
     EXPECT_EQ(one.keyframe_from_camera.matrix(), other.keyframe_from_camera.matrix()) << i;
     EXPECT_EQ(one.covariance, other.covariance) << i;
+    ASSERT_EQ(one.constraints.size(), other.constraints.size()) << i;
+    for (std::size_t k = 0; k < one.constraints.size(); ++k) {
+      const FrameConstraint& found_constraint = one.constraints[k];
+      const FrameConstraint& constraint = other.constraints[k];
+      EXPECT_EQ(found_constraint.keyframe, constraint.keyframe) << i;
+      EXPECT_EQ(found_constraint.keyframe_from_camera.matrix(),
+                constraint.keyframe_from_camera.matrix())
+          << i;
+      EXPECT_EQ(found_constraint.information, constraint.information) << i;
+      EXPECT_EQ(found_constraint.gradient, constraint.gradient) << i;
+    }
   }
 }
 
@@ -312,6 +323,7 @@ TEST_F(StoredMap, IsRefusedIfARowWasChanged) {
         "UPDATE keyframes SET path_m = CAST(path_m AS TEXT) WHERE id = 1",
         "UPDATE frames SET keyframe = 0 WHERE id = (SELECT MAX(id) FROM frames)",
         "UPDATE links SET rotation_rad2 = 1 WHERE keyframe = 0 AND place = 0",
+        "UPDATE registrations SET x_m = x_m + 1 WHERE frame = 1",
         "UPDATE recordings SET verdict = 'good'", "UPDATE submaps SET voxels = voxels + 1",
         "DELETE FROM frames WHERE id = 0", "INSERT INTO entries VALUES ('', x'')"}) {
     execute(change);
@@ -344,6 +356,13 @@ TEST_F(StoredMap, IsRefusedIfItsTablesContradictEachOther) {
       "UPDATE links SET neighbour = keyframe WHERE keyframe = 0",
       "UPDATE frames SET keyframe = 1000000 WHERE id = 0",
       "UPDATE frames SET covariance = x'00' WHERE id = 0",
+      "UPDATE registrations SET frame = 1000000 WHERE frame = 1",
+      "UPDATE registrations SET keyframe = 1000000 WHERE frame = 1",
+      "UPDATE registrations SET x_m = 1e6 WHERE frame = 1",
+      "UPDATE registrations SET rotation = zeroblob(36) WHERE frame = 1",
+      "UPDATE registrations SET information = x'00' WHERE frame = 1",
+      "UPDATE registrations SET gradient = x'0000807f0000807f0000807f0000807f0000807f0000807f'",
+      "DROP TABLE registrations",
       "UPDATE recordings SET sensor = '{}'",
       "DELETE FROM recordings",
       "UPDATE properties SET value = '{\"voxel_m\": -1}' WHERE name = 'surface'",

@@ -30,12 +30,6 @@ constexpr double least_ratio = 1.5;
 /// Number of keyframes that must agree on a place for it to be tried, or to be a runner-up.
 constexpr std::size_t least_of_place = 2;
 
-std::vector<const PoseEdge*> pointers_to(std::span<const PoseEdge> edges) {
-  std::vector<const PoseEdge*> pointers;
-  for (const PoseEdge& edge : edges) pointers.push_back(&edge);
-  return pointers;
-}
-
 class JoinSearch {
  public:
   JoinSearch(int map, const JoinContext& context) : map_(map), context_(context) {

@@ -16,6 +16,12 @@ std::size_t recognising_keyframes(const std::vector<const PoseEdge*>& recognitio
   return keyframes.size();
 }
 
+std::vector<const PoseEdge*> pointers_to(std::span<const PoseEdge> edges) {
+  std::vector<const PoseEdge*> pointers;
+  for (const PoseEdge& edge : edges) pointers.push_back(&edge);
+  return pointers;
+}
+
 MapJoin join_by(const std::vector<const PoseEdge*>& recognitions, int map,
                 std::span<const Keyframe> keyframes) {
   const PoseEdge& first = *recognitions.front();

@@ -73,8 +73,9 @@ void append_rest(const MapContent& added, std::vector<Keyframe> keyframes, MapCo
   for (const int submap : added.submap_of) content.submap_of.push_back(submap + first_submap);
   for (RegisteredFrame frame : added.frames) {
     frame.keyframe += first;
+    for (FrameConstraint& constraint : frame.constraints) constraint.keyframe += first;
     frame.recording += first_recording;
-    content.frames.push_back(frame);
+    content.frames.push_back(std::move(frame));
   }
   for (PoseEdge edge : added.edges) {
     edge.from += first;

@@ -29,6 +29,10 @@ void move(TrackingResult& result, const Pose& new_from_old_world) {
   for (auto& covariance : result.target_covariances) rotate(covariance);
   if (result.since_keyframe) rotate(result.since_keyframe->covariance);
   for (auto& information : result.registration.target_information) rotate(information);
+  for (auto& equations : result.registration.target_equations) {
+    rotate(equations.information);
+    equations.gradient = rotated_twist(equations.gradient, new_from_old_world.linear());
+  }
 }
 
 }  // namespace
@@ -56,13 +60,12 @@ void RoomMapper::check_join() {
   if (!is_joined()) return;
   evidence_.add(differs_from_others(content_.keyframes[content_.keyframes.size() - 1]));
   if (refutes_join(evidence_, map_)) {
-    forget_place();
-    take_join_back();
+    refute_join();
     return;
   }
   const auto is_own_keyframe = [&](const Keyframe& keyframe) { return is_own(keyframe); };
   if (are_places_compared_at(std::ranges::count_if(content_.keyframes.all(), is_own_keyframe))) {
-    review_join_of_newest(least_agreeing_so_far, false);
+    review_join_of_newest(false);
   }
 }
 
@@ -105,8 +108,7 @@ TrackingResult RoomMapper::track_apart(NewFrame& frame, std::span<const Keyframe
     evidence_.add(true);
     if (other->recording != recording() && !refutes_join(evidence_, map_)) return result;
     const Pose before = content_.keyframes[current_].world_from_camera;
-    forget_place();
-    take_join_back();
+    refute_join();
     move(result, content_.keyframes[current_].world_from_camera * before.inverse());
   }
   return result;
@@ -136,9 +138,9 @@ std::optional<StillTracking> RoomMapper::track_undisturbed(NewFrame& frame,
 }
 
 /// Compares the place of the newest map in that of earlier recordings, which it was joined with,
-/// with other places. If another one is certain now, where `least_agreeing` keyframes must agree,
-/// the map is joined there instead. At the end, the join is taken back if no place is certain.
-void RoomMapper::review_join_of_newest(std::size_t least_agreeing, bool at_the_end) {
+/// with other places. If another one is certain now, the map is joined there instead. At the end,
+/// fewer keyframes must agree, and the join is taken back if no place is certain.
+void RoomMapper::review_join_of_newest(bool at_the_end) {
   if (!is_joined() || !is_of_earlier_recording(map_)) return;
   const auto all = content_.keyframes.all();
   std::vector<Keyframe> apart(all.begin(), all.end());
@@ -150,30 +152,29 @@ void RoomMapper::review_join_of_newest(std::size_t least_agreeing, bool at_the_e
   const std::vector<Stretch> travelled = stretches(apart);
   const JoinReview review =
       review_join(join, possible_places_, possible_after(travelled, apart),
-                  {apart, camera_, spacing, loop_options_, registration_}, least_agreeing);
+                  {apart, camera_, spacing, loop_options_, registration_},
+                  at_the_end ? least_agreeing_keyframes : least_agreeing_so_far);
   if (!review.elsewhere && (review.obstacle == JoinObstacle::none || !at_the_end)) return;
-  if (review.elsewhere) forget_place();
-  take_join_back();
   nearness_.obstacle = review.obstacle;
-  if (!review.elsewhere) return;
-  std::vector<const PoseEdge*> agreeing;
-  for (const PoseEdge& edge : review.elsewhere->edges) agreeing.push_back(&edge);
-  this->join(join_by(agreeing, map_, content_.keyframes.all()),
+  if (!review.elsewhere) return take_join_back();
+  refute_join();
+  this->join(join_by(pointers_to(review.elsewhere->edges), map_, content_.keyframes.all()),
              stretches(content_.keyframes.all()));
 }
 
-/// Forgets that keyframes of the newest map recognise the place of earlier recordings where a join
-/// has put them, since it is the wrong one.
-void RoomMapper::forget_place() {
+/// Takes a join back since its place is the wrong one, and forgets that keyframes of the newest map
+/// recognise this place of earlier recordings.
+void RoomMapper::refute_join() {
   const auto is_followed = [&](const PoseEdge& edge) {
     const Keyframe& from = content_.keyframes[edge.from];
     const Keyframe& to = content_.keyframes[edge.to];
-    return is_own(to) && from.map == to.map &&
+    return is_own(to) && !connects_maps(edge) &&
            are_near(from.world_from_camera * edge.from_from_to, to.world_from_camera,
                     recognition_reach_m, recognition_reach_rad);
   };
   std::erase_if(recognitions_, is_followed);
   std::erase_if(possible_places_, is_followed);
+  take_join_back();
 }
 
 /// Undoes the joins that keyframes of the newest map have led to.
@@ -225,9 +226,7 @@ void RoomMapper::connect_own_keyframes() {
 
 /// Drops the edges, and with them the loops, between keyframes of different maps.
 void RoomMapper::drop_edges_between_maps() {
-  const auto is_between = [&](const PoseEdge& edge) {
-    return content_.keyframes[edge.from].map != content_.keyframes[edge.to].map;
-  };
+  const auto is_between = [&](const PoseEdge& edge) { return connects_maps(edge); };
   const auto fitted = static_cast<std::ptrdiff_t>(content_.loops.size()) - unfitted_loops_;
   std::vector<Loop> kept;
   std::ptrdiff_t index = 0;

@@ -131,9 +131,9 @@ std::optional<MapJoin> RoomMapper::found_join(std::span<const Stretch> travelled
   std::vector<PoseEdge> own;
   std::vector<PoseEdge> earlier;
   for (const PoseEdge& edge : recognitions_) {
-    const Keyframe& from = content_.keyframes[edge.from];
-    if (from.map == content_.keyframes[edge.to].map) continue;  // joined already
-    (from.recording < recording() ? earlier : own).push_back(edge);
+    if (!connects_maps(edge)) continue;  // joined already
+    const bool is_earlier = content_.keyframes[edge.from].recording < recording();
+    (is_earlier ? earlier : own).push_back(edge);
   }
   const auto all = content_.keyframes.all();
   if (auto join = find_join(own, map_, all, loop_options_)) return join;
@@ -175,8 +175,7 @@ void RoomMapper::join(const MapJoin& join, std::span<const Stretch> travelled) {
   for (const PoseEdge& edge : join.edges) add_loop(edge);
   // Places of earlier recordings are compared again when more is known (review_join()).
   std::erase_if(recognitions_, [&](const PoseEdge& edge) {
-    const Keyframe& from = content_.keyframes[edge.from];
-    return from.map == content_.keyframes[edge.to].map && from.recording == recording();
+    return !connects_maps(edge) && content_.keyframes[edge.from].recording == recording();
   });
   fit();
 }
@@ -187,8 +186,7 @@ void RoomMapper::join_afterwards() {
   const KeyframeSpacing spacing = keyframe_spacing();
   std::set<int> maps;
   for (const PoseEdge& edge : possible_places_) {
-    const int map = content_.keyframes[edge.to].map;
-    if (map != content_.keyframes[edge.from].map) maps.insert(map);
+    if (connects_maps(edge)) maps.insert(content_.keyframes[edge.to].map);
   }
   for (const int map : maps) {
     const auto all = content_.keyframes.all();

@@ -7,6 +7,7 @@
 #include "tofmap/mapping/loop_closure.hpp"
 #include "tofmap/mapping/loop_fit.hpp"
 #include "tofmap/mapping/map_fit.hpp"
+#include "tofmap/mapping/path_fit.hpp"
 #include "tofmap/mapping/path_smoothing.hpp"
 #include "tofmap/mapping/room_mapper.hpp"
 #include "tofmap/mapping/slip_search.hpp"
@@ -69,9 +70,10 @@ bool RoomMapper::loop_awaits_others() const {
 void RoomMapper::finish() {
   if (unfitted_loops_ > 0) fit();
   mend_uncertain_starts();
-  review_join_of_newest(least_agreeing_keyframes, true);
+  review_join_of_newest(true);
   join_afterwards();
   if (unfitted_loops_ > 0) fit();
+  fit_path(content_, recording(), loop_options_, held_keyframes());
   smooth_path(content_, recording(), odometry_options_.prior_rotation_sigma_rad,
               odometry_options_.prior_translation_sigma_m);
   // From here on, clouds are gone through in order.

@@ -19,7 +19,7 @@ namespace {
 
 // Raise the number whenever the stored state of a run changes between two releases. The map itself
 // has a version of its own.
-constexpr const char* state_version = TOFMAP_VERSION ", 29";
+constexpr const char* state_version = TOFMAP_VERSION ", 30";
 
 // The names of what is stored besides the map.
 constexpr const char* version_entry = "run/version";

@@ -50,9 +50,8 @@ Sparse information_of(std::span<const Pose> poses, std::span<const PoseEdge> edg
   for (const PoseEdge& edge : edges) {
     const Pose& from = poses[static_cast<std::size_t>(edge.from)];
     const Pose& to = poses[static_cast<std::size_t>(edge.to)];
-    // An error of `from` moves `to` with it, and its rotation swings `to` around it.
-    Matrix6d by_from = -Matrix6d::Identity();
-    by_from.bottomLeftCorner<3, 3>() = cross_product_matrix(to.translation() - from.translation());
+    // An error of `from` moves `to` with it.
+    const Matrix6d by_from = -twist_at_offset(to.translation() - from.translation());
     const Matrix6d information = rotated(edge.covariance.inverse(), from.linear());
     const int row = edge.from - first;
     const int col = edge.to - first;

@@ -176,6 +176,21 @@ Eigen::Matrix<double, 6, 6> rotated(const Eigen::Matrix<double, 6, 6>& matrix,
   return rotation * matrix * rotation.transpose();
 }
 
+Eigen::Matrix<double, 6, 1> rotated_twist(const Eigen::Matrix<double, 6, 1>& twist,
+                                          const Eigen::Matrix3d& new_from_old) {
+  Eigen::Matrix<double, 6, 1> along_new;
+  along_new << new_from_old * twist.head<3>(), new_from_old * twist.tail<3>();
+  return along_new;
+}
+
+Eigen::Matrix<double, 6, 6> twist_at_offset(const Eigen::Vector3d& offset_m) {
+  Matrix6d matrix = Matrix6d::Identity();
+  for (int axis = 0; axis < 3; ++axis) {
+    matrix.block<3, 1>(3, axis) = Eigen::Vector3d::Unit(axis).cross(offset_m);
+  }
+  return matrix;
+}
+
 PoseGraphResult optimise_pose_graph(std::vector<Pose> poses, std::span<const PoseEdge> edges,
                                     double kernel_width, std::size_t held) {
   check_edges(edges, poses.size());

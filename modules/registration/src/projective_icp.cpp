@@ -173,6 +173,10 @@ RegistrationStatus descend(const std::vector<const SurfacePoint*>& points,
     ++result.iterations;
   }
   result.target_information = information_by_target(system, lever_m);
+  for (const NormalEquations& of_target : system.of_target) {
+    result.target_equations.push_back(
+        {of_target.information - of_target.noise_induced, of_target.gradient});
+  }
   return verdict(result, has_converged, options);
 }
 

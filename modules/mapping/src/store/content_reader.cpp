@@ -5,6 +5,7 @@
 
 #include "../state_json.hpp"
 #include "change_rows.hpp"
+#include "registration_rows.hpp"
 #include "rows.hpp"
 
 #include <cstddef>
@@ -178,7 +179,7 @@ void read_frames(SQLite::Database& database, MapContent& content) {
     frame.keyframe_from_camera = pose_in(row, first);
     frame.covariance = numbers_in(row, first + pose_columns);
     if (!frame.covariance.isZero(0)) check_covariance(frame.covariance);
-    content.frames.push_back(frame);
+    content.frames.push_back(std::move(frame));
   });
 }
 
@@ -193,6 +194,12 @@ MapContent read_content(SQLite::Database& database, const PartReaders& readers) 
   read_links(database, content);
   read_constraints(database, content);
   read_frames(database, content);
+  if (format_version(database) > 1) {
+    for_each_row(database, "registrations", "frame, place",
+                 [&](SQLite::Statement& row, int /*number*/) {
+                   read_registration(row, content.keyframes.size(), content.frames);
+                 });
+  }
   const int count = static_cast<int>(content.recordings.size());
   for_each_row(database, "changes", "id", [&](SQLite::Statement& row, int number) {
     expect_id(row, number);

@@ -6,6 +6,7 @@
 #include "change_rows.hpp"
 #include "crc_sum.hpp"
 #include "insertion.hpp"
+#include "registration_rows.hpp"
 #include "rows.hpp"
 
 #include <algorithm>
@@ -216,6 +217,7 @@ void write_constraints(const MapContent& content, SQLite::Database& database) {
 
 void write_frames(const MapContent& content, const WrittenContent& before,
                   const WrittenContent& after, SQLite::Database& database) {
+  remove_from(database, "registrations", "frame", content.frames.size());
   remove_from(database, "frames", "id", content.frames.size());
   Insertion row(database, "frames", 6 + pose_columns);
   for (std::size_t i = 0; i < content.frames.size(); ++i) {
@@ -249,6 +251,7 @@ WrittenContent written(const MapContent& content) {
     written.submap_revisions.push_back(submap.surface.revision());
   }
   for (const RegisteredFrame& frame : content.frames) written.frames.push_back(checksum_of(frame));
+  written.constraints = constraint_checksums(content.frames);
   written.changes = checksum_of(content.changes);
   return written;
 }
@@ -264,6 +267,7 @@ StoredParts write_content(const MapContent& content, const WrittenContent& befor
   write_links(content, before, database);
   write_constraints(content, database);
   write_frames(content, before, after, database);
+  write_registrations(content.frames, before.constraints, after.constraints, database);
   if (after.changes != before.changes) write_changes(content.changes, database);
   return stored;
 }

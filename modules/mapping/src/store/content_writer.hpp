@@ -28,8 +28,9 @@ struct WrittenContent {
   std::vector<std::vector<KeyframeLink>> links;
   std::vector<int> submap_anchors;
   std::vector<std::uint64_t> submap_revisions;
-  std::vector<std::uint32_t> frames;  ///< a checksum of each
-  std::uint32_t changes = 0;          ///< checksum_of() them; 0 without changes
+  std::vector<std::uint32_t> frames;       ///< a checksum of each
+  std::vector<std::uint32_t> constraints;  ///< of each frame, a checksum of those that it has
+  std::uint32_t changes = 0;               ///< checksum_of() them; 0 without changes
 };
 
 /// The same of a map that was just read from the file or written to it.

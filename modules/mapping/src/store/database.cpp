@@ -50,7 +50,7 @@ void check_version(SQLite::Database& database) {
   if (number_of(database, "PRAGMA application_id") != map_application_id) {
     throw InputError(no_map);
   }
-  const int version = number_of(database, "PRAGMA user_version");
+  const int version = format_version(database);
   if (version < 1) throw InputError(damaged_file);
   if (version > map_format_version) {
     throw InputError("is a map of version " + std::to_string(version) +
@@ -197,6 +197,14 @@ SQLite::Database open_database(const fs::path& file, bool is_locked) {
   check_checksum(database);
   if (is_locked) lock(database);
   return database;
+}
+
+int format_version(SQLite::Database& database) {
+  return number_of(database, "PRAGMA user_version");
+}
+
+void bring_up_to_date(SQLite::Database& database) {
+  database.exec(map_schema_since(format_version(database)));
 }
 
 bool is_in_use(const fs::path& file) {

@@ -35,6 +35,12 @@ SQLite::Database create_database(const std::filesystem::path& file);
 /// known. `is_locked`: for this process alone, to be written.
 SQLite::Database open_database(const std::filesystem::path& file, bool is_locked);
 
+/// Adds the tables that a map of an earlier version lacks. To be called in a transaction.
+void bring_up_to_date(SQLite::Database& database);
+
+/// Version of the format of a map.
+int format_version(SQLite::Database& database);
+
 /// Whether another process writes the file.
 bool is_in_use(const std::filesystem::path& file);
 

@@ -150,6 +150,7 @@ MapStore::Commit::Commit(MapStore& store) : store_(store) {
   naming_file(store_.file_->path, [&] {
     open_ = std::make_unique<Open>(store_.file_->database);
     unseal(store_.file_->database);
+    bring_up_to_date(store_.file_->database);
   });
 }
 

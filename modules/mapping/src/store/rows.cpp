@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 #include <tofmap/core/bytes.hpp>
@@ -18,6 +19,14 @@ constexpr int translation_columns = 3;
 
 /// Larger coordinates are damage. Voxels of a centimetre reach as far.
 constexpr double farthest_position_m = 1e4;
+
+template <class Number>
+void read_all(SQLite::Statement& row, int index, std::span<Number> numbers) {
+  const SQLite::Column column = row.getColumn(index);
+  ByteReader bytes(bytes_in(column));
+  bytes.numbers(numbers);
+  bytes.expect_end();
+}
 
 }  // namespace
 
@@ -37,10 +46,7 @@ void bind_pose(SQLite::Statement& statement, int first, const Pose& pose) {
 Pose pose_in(SQLite::Statement& row, int first) {
   Pose pose = Pose::Identity();
   for (int axis = 0; axis < translation_columns; ++axis) {
-    pose.translation()[axis] = number_in(row, first + axis);
-    if (std::abs(pose.translation()[axis]) > farthest_position_m) {
-      throw InputError("a position is more than 10 km from the origin");
-    }
+    pose.translation()[axis] = position_in(row, first + axis);
   }
   Eigen::Matrix3d matrix;
   read_numbers(row, first + pose_columns - 1, matrix.data(), static_cast<int>(matrix.size()));
@@ -53,11 +59,16 @@ void bind_numbers(SQLite::Statement& statement, int index, const double* numbers
   statement.bindNoCopy(index, numbers, static_cast<int>(sizeof(double)) * count);
 }
 
+void bind_numbers(SQLite::Statement& statement, int index, const float* numbers, int count) {
+  statement.bindNoCopy(index, numbers, static_cast<int>(sizeof(float)) * count);
+}
+
 void read_numbers(SQLite::Statement& row, int index, double* numbers, int count) {
-  const SQLite::Column column = row.getColumn(index);
-  ByteReader bytes(bytes_in(column));
-  bytes.numbers({numbers, static_cast<std::size_t>(count)});
-  bytes.expect_end();
+  read_all(row, index, std::span(numbers, static_cast<std::size_t>(count)));
+}
+
+void read_numbers(SQLite::Statement& row, int index, float* numbers, int count) {
+  read_all(row, index, std::span(numbers, static_cast<std::size_t>(count)));
 }
 
 double number_in(SQLite::Statement& row, int index) {
@@ -67,6 +78,14 @@ double number_in(SQLite::Statement& row, int index) {
     throw InputError(std::string("column '") + column.getName() + "' has no plausible number");
   }
   return number;
+}
+
+double position_in(SQLite::Statement& row, int index) {
+  const double position_m = number_in(row, index);
+  if (std::abs(position_m) > farthest_position_m) {
+    throw InputError("a position is more than 10 km from the origin");
+  }
+  return position_m;
 }
 
 int integer_in(SQLite::Statement& row, int index, int least, int most) {

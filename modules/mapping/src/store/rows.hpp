@@ -26,13 +26,18 @@ Pose pose_in(SQLite::Statement& row, int first);
 
 /// Binds numbers, which must stay where they are until the statement was executed.
 void bind_numbers(SQLite::Statement& statement, int index, const double* numbers, int count);
+void bind_numbers(SQLite::Statement& statement, int index, const float* numbers, int count);
 
 /// Reads numbers that bind_numbers() stored. Throws InputError if there are more or fewer, or if
 /// one is not finite.
 void read_numbers(SQLite::Statement& row, int index, double* numbers, int count);
+void read_numbers(SQLite::Statement& row, int index, float* numbers, int count);
 
 /// A number that must be finite.
 double number_in(SQLite::Statement& row, int index);
+
+/// A coordinate in metres, of a plausible size.
+double position_in(SQLite::Statement& row, int index);
 
 /// An integer from `least` to `most`.
 int integer_in(SQLite::Statement& row, int index, int least, int most);

@@ -4,10 +4,37 @@
 #include "schema.hpp"
 
 namespace tofmap {
+namespace {
+
+/// Since version 2.
+constexpr const char* registrations_schema = R"sql(
+CREATE TABLE registrations (
+  frame INTEGER NOT NULL REFERENCES frames(id),
+  place INTEGER NOT NULL,
+  keyframe INTEGER NOT NULL REFERENCES keyframes(id),
+  x_m REAL NOT NULL,
+  y_m REAL NOT NULL,
+  z_m REAL NOT NULL,
+  rotation BLOB NOT NULL,
+  information BLOB NOT NULL,
+  gradient BLOB NOT NULL,
+  PRIMARY KEY (frame, place)
+) WITHOUT ROWID;
+)sql";
+
+std::string version_statement() {
+  return "PRAGMA user_version = " + std::to_string(map_format_version) + ";";
+}
+
+}  // namespace
+
+std::string map_schema_since(int version) {
+  return version < 2 ? registrations_schema + version_statement() : std::string();
+}
 
 std::string map_schema() {
-  return "BEGIN; PRAGMA application_id = " + std::to_string(map_application_id) +
-         "; PRAGMA user_version = " + std::to_string(map_format_version) + R"sql(;
+  return "BEGIN; PRAGMA application_id = " + std::to_string(map_application_id) + ";" +
+         version_statement() + registrations_schema + R"sql(
 
 CREATE TABLE properties (
   name TEXT PRIMARY KEY,

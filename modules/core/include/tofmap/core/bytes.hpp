@@ -31,6 +31,9 @@ class ByteWriter {
   void numbers(std::span<const double> numbers) {
     for (const double one : numbers) number(one);
   }
+  void numbers(std::span<const float> numbers) {
+    for (const float one : numbers) number(one);
+  }
 
   /// Writes whether the image is empty, then its pixels row by row.
   template <class Scalar>
@@ -74,6 +77,9 @@ class ByteReader {
 
   void numbers(std::span<double> numbers) {
     for (double& one : numbers) one = number<double>();
+  }
+  void numbers(std::span<float> numbers) {
+    for (float& one : numbers) one = number<float>();
   }
 
   /// An image of this size, or an empty one.

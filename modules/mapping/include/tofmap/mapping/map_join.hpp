@@ -36,6 +36,9 @@ inline constexpr std::size_t least_agreeing_keyframes = 3;
 /// Number of keyframes that recognitions are of.
 std::size_t recognising_keyframes(const std::vector<const PoseEdge*>& recognitions);
 
+/// Pointers to edges, valid as long as these stay where they are.
+std::vector<const PoseEdge*> pointers_to(std::span<const PoseEdge> edges);
+
 /// The join of `map` that recognitions agree on: the relative pose is that of the first one.
 /// `keyframes` are in the order of their ids, from 0.
 MapJoin join_by(const std::vector<const PoseEdge*>& recognitions, int map,

@@ -197,8 +197,8 @@ class RoomMapper {
                                                  const StillOdometry& before);
   bool is_of_earlier_recording(int map) const;
   void check_join();
-  void review_join_of_newest(std::size_t least_agreeing, bool at_the_end);
-  void forget_place();
+  void review_join_of_newest(bool at_the_end);
+  void refute_join();
   void take_join_back();
   void connect_own_keyframes();
   void drop_edges_between_maps();
@@ -207,6 +207,10 @@ class RoomMapper {
   int recording() const { return static_cast<int>(content_.recordings.size()) - 1; }
   int newest_map() const { return begun_maps_ - 1; }
   bool is_joined() const { return map_ != newest_map(); }
+  /// Whether the keyframes of an edge are in different maps.
+  bool connects_maps(const PoseEdge& edge) const {
+    return content_.keyframes[edge.from].map != content_.keyframes[edge.to].map;
+  }
   bool is_own(const Keyframe& keyframe) const { return keyframe.taken_in == newest_map(); }
   std::vector<const Keyframe*> own(std::span<const Keyframe* const> keyframes) const;
   const Keyframe* keyframe_near(const Pose& pose, int map) const;

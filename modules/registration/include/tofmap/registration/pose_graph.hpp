@@ -32,6 +32,14 @@ void widen(PoseEdge& edge, double rotation_sigma_rad, double translation_sigma_m
 Eigen::Matrix<double, 6, 6> rotated(const Eigen::Matrix<double, 6, 6>& matrix,
                                     const Eigen::Matrix3d& new_from_old);
 
+/// A twist along other axes.
+Eigen::Matrix<double, 6, 1> rotated_twist(const Eigen::Matrix<double, 6, 1>& twist,
+                                          const Eigen::Matrix3d& new_from_old);
+
+/// Maps a small twist of a body to that of its point at `offset_m`: a rotation swings the point
+/// around. All are along the same axes.
+Eigen::Matrix<double, 6, 6> twist_at_offset(const Eigen::Vector3d& offset_m);
+
 /// Throws UsageError if an edge refers to a pose that does not exist, or connects a pose with
 /// itself. `poses` is their number.
 void check_edges(std::span<const PoseEdge> edges, std::size_t poses);

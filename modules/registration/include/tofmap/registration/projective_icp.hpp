@@ -101,6 +101,16 @@ struct RegistrationFigures {
   int degenerate_directions = 0;
 };
 
+/// What the correspondences with one target tell about a small correction of the source's pose, a
+/// twist as for RegistrationResult::covariance: of that target alone, it would be −information⁻¹ ·
+/// gradient. Without what is noise-induced, so that sums over many frames are not biased; along
+/// directions that the surfaces hardly constrain, the information of a single frame is noise, and
+/// may be negative.
+struct TargetEquations {
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
+};
+
 /// The pose that register_to_targets() found, and how well it fits.
 struct RegistrationResult : RegistrationFigures {
   Pose world_from_camera = Pose::Identity();  ///< to be used only if the registration succeeded()
@@ -115,6 +125,10 @@ struct RegistrationResult : RegistrationFigures {
   /// surfaces do not constrain, even if those of another target do. Empty if too few
   /// correspondences were found.
   std::vector<Eigen::Matrix<double, 6, 6>> target_information;
+
+  /// The equations of each target at the pose of the last iteration. Empty if too few
+  /// correspondences were found.
+  std::vector<TargetEquations> target_equations;
 
   /// Share of the observations that constrain each direction of motion, in ascending order, from 0
   /// (unconstrained) to 1. Rotations are measured as the motion of points at the median range of

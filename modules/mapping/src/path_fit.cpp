@@ -1,0 +1,245 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/mapping/path_fit.hpp"
+
+#include "correction_system.hpp"
+
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include <Eigen/Eigenvalues>
+
+#include <tofmap/registration/pose_graph.hpp>
+
+namespace tofmap {
+namespace {
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+/// Constraints are linear up to small errors only. A larger one is due to a loop that moved the
+/// keyframe, or to a wrong registration.
+constexpr double most_translation_m = 0.1;
+constexpr double most_rotation_rad = 0.05;
+
+/// How far a frame may be from where it is relative to its keyframe, as standard deviations. It
+/// holds frames that have no constraints.
+constexpr double frame_rotation_sigma_rad = 0.03;
+constexpr double frame_translation_sigma_m = 0.1;
+
+/// By what the standard deviations of odometry are multiplied: its edges are from registrations
+/// that are among the constraints already.
+constexpr double odometry_sigmas = 5;
+
+/// What a registration tells along the directions that it constrains: with positive information,
+/// and a minimum in reach. The rest is noise.
+struct Reliable {
+  Matrix6d information;
+  Vector6d gradient;
+};
+
+Reliable reliable(const Matrix6d& information, const Vector6d& gradient) {
+  constexpr double lever_m = 3;  // rotations count by the motion of points at this range
+  Vector6d scale;
+  scale << Eigen::Vector3d::Constant(1 / lever_m), Eigen::Vector3d::Ones();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(
+      Matrix6d(scale.asDiagonal() * information * scale.asDiagonal()));
+  const Matrix6d directions = scale.cwiseInverse().asDiagonal() * solver.eigenvectors();
+  const Vector6d slopes = solver.eigenvectors().transpose() * scale.asDiagonal() * gradient;
+  Vector6d kept = Vector6d::Zero();
+  for (int i = 0; i < kept.size(); ++i) {
+    const double curvature = solver.eigenvalues()[i];
+    if (std::abs(slopes[i]) < curvature * most_translation_m) kept[i] = 1;
+  }
+  return {
+      directions * solver.eigenvalues().cwiseProduct(kept).asDiagonal() * directions.transpose(),
+      directions * slopes.cwiseProduct(kept)};
+}
+
+/// The problem at the present poses.
+class PathFit {
+ public:
+  PathFit(MapContent& content, int recording, const LoopOptions& options, std::size_t held)
+      : content_(content), recording_(recording), options_(options), held_(held) {}
+
+  /// Corrects all poses once. False if they are not determined.
+  bool step();
+
+ private:
+  const Keyframe& at(int id) const { return content_.keyframes[id]; }
+  bool is_keyframe(const RegisteredFrame& frame) const {
+    const Keyframe& keyframe = at(frame.keyframe);
+    return keyframe.recording == frame.recording && keyframe.frame_index == frame.index;
+  }
+  std::optional<RelativeTerm> term_of(const PoseEdge& edge, const Pose& pose,
+                                      const Matrix6d& information, const Vector6d& gradient) const;
+  std::vector<RelativeTerm> terms_of(const RegisteredFrame& frame, const Pose& pose) const;
+  Matrix6d weighted_information(const PoseEdge& edge) const;
+  void add_edges(CorrectionSystem& system) const;
+  void add_frames(CorrectionSystem& system) const;
+  std::vector<bool> held_keyframes() const;
+  void correct_frame(RegisteredFrame& frame, const Eigen::VectorXd& of_keyframes) const;
+
+  MapContent& content_;
+  int recording_;
+  const LoopOptions& options_;
+  std::size_t held_;
+};
+
+/// The term of a pose that was measured relative to the keyframe `edge.from`. Information and
+/// gradient are along its axes. Empty if the pose is too far from there.
+std::optional<RelativeTerm> PathFit::term_of(const PoseEdge& edge, const Pose& pose,
+                                             const Matrix6d& information,
+                                             const Vector6d& gradient) const {
+  const Pose& world_from_keyframe = at(edge.from).world_from_camera;
+  const Vector6d error = twist_between(world_from_keyframe * edge.from_from_to, pose);
+  if (error.head<3>().norm() > most_rotation_rad || error.tail<3>().norm() > most_translation_m) {
+    return std::nullopt;
+  }
+  const auto [known, slope] = reliable(rotated(information, world_from_keyframe.linear()),
+                                       rotated_twist(gradient, world_from_keyframe.linear()));
+  RelativeTerm term{
+      .keyframe = edge.from,
+      .information = known,
+      .gradient = slope,
+      .twist_by_keyframe = twist_at_offset(pose.translation() - world_from_keyframe.translation())};
+  term.gradient += term.information * error;
+  return term;
+}
+
+/// The terms of a frame at a pose.
+std::vector<RelativeTerm> PathFit::terms_of(const RegisteredFrame& frame, const Pose& pose) const {
+  std::vector<RelativeTerm> terms;
+  for (const FrameConstraint& constraint : frame.constraints) {
+    if (at(constraint.keyframe).map != at(frame.keyframe).map) continue;
+    const PoseEdge edge{.from = constraint.keyframe,
+                        .from_from_to = Pose(constraint.keyframe_from_camera.cast<double>())};
+    const auto term = term_of(edge, pose, constraint.information.cast<double>(),
+                              constraint.gradient.cast<double>());
+    if (term) terms.push_back(*term);
+  }
+  if (is_keyframe(frame)) return terms;
+  Vector6d sigmas;
+  sigmas << Eigen::Vector3d::Constant(frame_rotation_sigma_rad),
+      Eigen::Vector3d::Constant(frame_translation_sigma_m);
+  const PoseEdge present{.from = frame.keyframe, .from_from_to = frame.keyframe_from_camera};
+  terms.push_back(
+      *term_of(present, pose, sigmas.cwiseAbs2().cwiseInverse().asDiagonal(), Vector6d::Zero()));
+  return terms;
+}
+
+/// The information of an edge by which it counts here.
+Matrix6d PathFit::weighted_information(const PoseEdge& edge) const {
+  const Matrix6d information = edge.covariance.inverse();
+  if (edge.may_be_wrong) {
+    const Keyframe& from = at(edge.from);
+    const Vector6d error = rotated_twist(
+        twist_between(from.world_from_camera * edge.from_from_to, at(edge.to).world_from_camera),
+        from.world_from_camera.linear().transpose());
+    // Geman-McClure kernel, as in the pose graph.
+    const double width2 = options_.kernel_width * options_.kernel_width;
+    const double ratio = width2 / (width2 + error.dot(information * error));
+    return ratio * ratio * information;
+  }
+  const bool is_own = at(edge.from).recording == recording_ && at(edge.to).recording == recording_;
+  return is_own ? information / (odometry_sigmas * odometry_sigmas) : information;
+}
+
+void PathFit::add_edges(CorrectionSystem& system) const {
+  auto loop = content_.loops.begin();
+  for (const PoseEdge& edge : content_.edges) {
+    const bool is_used = !edge.may_be_wrong || (loop++)->is_used;
+    if (!is_used || at(edge.from).map != at(edge.to).map) continue;
+    const auto term =
+        term_of(edge, at(edge.to).world_from_camera, weighted_information(edge), Vector6d::Zero());
+    if (term) system.add(edge.to, *term);
+  }
+}
+
+void PathFit::add_frames(CorrectionSystem& system) const {
+  for (const RegisteredFrame& frame : content_.frames) {
+    if (frame.recording != recording_) continue;
+    const std::vector<RelativeTerm> terms = terms_of(frame, pose_of(frame, content_.keyframes));
+    if (is_keyframe(frame)) {
+      for (const RelativeTerm& term : terms) system.add(frame.keyframe, term);
+    } else if (const FrameEquations equations(terms); equations.are_regular()) {
+      system.add_frame(terms, equations);
+    }
+  }
+}
+
+/// For each keyframe, whether it keeps its pose.
+std::vector<bool> PathFit::held_keyframes() const {
+  std::vector<bool> is_held;
+  std::set<int> begun;
+  for (const Keyframe& keyframe : content_.keyframes.all()) {
+    const bool is_first = begun.insert(keyframe.map).second;
+    is_held.push_back(is_first || static_cast<std::size_t>(keyframe.id) < held_);
+  }
+  return is_held;
+}
+
+void PathFit::correct_frame(RegisteredFrame& frame, const Eigen::VectorXd& of_keyframes) const {
+  if (frame.recording != recording_ || is_keyframe(frame)) return;
+  const Pose pose = pose_of(frame, content_.keyframes);
+  const std::vector<RelativeTerm> terms = terms_of(frame, pose);
+  const FrameEquations equations(terms);
+  if (!equations.are_regular()) return;
+  const Pose world_from_keyframe =
+      moved_by(of_keyframes.segment<6>(6 * frame.keyframe), at(frame.keyframe).world_from_camera);
+  frame.keyframe_from_camera = world_from_keyframe.inverse() *
+                               moved_by(frame_correction(terms, equations, of_keyframes), pose);
+}
+
+bool PathFit::step() {
+  const std::vector<bool> is_held = held_keyframes();
+  CorrectionSystem system(is_held);
+  add_edges(system);
+  add_frames(system);
+  const auto corrections = system.solve();
+  if (!corrections) return false;
+  for (RegisteredFrame& frame : content_.frames) correct_frame(frame, *corrections);
+  for (int id = 0; id < content_.keyframes.size(); ++id) {
+    if (is_held[static_cast<std::size_t>(id)]) continue;
+    content_.keyframes.set_pose(
+        id, moved_by(corrections->segment<6>(6 * id), at(id).world_from_camera));
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<FrameConstraint> constraints_of(const TrackingResult& result,
+                                            const KeyframeGraph& keyframes) {
+  std::vector<FrameConstraint> constraints;
+  const auto& equations = result.registration.target_equations;
+  for (std::size_t i = 0; i < equations.size(); ++i) {
+    const int keyframe = result.targets[i];
+    const Pose keyframe_from_world = keyframes[keyframe].world_from_camera.inverse();
+    const Eigen::Matrix3d axes = keyframe_from_world.linear();
+    constraints.push_back({.keyframe = keyframe,
+                           .keyframe_from_camera = Eigen::Isometry3f(
+                               (keyframe_from_world * result.world_from_camera).cast<float>()),
+                           .information = rotated(equations[i].information, axes).cast<float>(),
+                           .gradient = rotated_twist(equations[i].gradient, axes).cast<float>()});
+  }
+  return constraints;
+}
+
+void fit_path(MapContent& content, int recording, const LoopOptions& options, std::size_t held) {
+  constexpr int steps = 2;  // the problem is nearly linear
+  PathFit fit(content, recording, options, held);
+  for (int i = 0; i < steps; ++i) {
+    if (!fit.step()) return;
+  }
+  for (PoseEdge& edge : content.edges) {
+    const Keyframe& from = content.keyframes[edge.from];
+    const Keyframe& to = content.keyframes[edge.to];
+    if (edge.may_be_wrong || from.recording != recording || to.recording != recording) continue;
+    edge.from_from_to = from.world_from_camera.inverse() * to.world_from_camera;
+  }
+}
+
+}  // namespace tofmap

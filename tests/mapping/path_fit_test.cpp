@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: 2026 the tofmap authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "tofmap/mapping/path_fit.hpp"
+
+#include "support/box_room.hpp"
+
+#include <memory>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace tofmap {
+namespace {
+
+using Information = Eigen::Matrix<double, 6, 6>;
+using Twist = Eigen::Matrix<double, 6, 1>;
+
+constexpr int frames = 60;
+constexpr int keyframe_step = 20;
+constexpr double frame_sigma_m = 0.004;  // and radians
+constexpr double keyframe_sigma_m = 0.01;
+
+Pose true_pose(int frame) {
+  return test::moved_by({0, 0.02 * frame, 0}, {0.03 * frame, 0, 0.01 * frame});
+}
+
+/// A path with a keyframe every 20 frames. Each keyframe but the first is off by one draw of noise;
+/// each frame was registered with the keyframes before and after it, with noise of its own.
+class FittedPath : public testing::Test {
+ protected:
+  FittedPath() {
+    content_.recordings.emplace_back();
+    for (int i = 0; i <= frames; i += keyframe_step) add_keyframe(i);
+    for (int i = 0; i <= frames; ++i) add_frame(i);
+  }
+
+  void add_keyframe(int frame) {
+    const Twist noise = frame == 0 ? Twist(Twist::Zero()) : draw(keyframe_sigma_m);
+    const int id = content_.keyframes.size();
+    content_.keyframes.add({.id = id,
+                            .frame_index = frame,
+                            .timestamp_s = frame / 15.0,
+                            .world_from_camera = moved_by(noise, true_pose(frame)),
+                            .cloud = cloud_});
+    if (id == 0) return;
+    PoseEdge edge{.from = id - 1, .to = id};
+    edge.from_from_to = pose(id - 1).inverse() * pose(id);
+    edge.covariance *= keyframe_sigma_m * keyframe_sigma_m;
+    content_.edges.push_back(edge);
+  }
+
+  void add_frame(int i) {
+    const int before = std::min(i / keyframe_step, content_.keyframes.size() - 2);
+    const bool is_last = i == frames;
+    RegisteredFrame frame{
+        .timestamp_s = i / 15.0, .keyframe = before + (is_last ? 1 : 0), .index = i};
+    frame.keyframe_from_camera =
+        pose(frame.keyframe).inverse() * moved_by(draw(frame_sigma_m), true_pose(i));
+    if (i % keyframe_step == 0) {
+      frame.keyframe_from_camera = Pose::Identity();
+    } else {
+      for (const int keyframe : {before, before + 1}) {
+        frame.constraints.push_back(constraint(keyframe, i, draw(frame_sigma_m)));
+      }
+    }
+    content_.frames.push_back(frame);
+  }
+
+  /// What a registration with a keyframe tells that finds the frame off by `error`.
+  static FrameConstraint constraint(int keyframe, int frame, const Twist& error) {
+    const Pose keyframe_from_world = true_pose(keyframe_step * keyframe).inverse();
+    FrameConstraint constraint{.keyframe = keyframe};
+    constraint.keyframe_from_camera =
+        Eigen::Isometry3f((keyframe_from_world * moved_by(error, true_pose(frame))).cast<float>());
+    constraint.information =
+        Eigen::Matrix<float, 6, 6>::Identity() / static_cast<float>(frame_sigma_m * frame_sigma_m);
+    return constraint;
+  }
+
+  Twist draw(double sigma) {
+    return Twist::NullaryExpr([&] { return sigma * normal_(random_); });
+  }
+
+  const Pose& pose(int keyframe) const { return content_.keyframes[keyframe].world_from_camera; }
+
+  void fit(std::size_t held = 0) { fit_path(content_, 0, {}, held); }
+
+  double keyframe_error_m(int keyframe) const {
+    return (pose(keyframe).translation() - true_pose(keyframe_step * keyframe).translation())
+        .norm();
+  }
+
+  double rms_error_m() const {
+    double sum = 0;
+    for (const RegisteredFrame& frame : content_.frames) {
+      sum +=
+          (pose_of(frame, content_.keyframes).translation() - true_pose(frame.index).translation())
+              .squaredNorm();
+    }
+    return std::sqrt(sum / static_cast<double>(content_.frames.size()));
+  }
+
+  std::mt19937 random_{3};
+  std::normal_distribution<double> normal_;
+  std::shared_ptr<const SurfaceCloud> cloud_ = std::make_shared<const SurfaceCloud>(
+      test::box_cloud(test::small_camera(), {-1, -1, -1}, {1, 1, 2}, Pose::Identity()));
+  MapContent content_{test::small_camera(), {}};
+};
+
+TEST_F(FittedPath, PutsKeyframesWhereTheFramesAroundThemSay) {
+  EXPECT_GT(rms_error_m(), 0.007);
+  fit();
+  // 19 frames tell the pose of a keyframe relative to the one before it to √3 · 4 mm · √(2 / 19).
+  EXPECT_LT(keyframe_error_m(1), 0.004);
+  EXPECT_LT(keyframe_error_m(2), 0.006);
+  // Frames keep the noise of two constraints each: √3 · 4 mm / √2.
+  EXPECT_LT(rms_error_m(), 0.0055);
+}
+
+TEST_F(FittedPath, KnowsFromTheGradientWhereSurfacesWouldPutAFrame) {
+  MapContent moved = content_;
+  Twist offset;
+  offset << 0.002, -0.003, 0.001, 0.005, 0.004, -0.006;
+  for (RegisteredFrame& frame : moved.frames) {
+    for (FrameConstraint& constraint : frame.constraints) {
+      const Pose found(constraint.keyframe_from_camera.cast<double>());
+      constraint.keyframe_from_camera = Eigen::Isometry3f(moved_by(offset, found).cast<float>());
+      constraint.gradient = constraint.information * offset.cast<float>();
+    }
+  }
+  fit();
+  fit_path(moved, 0, {}, 0);
+  for (int id = 0; id < content_.keyframes.size(); ++id) {
+    // Rotations commute up to the product of both.
+    EXPECT_LT(twist_between(pose(id), moved.keyframes[id].world_from_camera).norm(), 2e-4) << id;
+  }
+}
+
+TEST_F(FittedPath, MovesNoKeyframeThatIsHeld) {
+  const Pose first = pose(0);
+  const Pose second = pose(1);
+  const double error_m = keyframe_error_m(2);
+  fit(2);
+  EXPECT_EQ(first.matrix(), pose(0).matrix());
+  EXPECT_EQ(second.matrix(), pose(1).matrix());
+  EXPECT_NE(keyframe_error_m(2), error_m);
+}
+
+TEST_F(FittedPath, KeepsWhatItFindsInTheEdgesOfOdometry) {
+  fit();
+  for (const PoseEdge& edge : content_.edges) {
+    EXPECT_LT(twist_between(pose(edge.from) * edge.from_from_to, pose(edge.to)).norm(), 1e-9);
+  }
+}
+
+TEST_F(FittedPath, LeavesOutConstraintsThatAreFarOff) {
+  MapContent undisturbed = content_;
+  content_.frames[30].constraints.push_back(
+      constraint(1, 30, (Twist() << 0, 0, 0, 0.5, 0, 0).finished()));
+  fit();
+  fit_path(undisturbed, 0, {}, 0);
+  EXPECT_LT(twist_between(pose(1), undisturbed.keyframes[1].world_from_camera).norm(), 1e-9);
+}
+
+TEST_F(FittedPath, TakesNegativeInformationForNoise) {
+  for (RegisteredFrame& frame : content_.frames) {
+    for (FrameConstraint& constraint : frame.constraints) constraint.information(5, 5) *= -1;
+  }
+  const std::vector<double> before_m{pose(1).translation().z(), pose(2).translation().z()};
+  fit();
+  // The edges of odometry hold what the frames say nothing of, but for turns of the keyframes.
+  EXPECT_NEAR(pose(1).translation().z(), before_m[0], 0.01);
+  EXPECT_NEAR(pose(2).translation().z(), before_m[1], 0.01);
+}
+
+TEST_F(FittedPath, LeavesOutDirectionsWhoseMinimumIsFarOff) {
+  MapContent undisturbed = content_;
+  for (std::size_t i = 21; i < 30; ++i) {
+    FrameConstraint& constraint = content_.frames[i].constraints.front();
+    FrameConstraint& other = undisturbed.frames[i].constraints.front();
+    // Nothing holds the frame along z, but for a slope that noise has made.
+    for (FrameConstraint* one : {&constraint, &other}) {
+      one->information.row(5).setZero();
+      one->information.col(5).setZero();
+    }
+    constraint.information(5, 5) = 10;
+    constraint.gradient[5] = -30;
+  }
+  fit();
+  fit_path(undisturbed, 0, {}, 0);
+  EXPECT_LT(twist_between(pose(1), undisturbed.keyframes[1].world_from_camera).norm(), 1e-9);
+}
+
+TEST_F(FittedPath, LeavesKeyframesWhereTheyAreWithoutConstraints) {
+  for (RegisteredFrame& frame : content_.frames) frame.constraints.clear();
+  const MapContent before = content_;
+  fit();
+  for (int id = 0; id < content_.keyframes.size(); ++id) {
+    EXPECT_LT(twist_between(before.keyframes[id].world_from_camera, pose(id)).norm(), 1e-9) << id;
+  }
+  for (std::size_t i = 0; i < content_.frames.size(); ++i) {
+    EXPECT_LT(twist_between(before.frames[i].keyframe_from_camera,
+                            content_.frames[i].keyframe_from_camera)
+                  .norm(),
+              1e-9)
+        << i;
+  }
+}
+
+TEST_F(FittedPath, StaysWhereItIsWithNumbersThatNothingCanBeComputedWith) {
+  content_.frames[30].constraints[0].information.setConstant(1e38F);
+  content_.frames[30].constraints[0].gradient.setConstant(-1e38F);
+  fit();
+  for (int id = 0; id < content_.keyframes.size(); ++id) {
+    EXPECT_TRUE(pose(id).matrix().allFinite()) << id;
+  }
+}
+
+}  // namespace
+}  // namespace tofmap
