@@ -37,11 +37,11 @@ class SurfaceInFreeSpace : public testing::Test {
 
   /// Adds a square of `side` x `side` points that faces the cameras.
   void add_square(const Vector3d& corner_m, int side, std::uint32_t observations,
-                  Certainty certainty) {
+                  Certainty certainty, double gap_m = step_m) {
     for (int i = 0; i < side * side; ++i) {
       MapPoint point{};
       point.getVector3fMap() =
-          (corner_m + step_m * Vector3d(i % side, static_cast<double>(i / side), 0)).cast<float>();
+          (corner_m + gap_m * Vector3d(i % side, static_cast<double>(i / side), 0)).cast<float>();
       point.normal_z = -1;
       point.observations = observations;
       seen_.points.push_back(point);
@@ -85,9 +85,21 @@ TEST_F(SurfaceInFreeSpace, TakesAlongWhatIsPossibleBesideIt) {
   EXPECT_EQ(gone(), std::vector<std::size_t>{200});
 }
 
-TEST_F(SurfaceInFreeSpace, IsNotGoneIfItHasNoMoreObservationsThanItMust) {
+TEST_F(SurfaceInFreeSpace, IsGoneEvenIfItWasRarelyObserved) {
   add_square({0, 0, 2}, 10, 3, Certainty::sure);
+  // Without its corners, where fewer points lie side by side.
+  ASSERT_EQ(gone().size(), 1U);
+  EXPECT_GT(gone()[0], 80U);
+}
+
+TEST_F(SurfaceInFreeSpace, IsNoneIfItsPointsWereRarelyObservedAndLieScattered) {
+  add_square({0, 0, 2}, 8, 3, Certainty::sure, 3 * step_m);
   EXPECT_TRUE(gone().empty());
+}
+
+TEST_F(SurfaceInFreeSpace, MayHaveScatteredPointsThatWereOftenObserved) {
+  add_square({0, 0, 2}, 8, 50, Certainty::sure, 3 * step_m);
+  EXPECT_EQ(gone(), std::vector<std::size_t>{64});
 }
 
 TEST_F(SurfaceInFreeSpace, IsFreedFromTheNoiseBeforeAndBehindIt) {

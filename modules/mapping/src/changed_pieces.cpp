@@ -3,6 +3,7 @@
 
 #include "changed_pieces.hpp"
 
+#include "change_noise.hpp"
 #include "near_points.hpp"
 #include "tofmap/mapping/change_detection.hpp"
 #include "tofmap/mapping/free_space.hpp"
@@ -100,83 +101,6 @@ void grow(const MapCloud& points, const NearPoints& search, const std::vector<ch
       return false;
     });
   }
-}
-
-/// The points that belong to changes.
-struct ChangedPoints {
-  MapCloud points;
-  std::vector<char> is_seed;  ///< for each point
-
-  void add(const MapPoint& point, bool point_is_seed) {
-    points.push_back(point);
-    is_seed.push_back(point_is_seed ? 1 : 0);
-  }
-};
-
-/// Median number of observations of the points in reach of one of them.
-std::uint32_t usual_observations(const MapPoint& point, const MapCloud& points,
-                                 const NearPoints& search) {
-  std::vector<std::uint32_t> near;
-  search.any_near(point, [&](std::size_t i) {
-    near.push_back(points[i].observations);
-    return false;
-  });
-  const auto middle = near.begin() + std::ssize(near) / 2;
-  std::ranges::nth_element(near, middle);
-  return *middle;
-}
-
-/// How far the noise of ranges puts points in front of a surface, or behind it.
-float reach_of_noise_m(const SurfaceMapOptions& options) {
-  constexpr double sigmas = 1.5;
-  return static_cast<float>(sigmas * options.max_sigma_m);
-}
-
-/// Whether another point, in front of a point or behind it, was observed clearly more often: that
-/// is where the surface is, and the point is what the noise of ranges adds to it.
-bool is_noise_of_another(const MapPoint& point, const MapCloud& points, const NearPoints& search,
-                         const SurfaceMapOptions& options) {
-  constexpr std::uint32_t clearly = 2;  // times
-  constexpr float least_cosine = 0.5F;  // between the normals of one surface
-  const auto voxel_m = static_cast<float>(options.voxel_m);
-  const float farthest_m = reach_of_noise_m(options);
-  const Eigen::Vector3f normal = point.getNormalVector3fMap();
-  return search.any_near(point, [&](std::size_t i) {
-    const MapPoint& other = points[i];
-    if (other.observations <= clearly * point.observations) return false;
-    const Eigen::Vector3f apart_m = other.getVector3fMap() - point.getVector3fMap();
-    const float along_m = std::abs(normal.dot(apart_m));
-    // Beside the point, in the same layer, voxels may have been observed more often as well.
-    const bool is_beside = along_m <= voxel_m / 2 || normal.cross(apart_m).norm() >= along_m;
-    return !is_beside && along_m <= farthest_m &&
-           normal.dot(other.getNormalVector3fMap()) > least_cosine;
-  });
-}
-
-/// The points of changes that are a surface. Left out are those that hardly have the observations
-/// that a map demands, as most points around them, and those that the noise of ranges puts in front
-/// of a surface, or behind it.
-ChangedPoints without_noise(const ChangedPoints& changed, const SurfaceMapOptions& options) {
-  constexpr float around_voxels = 4;
-  constexpr double hardly = 1.5;  // times the least number
-  const double least = hardly * options.min_observations;
-  const MapCloud& points = changed.points;
-  const NearPoints around(points, around_voxels * static_cast<float>(options.voxel_m));
-  const NearPoints along_ray(points, std::sqrt(2.0F) * reach_of_noise_m(options));
-  std::vector<char> is_noise(points.size());
-#pragma omp parallel for schedule(static)
-  for (std::ptrdiff_t at = 0; at < std::ssize(points); ++at) {
-    const auto i = static_cast<std::size_t>(at);
-    is_noise[i] = usual_observations(points[i], points, around) < least ||
-                          is_noise_of_another(points[i], points, along_ray, options)
-                      ? 1
-                      : 0;
-  }
-  ChangedPoints kept;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (is_noise[i] == 0) kept.add(points[i], changed.is_seed[i] != 0);
-  }
-  return kept;
 }
 
 /// Takes the points that are connected with a point, in ascending order.
