@@ -164,14 +164,21 @@ TEST_F(FittedPath, LeavesOutConstraintsThatAreFarOff) {
 }
 
 TEST_F(FittedPath, TakesNegativeInformationForNoise) {
+  // Nothing is known along the z-axes of keyframes, which differ. All of them know of y.
+  const auto error_y_m = [&](int keyframe) {
+    return std::abs(pose(keyframe).translation().y() -
+                    true_pose(keyframe_step * keyframe).translation().y());
+  };
   for (RegisteredFrame& frame : content_.frames) {
     for (FrameConstraint& constraint : frame.constraints) constraint.information(5, 5) *= -1;
   }
-  const std::vector<double> before_m{pose(1).translation().z(), pose(2).translation().z()};
+  const double z_m = pose(1).translation().z();
+  const double before_m = error_y_m(1) + error_y_m(2) + error_y_m(3);
   fit();
-  // The edges of odometry hold what the frames say nothing of, but for turns of the keyframes.
-  EXPECT_NEAR(pose(1).translation().z(), before_m[0], 0.01);
-  EXPECT_NEAR(pose(2).translation().z(), before_m[1], 0.01);
+  // Without any of these frames, it would stay.
+  EXPECT_LT(error_y_m(1) + error_y_m(2) + error_y_m(3), 0.75 * before_m);
+  // The edges of odometry hold z, but for turns of the keyframes.
+  EXPECT_NEAR(pose(1).translation().z(), z_m, 0.01);
 }
 
 TEST_F(FittedPath, LeavesOutDirectionsWhoseMinimumIsFarOff) {
@@ -209,12 +216,74 @@ TEST_F(FittedPath, LeavesKeyframesWhereTheyAreWithoutConstraints) {
 }
 
 TEST_F(FittedPath, StaysWhereItIsWithNumbersThatNothingCanBeComputedWith) {
-  content_.frames[30].constraints[0].information.setConstant(1e38F);
-  content_.frames[30].constraints[0].gradient.setConstant(-1e38F);
+  constexpr float huge = 3e38F;
+  for (RegisteredFrame& frame : content_.frames) {
+    for (FrameConstraint& constraint : frame.constraints) {
+      constraint.information = huge * Eigen::Matrix<float, 6, 6>::Identity();
+    }
+  }
+  const MapContent before = content_;
   fit();
   for (int id = 0; id < content_.keyframes.size(); ++id) {
-    EXPECT_TRUE(pose(id).matrix().allFinite()) << id;
+    EXPECT_LT(twist_between(before.keyframes[id].world_from_camera, pose(id)).norm(), 0.1) << id;
   }
+}
+
+TEST_F(FittedPath, UsesWhatFramesOfEarlierRecordingsTell) {
+  content_.recordings.emplace_back();
+  MapContent alone = content_;
+  for (RegisteredFrame& frame : alone.frames) frame.constraints.clear();
+  fit_path(content_, 1, {}, 0);
+  fit_path(alone, 1, {}, 0);
+  EXPECT_LT(keyframe_error_m(1), 0.004);
+  EXPECT_LT(twist_between(alone.keyframes[1].world_from_camera, pose(1)).norm(), 0.05);
+  EXPECT_GT(twist_between(alone.keyframes[1].world_from_camera, pose(1)).norm(), 0.005);
+}
+
+TEST_F(FittedPath, FollowsLoopsThatAreUsedAlone) {
+  // A loop that says that the last keyframe is 3 cm farther to the right.
+  PoseEdge edge{.from = 0, .to = 3, .may_be_wrong = true};
+  edge.from_from_to = Eigen::Translation3d(0.03, 0, 0) * (pose(0).inverse() * pose(3));
+  edge.covariance *= 1e-8;
+  content_.edges.push_back(edge);
+  content_.loops.push_back({.from_frame = 0, .to_frame = frames, .is_used = false});
+  MapContent used = content_;
+  used.loops.front().is_used = true;
+  const double before_m = pose(3).translation().x();
+  LoopOptions options;
+  options.kernel_width = 1e6;
+  fit_path(content_, 0, options, 0);
+  fit_path(used, 0, options, 0);
+  EXPECT_NEAR(used.keyframes[3].world_from_camera.translation().x(), before_m + 0.03, 0.002);
+  EXPECT_LT(keyframe_error_m(3), 0.008);
+}
+
+TEST(FrameConstraint, HoldsAlongTheAxesOfItsKeyframe) {
+  Keyframe keyframe{.id = 4};
+  keyframe.world_from_camera = test::moved_by({0.3, -0.5, 0.2}, {1, 2, 3});
+  RegistrationResult registration;
+  registration.world_from_camera = test::moved_by({0.1, 0.2, 0.3}, {2, 2, 1});
+  Eigen::Matrix<double, 6, 1> twist;
+  twist << 0.01, -0.02, 0.03, 0.1, 0.2, -0.1;
+  TargetEquations equations;
+  equations.information.diagonal() << 1, 2, 3, 4, 5, 6;
+  equations.information(0, 4) = equations.information(4, 0) = 0.5;
+  equations.gradient << 1, -2, 3, -4, 5, -6;
+  registration.target_equations = {equations};
+  const Keyframe* const target = &keyframe;
+  const auto constraints = constraints_of(registration, {&target, 1});
+  ASSERT_EQ(constraints.size(), 1U);
+  EXPECT_EQ(constraints[0].keyframe, 4);
+  EXPECT_TRUE(
+      (keyframe.world_from_camera * Pose(constraints[0].keyframe_from_camera.cast<double>()))
+          .isApprox(registration.world_from_camera, 1e-6));
+  // The cost of an error is the same along any axes.
+  const Eigen::Matrix<double, 6, 1> along =
+      rotated_twist(twist, keyframe.world_from_camera.linear().transpose());
+  EXPECT_NEAR(along.dot(constraints[0].information.cast<double>() * along),
+              twist.dot(equations.information * twist), 1e-6);
+  EXPECT_NEAR(along.dot(constraints[0].gradient.cast<double>()), twist.dot(equations.gradient),
+              1e-6);
 }
 
 }  // namespace

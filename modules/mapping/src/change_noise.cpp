@@ -40,7 +40,7 @@ MapCloud one_for_each_voxel(const MapCloud& points, double voxel_m) {
 /// Whether another point, in front of a point or behind it, was observed clearly more often: that
 /// is where the surface is, and the point is what the noise of ranges adds to it.
 bool is_noise_of_another(const MapPoint& point, const MapCloud& points, const NearPoints& search,
-                         float voxel_m) {
+                         float voxel_m, float farthest_m) {
   constexpr std::uint32_t clearly = 2;  // times
   const Eigen::Vector3f normal = point.getNormalVector3fMap();
   return search.any_near(point, [&](std::size_t i) {
@@ -50,7 +50,8 @@ bool is_noise_of_another(const MapPoint& point, const MapCloud& points, const Ne
     const float along_m = std::abs(normal.dot(apart_m));
     // Beside the point, in the same layer, voxels may have been observed more often as well.
     const bool is_beside = along_m <= voxel_m / 2 || normal.cross(apart_m).norm() >= along_m;
-    return !is_beside && normal.dot(other.getNormalVector3fMap()) > least_cosine;
+    return !is_beside && along_m <= farthest_m &&
+           normal.dot(other.getNormalVector3fMap()) > least_cosine;
   });
 }
 
@@ -90,7 +91,8 @@ ChangedPoints without_noise(const ChangedPoints& changed, const SurfaceMapOption
   const auto voxel_m = static_cast<float>(options.voxel_m);
   const MapCloud thinned = one_for_each_voxel(points, options.voxel_m);
   const NearPoints around(thinned, around_voxels * voxel_m);
-  const NearPoints along_ray(points, static_cast<float>(M_SQRT2 * sigmas * options.max_sigma_m));
+  const auto noise_m = static_cast<float>(sigmas * options.max_sigma_m);
+  const NearPoints along_ray(points, std::sqrt(2.0F) * noise_m);
   const double few = hardly * options.min_observations;
   const double scattered = share * M_PI * around_voxels * around_voxels;
   std::vector<char> is_noise(points.size());
@@ -100,7 +102,7 @@ ChangedPoints without_noise(const ChangedPoints& changed, const SurfaceMapOption
     const auto [usual, beside] = surroundings_of(points[i], thinned, around, voxel_m);
     const bool is_scattered = usual < few && beside < scattered;
     is_noise[i] =
-        is_scattered || is_noise_of_another(points[i], points, along_ray, voxel_m) ? 1 : 0;
+        is_scattered || is_noise_of_another(points[i], points, along_ray, voxel_m, noise_m) ? 1 : 0;
   }
   ChangedPoints kept;
   for (std::size_t i = 0; i < points.size(); ++i) {

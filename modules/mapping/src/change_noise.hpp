@@ -12,7 +12,8 @@ namespace tofmap {
 /// The points that belong to changes.
 struct ChangedPoints {
   MapCloud points;
-  std::vector<char> is_seed;  ///< for each point, whether keyframes see through it
+  std::vector<char>
+      is_seed;  ///< for each point, whether it violates free space, and was there with certainty
 
   void add(const MapPoint& point, bool point_is_seed) {
     points.push_back(point);
@@ -21,8 +22,9 @@ struct ChangedPoints {
 };
 
 /// The points of changes that are a surface. Left out are those that the noise of ranges puts in
-/// front of a surface, or behind it, and those that hardly have the observations that a map demands
-/// and lie scattered: points of a surface lie side by side, however rarely it was observed.
+/// front of a surface, or behind it, and those around which points hardly have the observations
+/// that a map demands and lie scattered: points of a surface lie side by side, however rarely it
+/// was observed.
 ChangedPoints without_noise(const ChangedPoints& changed, const SurfaceMapOptions& options);
 
 }  // namespace tofmap

@@ -27,6 +27,9 @@ CorrectionSystem::CorrectionSystem(const std::vector<bool>& is_held) {
   int unknowns = 0;
   for (const bool held : is_held) unknown_of_.push_back(held ? -1 : unknowns++);
   gradient_ = Eigen::VectorXd::Zero(6 * unknowns);
+  // Corrections are far smaller. Keyframes that nothing determines stay where they are.
+  constexpr double sigma = 1;  // metres and radians
+  for (int i = 0; i < unknowns; ++i) blocks_[{i, i}] = Matrix6d::Identity() / (sigma * sigma);
 }
 
 void CorrectionSystem::add(int row, int column, const Matrix6d& block) {

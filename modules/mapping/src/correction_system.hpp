@@ -53,7 +53,8 @@ class CorrectionSystem {
   /// eliminated (Schur complement). `equations` are of the same terms, and must be regular.
   void add_frame(std::span<const RelativeTerm> terms, const FrameEquations& equations);
 
-  /// The corrections, six for each keyframe, zero if it is held. Empty if they are not determined.
+  /// The corrections, six for each keyframe, zero if it is held or if nothing is known of it. Empty
+  /// if they cannot be computed, since numbers are too large.
   std::optional<Eigen::VectorXd> solve() const;
 
  private:

@@ -155,6 +155,8 @@ TrackingResult Odometry::track(double timestamp_s, const SurfaceCloud& cloud,
   result.registration = attempt.registration;
   if (result.status != TrackingStatus::tracked) return result;
   result.world_from_camera = result.registration.world_from_camera;
+  result.constraints = constraints_of(result.registration, attempt.targets);
+  result.registration.target_equations.clear();
   note_change(timestamp_s, result.registration);
   learn_covariances(periods, attempt, result);
   constexpr double share_of_newest = 0.1;

@@ -5,9 +5,10 @@
 
 #include "correction_system.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <optional>
 #include <set>
+#include <vector>
 
 #include <Eigen/Eigenvalues>
 
@@ -19,8 +20,7 @@ namespace {
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-/// Constraints are linear up to small errors only. A larger one is due to a loop that moved the
-/// keyframe, or to a wrong registration.
+/// Largest errors of constraints.
 constexpr double most_translation_m = 0.1;
 constexpr double most_rotation_rad = 0.05;
 
@@ -58,11 +58,23 @@ Reliable reliable(const Matrix6d& information, const Vector6d& gradient) {
       directions * slopes.cwiseProduct(kept)};
 }
 
+/// What was measured of a pose relative to a keyframe, along the axes of the keyframe.
+struct Measured {
+  int keyframe = 0;  ///< id
+  Pose keyframe_from_pose;
+  Matrix6d information;
+  Vector6d gradient = Vector6d::Zero();
+};
+
+bool is_small(const Vector6d& twist) {
+  return twist.head<3>().norm() <= most_rotation_rad &&
+         twist.tail<3>().norm() <= most_translation_m;
+}
+
 /// The problem at the present poses.
 class PathFit {
  public:
-  PathFit(MapContent& content, int recording, const LoopOptions& options, std::size_t held)
-      : content_(content), recording_(recording), options_(options), held_(held) {}
+  PathFit(MapContent& content, int recording, const LoopOptions& options, std::size_t held);
 
   /// Corrects all poses once. False if they are not determined.
   bool step();
@@ -73,40 +85,51 @@ class PathFit {
     const Keyframe& keyframe = at(frame.keyframe);
     return keyframe.recording == frame.recording && keyframe.frame_index == frame.index;
   }
-  std::optional<RelativeTerm> term_of(const PoseEdge& edge, const Pose& pose,
-                                      const Matrix6d& information, const Vector6d& gradient) const;
+  RelativeTerm term_of(const Measured& measured, const Pose& pose) const;
+  Vector6d error_of(const Measured& measured, const Pose& pose) const;
   std::vector<RelativeTerm> terms_of(const RegisteredFrame& frame, const Pose& pose) const;
   Matrix6d weighted_information(const PoseEdge& edge) const;
   void add_edges(CorrectionSystem& system) const;
   void add_frames(CorrectionSystem& system) const;
-  std::vector<bool> held_keyframes() const;
   void correct_frame(RegisteredFrame& frame, const Eigen::VectorXd& of_keyframes) const;
 
   MapContent& content_;
   int recording_;
   const LoopOptions& options_;
   std::size_t held_;
+  std::vector<bool> is_held_;  ///< for each keyframe, whether it keeps its pose
+  std::set<int> constrained_;  ///< recordings whose frames have constraints
 };
 
-/// The term of a pose that was measured relative to the keyframe `edge.from`. Information and
-/// gradient are along its axes. Empty if the pose is too far from there.
-std::optional<RelativeTerm> PathFit::term_of(const PoseEdge& edge, const Pose& pose,
-                                             const Matrix6d& information,
-                                             const Vector6d& gradient) const {
-  const Pose& world_from_keyframe = at(edge.from).world_from_camera;
-  const Vector6d error = twist_between(world_from_keyframe * edge.from_from_to, pose);
-  if (error.head<3>().norm() > most_rotation_rad || error.tail<3>().norm() > most_translation_m) {
-    return std::nullopt;
+PathFit::PathFit(MapContent& content, int recording, const LoopOptions& options, std::size_t held)
+    : content_(content), recording_(recording), options_(options), held_(held) {
+  std::set<int> begun;
+  for (const Keyframe& keyframe : content_.keyframes.all()) {
+    const bool is_first = begun.insert(keyframe.map).second;
+    is_held_.push_back(is_first || static_cast<std::size_t>(keyframe.id) < held);
   }
-  const auto [known, slope] = reliable(rotated(information, world_from_keyframe.linear()),
-                                       rotated_twist(gradient, world_from_keyframe.linear()));
-  RelativeTerm term{
-      .keyframe = edge.from,
-      .information = known,
-      .gradient = slope,
+  for (const RegisteredFrame& frame : content_.frames) {
+    if (!frame.constraints.empty()) constrained_.insert(frame.recording);
+  }
+}
+
+/// The term of a pose that was measured relative to a keyframe. Information and gradient are along
+/// its axes.
+RelativeTerm PathFit::term_of(const Measured& measured, const Pose& pose) const {
+  const Pose& world_from_keyframe = at(measured.keyframe).world_from_camera;
+  const Eigen::Matrix3d axes = world_from_keyframe.linear();
+  const auto [information, gradient] =
+      reliable(rotated(measured.information, axes), rotated_twist(measured.gradient, axes));
+  return {
+      .keyframe = measured.keyframe,
+      .information = information,
+      .gradient = gradient + information * error_of(measured, pose),
       .twist_by_keyframe = twist_at_offset(pose.translation() - world_from_keyframe.translation())};
-  term.gradient += term.information * error;
-  return term;
+}
+
+/// The twist from where a keyframe puts a pose to where it is.
+Vector6d PathFit::error_of(const Measured& measured, const Pose& pose) const {
+  return twist_between(at(measured.keyframe).world_from_camera * measured.keyframe_from_pose, pose);
 }
 
 /// The terms of a frame at a pose.
@@ -114,19 +137,18 @@ std::vector<RelativeTerm> PathFit::terms_of(const RegisteredFrame& frame, const 
   std::vector<RelativeTerm> terms;
   for (const FrameConstraint& constraint : frame.constraints) {
     if (at(constraint.keyframe).map != at(frame.keyframe).map) continue;
-    const PoseEdge edge{.from = constraint.keyframe,
-                        .from_from_to = Pose(constraint.keyframe_from_camera.cast<double>())};
-    const auto term = term_of(edge, pose, constraint.information.cast<double>(),
-                              constraint.gradient.cast<double>());
-    if (term) terms.push_back(*term);
+    const Measured measured{
+        constraint.keyframe, Pose(constraint.keyframe_from_camera.cast<double>()),
+        constraint.information.cast<double>(), constraint.gradient.cast<double>()};
+    if (is_small(error_of(measured, pose))) terms.push_back(term_of(measured, pose));
   }
   if (is_keyframe(frame)) return terms;
   Vector6d sigmas;
   sigmas << Eigen::Vector3d::Constant(frame_rotation_sigma_rad),
       Eigen::Vector3d::Constant(frame_translation_sigma_m);
-  const PoseEdge present{.from = frame.keyframe, .from_from_to = frame.keyframe_from_camera};
-  terms.push_back(
-      *term_of(present, pose, sigmas.cwiseAbs2().cwiseInverse().asDiagonal(), Vector6d::Zero()));
+  terms.push_back(term_of(
+      {frame.keyframe, frame.keyframe_from_camera, sigmas.cwiseAbs2().cwiseInverse().asDiagonal()},
+      pose));
   return terms;
 }
 
@@ -134,17 +156,17 @@ std::vector<RelativeTerm> PathFit::terms_of(const RegisteredFrame& frame, const 
 Matrix6d PathFit::weighted_information(const PoseEdge& edge) const {
   const Matrix6d information = edge.covariance.inverse();
   if (edge.may_be_wrong) {
-    const Keyframe& from = at(edge.from);
     const Vector6d error = rotated_twist(
-        twist_between(from.world_from_camera * edge.from_from_to, at(edge.to).world_from_camera),
-        from.world_from_camera.linear().transpose());
+        error_of({edge.from, edge.from_from_to, information}, at(edge.to).world_from_camera),
+        at(edge.from).world_from_camera.linear().transpose());
     // Geman-McClure kernel, as in the pose graph.
     const double width2 = options_.kernel_width * options_.kernel_width;
     const double ratio = width2 / (width2 + error.dot(information * error));
     return ratio * ratio * information;
   }
-  const bool is_own = at(edge.from).recording == recording_ && at(edge.to).recording == recording_;
-  return is_own ? information / (odometry_sigmas * odometry_sigmas) : information;
+  const bool is_counted = constrained_.contains(at(edge.from).recording) &&
+                          constrained_.contains(at(edge.to).recording);
+  return is_counted ? information / (odometry_sigmas * odometry_sigmas) : information;
 }
 
 void PathFit::add_edges(CorrectionSystem& system) const {
@@ -152,15 +174,15 @@ void PathFit::add_edges(CorrectionSystem& system) const {
   for (const PoseEdge& edge : content_.edges) {
     const bool is_used = !edge.may_be_wrong || (loop++)->is_used;
     if (!is_used || at(edge.from).map != at(edge.to).map) continue;
-    const auto term =
-        term_of(edge, at(edge.to).world_from_camera, weighted_information(edge), Vector6d::Zero());
-    if (term) system.add(edge.to, *term);
+    system.add(edge.to, term_of({edge.from, edge.from_from_to, weighted_information(edge)},
+                                at(edge.to).world_from_camera));
   }
 }
 
 void PathFit::add_frames(CorrectionSystem& system) const {
   for (const RegisteredFrame& frame : content_.frames) {
-    if (frame.recording != recording_) continue;
+    const bool is_held = static_cast<std::size_t>(frame.keyframe) < held_;
+    if (is_held && frame.recording != recording_) continue;  // tells nothing new
     const std::vector<RelativeTerm> terms = terms_of(frame, pose_of(frame, content_.keyframes));
     if (is_keyframe(frame)) {
       for (const RelativeTerm& term : terms) system.add(frame.keyframe, term);
@@ -168,17 +190,6 @@ void PathFit::add_frames(CorrectionSystem& system) const {
       system.add_frame(terms, equations);
     }
   }
-}
-
-/// For each keyframe, whether it keeps its pose.
-std::vector<bool> PathFit::held_keyframes() const {
-  std::vector<bool> is_held;
-  std::set<int> begun;
-  for (const Keyframe& keyframe : content_.keyframes.all()) {
-    const bool is_first = begun.insert(keyframe.map).second;
-    is_held.push_back(is_first || static_cast<std::size_t>(keyframe.id) < held_);
-  }
-  return is_held;
 }
 
 void PathFit::correct_frame(RegisteredFrame& frame, const Eigen::VectorXd& of_keyframes) const {
@@ -194,15 +205,14 @@ void PathFit::correct_frame(RegisteredFrame& frame, const Eigen::VectorXd& of_ke
 }
 
 bool PathFit::step() {
-  const std::vector<bool> is_held = held_keyframes();
-  CorrectionSystem system(is_held);
+  CorrectionSystem system(is_held_);
   add_edges(system);
   add_frames(system);
   const auto corrections = system.solve();
   if (!corrections) return false;
   for (RegisteredFrame& frame : content_.frames) correct_frame(frame, *corrections);
   for (int id = 0; id < content_.keyframes.size(); ++id) {
-    if (is_held[static_cast<std::size_t>(id)]) continue;
+    if (is_held_[static_cast<std::size_t>(id)]) continue;
     content_.keyframes.set_pose(
         id, moved_by(corrections->segment<6>(6 * id), at(id).world_from_camera));
   }
@@ -211,34 +221,19 @@ bool PathFit::step() {
 
 }  // namespace
 
-std::vector<FrameConstraint> constraints_of(const TrackingResult& result,
-                                            const KeyframeGraph& keyframes) {
-  std::vector<FrameConstraint> constraints;
-  const auto& equations = result.registration.target_equations;
-  for (std::size_t i = 0; i < equations.size(); ++i) {
-    const int keyframe = result.targets[i];
-    const Pose keyframe_from_world = keyframes[keyframe].world_from_camera.inverse();
-    const Eigen::Matrix3d axes = keyframe_from_world.linear();
-    constraints.push_back({.keyframe = keyframe,
-                           .keyframe_from_camera = Eigen::Isometry3f(
-                               (keyframe_from_world * result.world_from_camera).cast<float>()),
-                           .information = rotated(equations[i].information, axes).cast<float>(),
-                           .gradient = rotated_twist(equations[i].gradient, axes).cast<float>()});
-  }
-  return constraints;
-}
-
 void fit_path(MapContent& content, int recording, const LoopOptions& options, std::size_t held) {
   constexpr int steps = 2;  // the problem is nearly linear
   PathFit fit(content, recording, options, held);
   for (int i = 0; i < steps; ++i) {
-    if (!fit.step()) return;
+    if (!fit.step()) break;
   }
   for (PoseEdge& edge : content.edges) {
     const Keyframe& from = content.keyframes[edge.from];
     const Keyframe& to = content.keyframes[edge.to];
-    if (edge.may_be_wrong || from.recording != recording || to.recording != recording) continue;
-    edge.from_from_to = from.world_from_camera.inverse() * to.world_from_camera;
+    const auto later = static_cast<std::size_t>(std::max(edge.from, edge.to));
+    if (edge.may_be_wrong || later < held) continue;
+    const Pose found = from.world_from_camera.inverse() * to.world_from_camera;
+    if (is_small(twist_between(edge.from_from_to, found))) edge.from_from_to = found;
   }
 }
 

@@ -29,10 +29,6 @@ void move(TrackingResult& result, const Pose& new_from_old_world) {
   for (auto& covariance : result.target_covariances) rotate(covariance);
   if (result.since_keyframe) rotate(result.since_keyframe->covariance);
   for (auto& information : result.registration.target_information) rotate(information);
-  for (auto& equations : result.registration.target_equations) {
-    rotate(equations.information);
-    equations.gradient = rotated_twist(equations.gradient, new_from_old_world.linear());
-  }
 }
 
 }  // namespace

@@ -97,9 +97,14 @@ void RoomMapper::mend_slips() {
   }
 }
 
-/// Replaces the edges across a slip, and moves what is behind it.
+/// Replaces the edges and constraints across a slip, and moves what is behind it.
 void RoomMapper::mend(const Slip& slip) {
   content_.edges = without_slip(content_.edges, slip);
+  for (RegisteredFrame& frame : content_.frames) {
+    std::erase_if(frame.constraints, [&](const FrameConstraint& constraint) {
+      return (constraint.keyframe < slip.at) != (frame.keyframe < slip.at);
+    });
+  }
   const Pose before = content_.keyframes[current_].world_from_camera;
   fit_poses(content_, loop_options_, held_keyframes());
   follow_keyframe(before);

@@ -6,7 +6,6 @@
 #include "registration_choice.hpp"
 #include "tofmap/mapping/free_space.hpp"
 #include "tofmap/mapping/keyframe_edge.hpp"
-#include "tofmap/mapping/path_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -160,11 +159,10 @@ TrackingResult RoomMapper::track(NewFrame& frame) {
     content_.frames.back().covariance =
         with_shared_errors(rotated(by_surfaces, keyframe_from_world.linear()));
   }
-  content_.frames.back().constraints = constraints_of(result, content_.keyframes);
+  content_.frames.back().constraints = std::exchange(result.constraints, {});
   result.target_covariances.clear();
   result.since_keyframe.reset();
   result.registration.target_information.clear();
-  result.registration.target_equations.clear();
   return result;
 }
 

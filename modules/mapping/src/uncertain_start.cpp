@@ -223,6 +223,7 @@ void release_frames(MapContent& content, std::span<const Mended> start, const Ke
     if (frame.recording != end.recording) continue;
     if (std::ranges::find(start, frame.keyframe, &Mended::id) == start.end()) continue;
     const Keyframe& keyframe = content.keyframes[frame.keyframe];
+    frame.constraints.clear();
     if (frame.index == keyframe.frame_index) continue;
     if (frame.index < end.frame_index) {
       frame.covariance = covariance_of(Covariance::Zero());

@@ -20,12 +20,6 @@ using Sparse = Eigen::SparseMatrix<double>;
 /// Degrees of freedom of a pose: rotation vector, then translation, both along the world's axes.
 constexpr int dofs = 6;
 
-Eigen::Matrix3d cross_product_matrix(const Eigen::Vector3d& vector) {
-  Eigen::Matrix3d matrix;
-  matrix << 0, -vector.z(), vector.y(), vector.z(), 0, -vector.x(), -vector.y(), vector.x(), 0;
-  return matrix;
-}
-
 /// Adds a block unless it is of a pose that is held, whose index is negative.
 void add_block(const Matrix6d& block, int row, int col,
                std::vector<Eigen::Triplet<double>>& entries) {
@@ -74,9 +68,7 @@ class Alignment {
     for (const Pose& pose : poses) centre += pose.translation() / static_cast<double>(poses.size());
     Matrix6d normal = Matrix6d::Zero();
     for (const Pose& pose : poses) {
-      motions_.emplace_back();
-      motions_.back() << -cross_product_matrix(pose.translation() - centre),
-          Eigen::Matrix3d::Identity();
+      motions_.emplace_back(twist_at_offset(pose.translation() - centre).bottomRows<3>());
       normal += motions_.back().transpose() * motions_.back();
     }
     // Positions along a line or at a point do not tell all rotations.

@@ -10,6 +10,7 @@
 
 #include <tofmap/core/frame.hpp>
 #include <tofmap/core/trajectory.hpp>
+#include <tofmap/mapping/frame_constraint.hpp>
 #include <tofmap/mapping/keyframe_graph.hpp>
 #include <tofmap/mapping/map_change.hpp>
 #include <tofmap/mapping/submap.hpp>
@@ -34,17 +35,6 @@ struct PoseCertainty {
   ExpectedError error;  ///< after the best rigid alignment of all keyframes of the map
 };
 
-/// What the registration of a frame with a keyframe tells of their relative pose (TargetEquations).
-/// In single precision, since a map has several of these for each frame.
-struct FrameConstraint {
-  int keyframe = 0;                                                        ///< id
-  Eigen::Isometry3f keyframe_from_camera = Eigen::Isometry3f::Identity();  ///< as it was found
-  /// Of the error of that pose, a rotation vector in radians, then a translation in metres, along
-  /// the axes of the keyframe. May have negative eigenvalues, where it is noise.
-  Eigen::Matrix<float, 6, 6> information = Eigen::Matrix<float, 6, 6>::Zero();
-  Eigen::Matrix<float, 6, 1> gradient = Eigen::Matrix<float, 6, 1>::Zero();
-};
-
 /// A frame whose pose in a map is known.
 struct RegisteredFrame {
   double timestamp_s = 0;
@@ -57,7 +47,7 @@ struct RegisteredFrame {
   /// frame of the keyframe itself. By the surfaces alone until smooth_path() adds the motion.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   /// With each keyframe that it was registered with. Empty if a version of tofmap that knows only
-  /// version 1 of the format has mapped it.
+  /// version 1 of the format has mapped it, and if the poses of these keyframes were mended since.
   std::vector<FrameConstraint> constraints = {};
 };
 

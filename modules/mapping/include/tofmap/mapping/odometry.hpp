@@ -11,6 +11,7 @@
 #include <tofmap/core/named_value.hpp>
 #include <tofmap/core/option_table.hpp>
 #include <tofmap/core/trajectory.hpp>
+#include <tofmap/mapping/frame_constraint.hpp>
 #include <tofmap/mapping/keyframe.hpp>
 #include <tofmap/mapping/loop_options.hpp>
 #include <tofmap/mapping/motion_uncertainty.hpp>
@@ -99,6 +100,8 @@ struct TrackingResult {
   /// If the status is `tracked` and there is a keyframe. RoomMapper::add_frame() removes it as
   /// well.
   std::optional<SinceKeyframe> since_keyframe;
+  /// If the status is `tracked`. RoomMapper::add_frame() removes them as well.
+  std::vector<FrameConstraint> constraints;
   /// Whether frame and keyframes see through each other where they should not. It is tested only if
   /// the pose is unlikely.
   bool contradicts_targets = false;

@@ -3,20 +3,13 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 #include <tofmap/mapping/loop_options.hpp>
 #include <tofmap/mapping/map_content.hpp>
-#include <tofmap/mapping/odometry.hpp>
 
 namespace tofmap {
 
-/// The constraints that its registration gives a frame: one with each keyframe. `keyframes` must
-/// have the poses that the frame was registered at.
-std::vector<FrameConstraint> constraints_of(const TrackingResult& result,
-                                            const KeyframeGraph& keyframes);
-
-/// Fits the poses of the keyframes and frames of a recording to what all of its frames tell.
+/// Fits the poses of all keyframes, and of the frames of a recording, to what all frames tell.
 ///
 /// A keyframe has its pose from a single registration, whose noise stays in the map. But the frames
 /// around it were registered with it and with keyframes beside it, and tell their relative poses
@@ -26,9 +19,13 @@ std::vector<FrameConstraint> constraints_of(const TrackingResult& result,
 /// constraints with few keyframes, and is eliminated; the system of the keyframes is sparse
 /// (Triggs et al., "Bundle adjustment – a modern synthesis", 2000, section 6.1).
 ///
+/// Constraints that a frame is more than 0.1 m or 0.05 rad away from are left out: they are linear
+/// up to small errors only, and a loop or a slip has moved keyframes since, or the registration was
+/// wrong.
+///
 /// The first `held` keyframes, and the first one of each map, keep their poses. Edges of odometry
-/// of the recording get the relative poses that were found, so that later fits of the pose graph
-/// keep them. If the constraints do not determine the poses, they stay.
+/// get the relative poses that were found, so that later fits of the pose graph keep them, unless
+/// they were more than that off.
 void fit_path(MapContent& content, int recording, const LoopOptions& options, std::size_t held);
 
 }  // namespace tofmap
