@@ -273,16 +273,16 @@ JoinReview review_join(const MapJoin& join, std::span<const PoseEdge> possible,
   const JoinSearch search(join.map, context);
   const std::vector<double> violations = search.violations_at(join);
   const double half = mean_of_half(violations);
-  std::vector<MapJoin> rivals;
+  std::vector<MapJoin> runners_up;
   bool is_another_better = false;
   for (const MapJoin& other : search.places(possible, &join)) {
     if (!is_possible(other)) continue;
     const double half_there = mean_of_half(search.violations_at(other));
-    if (!is_clearly_less(half, half_there)) rivals.push_back(other);
+    if (!is_clearly_less(half, half_there)) runners_up.push_back(other);
     if (is_clearly_less(half_there, half)) is_another_better = true;
   }
   const bool is_contradicted = mean_of(violations) >= most_violations_of_join;
-  if (!is_contradicted && rivals.empty()) return {};
+  if (!is_contradicted && runners_up.empty()) return {};
   const JoinObstacle obstacle =
       is_contradicted ? JoinObstacle::contradicted : JoinObstacle::ambiguous;
   if (is_another_better) {
@@ -292,8 +292,9 @@ JoinReview review_join(const MapJoin& join, std::span<const PoseEdge> possible,
   }
   if (is_contradicted) return {obstacle, std::nullopt};
   const std::size_t fitting = search.fitting(join);
-  const bool is_ambiguous = std::ranges::any_of(
-      rivals, [&](const MapJoin& rival) { return 2 * search.fitting(rival) >= fitting; });
+  const bool is_ambiguous = std::ranges::any_of(runners_up, [&](const MapJoin& runner_up) {
+    return 2 * search.fitting(runner_up) >= fitting;
+  });
   return {is_ambiguous ? obstacle : JoinObstacle::none, std::nullopt};
 }
 

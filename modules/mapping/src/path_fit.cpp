@@ -13,6 +13,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <tofmap/registration/pose_graph.hpp>
+#include <tofmap/registration/robust_kernel.hpp>
 
 namespace tofmap {
 namespace {
@@ -159,10 +160,9 @@ Matrix6d PathFit::weighted_information(const PoseEdge& edge) const {
     const Vector6d error = rotated_twist(
         error_of({edge.from, edge.from_from_to, information}, at(edge.to).world_from_camera),
         at(edge.from).world_from_camera.linear().transpose());
-    // Geman-McClure kernel, as in the pose graph.
-    const double width2 = options_.kernel_width * options_.kernel_width;
-    const double ratio = width2 / (width2 + error.dot(information * error));
-    return ratio * ratio * information;
+    return geman_mcclure_weight_of_squares(error.dot(information * error),
+                                           options_.kernel_width * options_.kernel_width) *
+           information;
   }
   const bool is_counted = constrained_.contains(at(edge.from).recording) &&
                           constrained_.contains(at(edge.to).recording);

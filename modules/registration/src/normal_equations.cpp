@@ -3,6 +3,8 @@
 
 #include "normal_equations.hpp"
 
+#include "tofmap/registration/robust_kernel.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -37,15 +39,9 @@ double robust_scale(const std::vector<Correspondence>& pairs) {
 
 namespace {
 
-/// geman_mcclure_weight() from the squares of residual and width, so that no root is needed.
-double weight_of_squares(double squared_residual, double squared_width) {
-  const double ratio = squared_width / (squared_width + squared_residual);
-  return ratio * ratio;
-}
-
 double kernel_weight(const Correspondence& pair, double kernel_width) {
-  return weight_of_squares(pair.residual_m * pair.residual_m,
-                           kernel_width * kernel_width * pair.variance_m2);
+  return geman_mcclure_weight_of_squares(pair.residual_m * pair.residual_m,
+                                         kernel_width * kernel_width * pair.variance_m2);
 }
 
 /// The part of a share of the information that is relied on. The noise-induced rest is estimated
@@ -58,7 +54,7 @@ double relied_on(double share) {
 }  // namespace
 
 double geman_mcclure_weight(double normalised_residual, double width) {
-  return weight_of_squares(normalised_residual * normalised_residual, width * width);
+  return geman_mcclure_weight_of_squares(normalised_residual * normalised_residual, width * width);
 }
 
 NormalEquations build_equations(std::span<const Correspondence> pairs, double kernel_width) {
