@@ -17,13 +17,9 @@ using Information = Eigen::Matrix<double, 6, 6>;
 using Twist = Eigen::Matrix<double, 6, 1>;
 
 constexpr int frames = 60;
-constexpr int keyframe_step = 20;
+constexpr int frames_per_keyframe = 20;
 constexpr double frame_sigma_m = 0.004;  // and radians
 constexpr double keyframe_sigma_m = 0.01;
-
-Pose true_pose(int frame) {
-  return test::moved_by({0, 0.02 * frame, 0}, {0.03 * frame, 0, 0.01 * frame});
-}
 
 /// A path with a keyframe every 20 frames. Each keyframe but the first is off by one draw of noise;
 /// each frame was registered with the keyframes before and after it, with noise of its own.
@@ -31,8 +27,12 @@ class FittedPath : public testing::Test {
  protected:
   FittedPath() {
     content_.recordings.emplace_back();
-    for (int i = 0; i <= frames; i += keyframe_step) add_keyframe(i);
+    for (int i = 0; i <= frames; i += frames_per_keyframe) add_keyframe(i);
     for (int i = 0; i <= frames; ++i) add_frame(i);
+  }
+
+  static Pose true_pose(int frame) {
+    return test::moved_by({0, 0.02 * frame, 0}, {0.03 * frame, 0, 0.01 * frame});
   }
 
   void add_keyframe(int frame) {
@@ -51,13 +51,13 @@ class FittedPath : public testing::Test {
   }
 
   void add_frame(int i) {
-    const int before = std::min(i / keyframe_step, content_.keyframes.size() - 2);
+    const int before = std::min(i / frames_per_keyframe, content_.keyframes.size() - 2);
     const bool is_last = i == frames;
     RegisteredFrame frame{
         .timestamp_s = i / 15.0, .keyframe = before + (is_last ? 1 : 0), .index = i};
     frame.keyframe_from_camera =
         pose(frame.keyframe).inverse() * moved_by(draw(frame_sigma_m), true_pose(i));
-    if (i % keyframe_step == 0) {
+    if (i % frames_per_keyframe == 0) {
       frame.keyframe_from_camera = Pose::Identity();
     } else {
       for (const int keyframe : {before, before + 1}) {
@@ -69,7 +69,7 @@ class FittedPath : public testing::Test {
 
   /// What a registration with a keyframe tells that finds the frame off by `error`.
   static FrameConstraint constraint(int keyframe, int frame, const Twist& error) {
-    const Pose keyframe_from_world = true_pose(keyframe_step * keyframe).inverse();
+    const Pose keyframe_from_world = true_pose(frames_per_keyframe * keyframe).inverse();
     FrameConstraint constraint{.keyframe = keyframe};
     constraint.keyframe_from_camera =
         Eigen::Isometry3f((keyframe_from_world * moved_by(error, true_pose(frame))).cast<float>());
@@ -87,7 +87,7 @@ class FittedPath : public testing::Test {
   void fit(std::size_t held = 0) { fit_path(content_, 0, {}, held); }
 
   double keyframe_error_m(int keyframe) const {
-    return (pose(keyframe).translation() - true_pose(keyframe_step * keyframe).translation())
+    return (pose(keyframe).translation() - true_pose(frames_per_keyframe * keyframe).translation())
         .norm();
   }
 
@@ -167,7 +167,7 @@ TEST_F(FittedPath, TakesNegativeInformationForNoise) {
   // Nothing is known along the z-axes of keyframes, which differ. All of them know of y.
   const auto error_y_m = [&](int keyframe) {
     return std::abs(pose(keyframe).translation().y() -
-                    true_pose(keyframe_step * keyframe).translation().y());
+                    true_pose(frames_per_keyframe * keyframe).translation().y());
   };
   for (RegisteredFrame& frame : content_.frames) {
     for (FrameConstraint& constraint : frame.constraints) constraint.information(5, 5) *= -1;
