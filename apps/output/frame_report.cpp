@@ -145,6 +145,7 @@ Json summary_json(const RoomMap& map) {
           {"keyframes", map.keyframes.size()},
           {"frames_with_degenerate_directions", map.degenerate()},
           {"frames_registered_slowly", map.registered_slowly},
+          {"frames_uncertain", map.uncertain},
           {"loops", loops_json(map)},
           {"joins",
            {{"kept", map.joins},

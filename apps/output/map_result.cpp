@@ -44,17 +44,11 @@ void refuse_another_place(const RoomMap& map, bool has_start) {
   throw InputError(told_refusal(map.nearness, map.frames, has_start));
 }
 
-/// The verdict without what it holds against the recording rather than the map.
-Verdict verdict_on_map(MapEvidence evidence) {
-  evidence.registered_slowly = 0;
-  return judge(evidence).verdict;
-}
-
 /// Whether an extended map is worse than the map before, and no loop has shown that this was wrong.
 bool is_to_be_taken_back(const FinishedMap& finished, const MapEvidence& evidence,
                          const MapFile& file, const MapOutputChoices& choices) {
   const auto before = file.verdict_before();
-  return before && verdict_on_map(evidence) > *before && !finished.map.interrupted &&
+  return before && verdict_on_extension(evidence) > *before && !finished.map.interrupted &&
          !finished.map.has_moved_map && !choices.even_if_worse;
 }
 

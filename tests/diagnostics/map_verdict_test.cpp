@@ -84,6 +84,22 @@ TEST(Verdict, GoesByDirectionsThatNoSurfaceConstrained) {
       "motion");
 }
 
+TEST(Verdict, OnAnExtensionOverlooksAFewUncertainFrames) {
+  MapEvidence evidence = good_evidence();
+  evidence.position_sigma_m = 0.123;
+  evidence.uncertain = evidence.frames / 20;
+  EXPECT_EQ(verdict_on_extension(evidence), Verdict::good);
+  evidence.uncertain += 1;
+  EXPECT_EQ(verdict_on_extension(evidence), Verdict::check) << "frames depend on an uncertain one";
+}
+
+TEST(Verdict, OnAnExtensionOverlooksFramesThatWereRegisteredSlowly) {
+  MapEvidence evidence = good_evidence();
+  evidence.registered_slowly = evidence.frames;
+  EXPECT_EQ(verdict_on_extension(evidence), Verdict::good);
+  EXPECT_EQ(verdict_on(evidence), Verdict::check);
+}
+
 TEST(Verdict, GoesByFramesThatWereRegisteredSlowly) {
   MapEvidence evidence = good_evidence();
   evidence.registered_slowly = 4;

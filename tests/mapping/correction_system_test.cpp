@@ -87,6 +87,25 @@ TEST(CorrectionSystem, FindsTheMinimumOfTheCost) {
   EXPECT_LT((term.information * found->tail<6>() + found->tail<6>() + term.gradient).norm(), 1e-3);
 }
 
+TEST(CorrectionSystem, PutsPosesWhereTheMotionIsSteady) {
+  // The first pose is held, the second is known to be at e₁, and the motion puts the third at
+  // (1 + share) e₁ − change.
+  CorrectionSystem system(first_held(3));
+  RelativeTerm term{.keyframe = 0};
+  term.information = 1e9 * Eigen::Matrix<double, 6, 6>::Identity();
+  term.gradient << 1e7, 2e7, 3e7, -1e7, -2e7, -3e7;
+  system.add(1, term);
+  MotionTerm motion{.share = 0.5};
+  motion.change << 0.1, 0, -0.1, 0.2, 0, 0;
+  motion.sigmas.setConstant(1e-3);
+  system.add_motion({0, 1, 2}, motion);
+  const auto found = system.solve();
+  ASSERT_TRUE(found);
+  const Eigen::Matrix<double, 6, 1> second = -term.gradient / 1e9;
+  EXPECT_LT((found->segment<6>(6) - second).norm(), 1e-6);
+  EXPECT_LT((found->tail<6>() - 1.5 * second + motion.change).norm(), 1e-4);
+}
+
 TEST(CorrectionSystem, LeavesKeyframesWhereTheyAreThatNothingDetermines) {
   // Keyframes 2 and 3 are known relative to each other alone.
   Draw draw;

@@ -115,7 +115,7 @@ TEST_F(LostCamera, IsTakenOutOfAMapThatLaterFramesDifferFrom) {
     EXPECT_EQ(mapper_.content().keyframes.all()[edge.from].map,
               mapper_.content().keyframes.all()[edge.to].map);
   }
-  EXPECT_LT(least_certain_of(mapper_.content(), 1).error.position_m, 0.02)
+  EXPECT_LT(least_certain(certainties_of(mapper_.content(), 1)).error.position_m, 0.02)
       << "all its keyframes are connected";
 }
 

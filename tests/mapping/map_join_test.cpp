@@ -59,6 +59,18 @@ TEST_F(TwoMaps, AreJoinedWhenThreeKeyframesAgree) {
   EXPECT_TRUE(found->into_from_map.isApprox(first_from_second_, 1e-9));
 }
 
+TEST_F(TwoMaps, AreJoinedWhereMostRecognitionsAreNear) {
+  recognise(1, 11, -0.1);
+  recognise(2, 12, 0.01);
+  recognise(3, 13);
+  recognise(4, 14, -0.01);
+  recognise(5, 15, 0.1);
+  const auto found = join();
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->edges.size(), 5U);
+  EXPECT_TRUE(found->into_from_map.isApprox(first_from_second_, 1e-9));
+}
+
 TEST_F(TwoMaps, AreNotJoinedByOneKeyframeAlone) {
   for (int from = 2; from < 6; ++from) recognise(from, 12);
   EXPECT_FALSE(join());

@@ -29,13 +29,14 @@ RoomMapper mapped_sideways(double width_m, int frames) {
 
 TEST(PathCertainty, IsLostAlongABareWall) {
   // From frame 10 on, the camera has left the corner behind.
-  const PoseCertainty least = least_certain_of(mapped_sideways(20, 60).content(), 0);
+  const PoseCertainty least = least_certain(certainties_of(mapped_sideways(20, 60).content(), 0));
   EXPECT_GT(least.error.position_m, 0.05);
   EXPECT_GT(least.frame, 30);
 }
 
 TEST(PathCertainty, IsKeptInSightOfACorner) {
-  EXPECT_LT(least_certain_of(mapped_sideways(20, 6).content(), 0).error.position_m, 0.02);
+  EXPECT_LT(least_certain(certainties_of(mapped_sideways(20, 6).content(), 0)).error.position_m,
+            0.02);
 }
 
 }  // namespace

@@ -15,8 +15,7 @@ namespace {
 
 using Covariance = Eigen::Matrix<double, 6, 6>;
 
-constexpr double rotation_sigma_rad = 0.03;
-constexpr double translation_sigma_m = 0.03;
+const MotionUncertainty motion(0.03, 0.03);
 constexpr int keyframe_step = 20;
 
 Pose true_pose(int frame) {
@@ -76,9 +75,7 @@ double sigma_m(const MapContent& content, int frame) {
       .translation_sigma_m();
 }
 
-void smooth(MapContent& content) {
-  smooth_path(content, 0, rotation_sigma_rad, translation_sigma_m);
-}
+void smooth(MapContent& content) { smooth_path(content, 0, motion); }
 
 TEST(PathSmoothing, TakesBackWhatFramesHaveSlidBetweenKeyframes) {
   // Frames slide ever farther until a keyframe knows better.
@@ -143,7 +140,7 @@ TEST(PathSmoothing, IsTheSameForALongPath) {
 TEST(PathSmoothing, LeavesOtherRecordings) {
   MapContent content = path(30);
   slide(content, 10, 0.1);
-  smooth_path(content, 1, rotation_sigma_rad, translation_sigma_m);
+  smooth_path(content, 1, motion);
   EXPECT_NEAR(error_m(content, 10), 0.1, 1e-9);
 }
 

@@ -47,7 +47,7 @@ TEST(UncertainStart, IsMendedOnceTheMotionIsKnown) {
   RoomMapper mapper(test::small_camera(), {}, {}, {}, {});
   go_right(mapper, 1.6, 25);
   EXPECT_GT(largest_error_m(trajectory_of(mapper.content(), 0)), 0.2);
-  const double uncertain_m = least_certain_of(mapper.content(), 0).error.position_m;
+  const double uncertain_m = least_certain(certainties_of(mapper.content(), 0)).error.position_m;
   mapper.finish();
   const MapContent& content = mapper.content();
   EXPECT_LT(largest_error_m(trajectory_of(content, 0)), 0.03);
@@ -57,7 +57,7 @@ TEST(UncertainStart, IsMendedOnceTheMotionIsKnown) {
   for (const auto& point : surface_of(content, 0).points)
     right_m = std::max<double>(right_m, point.x);
   EXPECT_NEAR(right_m, 1.6, 0.05);
-  EXPECT_LT(least_certain_of(content, 0).error.position_m, 0.7 * uncertain_m);
+  EXPECT_LT(least_certain(certainties_of(content, 0)).error.position_m, 0.7 * uncertain_m);
 }
 
 TEST(UncertainStart, IsLeftAsItIsIfNothingIsCertainAfterIt) {

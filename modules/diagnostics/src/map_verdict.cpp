@@ -72,12 +72,7 @@ void Judge::judge_accuracy() {
 
 /// Whether the surfaces constrained the path.
 void Judge::judge_certainty() {
-  // Motion that surfaces do not constrain is mostly steadier than its prior: half of the paths are
-  // off by less than a quarter of a standard deviation. Of the maps of
-  // benchmarks/troubled_rooms.py, seeds 11 to 15 and 21 to 24, none that is off by more than 5 cm
-  // has a standard deviation below 9 cm.
-  constexpr double most_sigma_m = 0.05;
-  if (evidence_.position_sigma_m > most_sigma_m) {
+  if (evidence_.position_sigma_m > most_position_sigma_m) {
     hold_against(Verdict::check,
                  fmt::format("the position at frame {} is uncertain by {:.2f} m (one standard "
                              "deviation): the surfaces seen on the way there, or a gap in the "
@@ -137,6 +132,14 @@ Judgement judge(const MapEvidence& evidence) {
     judge.hold_against(Verdict::check, number_of(evidence.warnings, "warning"));
   }
   return std::move(judge).judgement();
+}
+
+Verdict verdict_on_extension(MapEvidence evidence) {
+  evidence.registered_slowly = 0;
+  if (percent_of_frames(evidence, evidence.uncertain) <= 100 - nearly_all_percent) {
+    evidence.position_sigma_m = 0;
+  }
+  return judge(evidence).verdict;
 }
 
 std::string told_reasons(const Judgement& judgement) {

@@ -35,7 +35,7 @@ CorrectionSystem::CorrectionSystem(const std::vector<bool>& is_held) {
 void CorrectionSystem::add(int row, int column, const Matrix6d& block) {
   const int i = unknown_of_[static_cast<std::size_t>(row)];
   const int k = unknown_of_[static_cast<std::size_t>(column)];
-  if (i < 0 || k < 0) return;
+  if (i < 0 || k < 0 || i < k) return;
   const auto [entry, is_new] = blocks_.try_emplace({i, k}, block);
   if (!is_new) entry->second += block;
 }
@@ -45,14 +45,25 @@ void CorrectionSystem::add(int row, const Vector6d& gradient) {
   if (i >= 0) gradient_.segment<6>(6 * i) += gradient;
 }
 
-void CorrectionSystem::add(int keyframe, const RelativeTerm& term) {
+void CorrectionSystem::add(int pose, const RelativeTerm& term) {
   const Matrix6d by_other = term.information * term.twist_by_keyframe;
-  add(keyframe, keyframe, term.information);
-  add(keyframe, term.keyframe, -by_other);
-  add(term.keyframe, keyframe, -by_other.transpose());
+  add(pose, pose, term.information);
+  add(pose, term.keyframe, -by_other);
+  add(term.keyframe, pose, -by_other.transpose());
   add(term.keyframe, term.keyframe, term.twist_by_keyframe.transpose() * by_other);
-  add(keyframe, term.gradient);
+  add(pose, term.gradient);
   add(term.keyframe, Vector6d(-term.twist_by_keyframe.transpose() * term.gradient));
+}
+
+void CorrectionSystem::add_motion(const std::array<int, 3>& poses, const MotionTerm& term) {
+  const Vector6d weights = term.sigmas.cwiseAbs2().cwiseInverse();
+  const std::array<double, 3> parts = {term.share, -1 - term.share, 1};
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      add(poses[i], poses[k], Matrix6d((parts[i] * parts[k] * weights).asDiagonal()));
+    }
+    add(poses[i], Vector6d(parts[i] * weights.cwiseProduct(term.change)));
+  }
 }
 
 void CorrectionSystem::add_frame(std::span<const RelativeTerm> terms,
@@ -88,9 +99,9 @@ std::optional<Eigen::VectorXd> CorrectionSystem::solve() const {
   const Eigen::VectorXd solution = solver.solve(-gradient_);
   if (!solution.allFinite()) return std::nullopt;
   Eigen::VectorXd corrections = Eigen::VectorXd::Zero(6 * std::ssize(unknown_of_));
-  for (std::size_t id = 0; id < unknown_of_.size(); ++id) {
-    const int i = unknown_of_[id];
-    if (i >= 0) corrections.segment<6>(6 * static_cast<int>(id)) = solution.segment<6>(6 * i);
+  for (std::size_t pose = 0; pose < unknown_of_.size(); ++pose) {
+    const int i = unknown_of_[pose];
+    if (i >= 0) corrections.segment<6>(6 * static_cast<int>(pose)) = solution.segment<6>(6 * i);
   }
   return corrections;
 }

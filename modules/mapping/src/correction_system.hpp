@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "motion_terms.hpp"
+
+#include <array>
 #include <map>
 #include <optional>
 #include <span>
@@ -39,21 +42,24 @@ class FrameEquations {
   Eigen::Matrix<double, 6, 1> gradient_ = Eigen::Matrix<double, 6, 1>::Zero();
 };
 
-/// The linear least squares problem of the corrections of all keyframes, as twists along the axes
-/// of the world.
+/// The linear least squares problem of the corrections of poses, as twists along the axes of the
+/// world: first those of all keyframes, by their ids, then those of other frames.
 class CorrectionSystem {
  public:
-  /// `is_held`: for each keyframe, whether it stays where it is.
+  /// `is_held`: for each pose, whether it stays where it is.
   explicit CorrectionSystem(const std::vector<bool>& is_held);
 
-  /// Adds what is known of one keyframe relative to another one.
-  void add(int keyframe, const RelativeTerm& term);
+  /// Adds what is known of a pose relative to a keyframe.
+  void add(int pose, const RelativeTerm& term);
+
+  /// Adds what is known of the motion through three poses.
+  void add_motion(const std::array<int, 3>& poses, const MotionTerm& term);
 
   /// Adds what a frame tells about keyframes: its terms, from which the pose of the frame is
   /// eliminated (Schur complement). `equations` are of the same terms, and must be regular.
   void add_frame(std::span<const RelativeTerm> terms, const FrameEquations& equations);
 
-  /// The corrections, six for each keyframe, zero if it is held or if nothing is known of it. Empty
+  /// The corrections, six for each pose, zero if it is held or if nothing is known of it. Empty
   /// if they cannot be computed, since numbers are too large.
   std::optional<Eigen::VectorXd> solve() const;
 
@@ -61,7 +67,8 @@ class CorrectionSystem {
   void add(int row, int column, const Eigen::Matrix<double, 6, 6>& block);
   void add(int row, const Eigen::Matrix<double, 6, 1>& gradient);
 
-  std::vector<int> unknown_of_;  ///< for each keyframe, its place in the system; −1 if it is held
+  std::vector<int> unknown_of_;  ///< for each pose, its place in the system; −1 if it is held
+  /// By row and column; of those beside the diagonal, only the lower ones.
   std::map<std::pair<int, int>, Eigen::Matrix<double, 6, 6>> blocks_;
   Eigen::VectorXd gradient_;
 };

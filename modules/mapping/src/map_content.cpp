@@ -162,18 +162,23 @@ Trajectory all_keyframes_of(const MapContent& content, int map) {
   return trajectory;
 }
 
-PoseCertainty least_certain_of(const MapContent& content, int map) {
+std::vector<PoseCertainty> certainties_of(const MapContent& content, int map) {
   const MapGraph graph(content, map);
   const std::vector<ExpectedError> errors = expected_errors(graph.poses, graph.edges);
-  PoseCertainty least{.frame = -1, .error = {}};
+  std::vector<PoseCertainty> frames;
   for (const RegisteredFrame& frame : content.frames) {
     if (!is_of_last(frame, content) || content.keyframes[frame.keyframe].map != map) continue;
     ExpectedError error = errors[graph.index_of(frame.keyframe)];
     error.position_m =
         std::hypot(error.position_m, spread_of(frame.covariance).translation_sigma_m());
-    if (least.frame < 0 || error.position_m > least.error.position_m) least = {frame.index, error};
+    frames.push_back({frame.index, error});
   }
-  return least;
+  return frames;
+}
+
+PoseCertainty least_certain(std::span<const PoseCertainty> frames) {
+  return *std::ranges::max_element(
+      frames, {}, [](const PoseCertainty& frame) { return frame.error.position_m; });
 }
 
 std::vector<Matrix6d> covariances_of(const MapContent& content, int map) {

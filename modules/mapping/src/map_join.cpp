@@ -5,10 +5,19 @@
 
 #include "tofmap/mapping/loop_fit.hpp"
 
+#include <limits>
 #include <map>
 #include <set>
 
+#include <tofmap/core/trajectory.hpp>
+
 namespace tofmap {
+namespace {
+
+/// A rotation by one radian changes what a camera sees as much as a metre does.
+constexpr double metres_per_radian = 1;
+
+}  // namespace
 
 std::size_t recognising_keyframes(const std::vector<const PoseEdge*>& recognitions) {
   std::set<int> keyframes;
@@ -24,15 +33,29 @@ std::vector<const PoseEdge*> pointers_to(std::span<const PoseEdge> edges) {
 
 MapJoin join_by(const std::vector<const PoseEdge*>& recognitions, int map,
                 std::span<const Keyframe> keyframes) {
-  const PoseEdge& first = *recognitions.front();
-  const Keyframe& from = keyframes[static_cast<std::size_t>(first.from)];
-  const Keyframe& to = keyframes[static_cast<std::size_t>(first.to)];
-  MapJoin join{
-      .into = from.map,
-      .map = map,
-      .into_from_map = from.world_from_camera * first.from_from_to * to.world_from_camera.inverse(),
-      .edges = {}};
-  for (const PoseEdge* edge : recognitions) join.edges.push_back(*edge);
+  const auto at = [&](int id) -> const Keyframe& {
+    return keyframes[static_cast<std::size_t>(id)];
+  };
+  MapJoin join{.into = at(recognitions.front()->from).map,
+               .map = map,
+               .into_from_map = Pose::Identity(),
+               .edges = {}};
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const PoseEdge* edge : recognitions) {
+    join.edges.push_back(*edge);
+    const Pose into_from_map = at(edge->from).world_from_camera * edge->from_from_to *
+                               at(edge->to).world_from_camera.inverse();
+    double deviations_m = 0;
+    for (const PoseEdge* other : recognitions) {
+      const Pose found = at(other->from).world_from_camera * other->from_from_to;
+      const Pose moved = into_from_map * at(other->to).world_from_camera;
+      deviations_m += (found.translation() - moved.translation()).norm() +
+                      metres_per_radian * rotation_angle_rad(found, moved);
+    }
+    if (deviations_m >= least_m) continue;
+    least_m = deviations_m;
+    join.into_from_map = into_from_map;
+  }
   return join;
 }
 

@@ -4,9 +4,15 @@
 #include "tofmap/mapping/path_fit.hpp"
 
 #include "correction_system.hpp"
+#include "motion_terms.hpp"
+#include "recorded_paths.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -67,15 +73,28 @@ struct Measured {
   Vector6d gradient = Vector6d::Zero();
 };
 
+Measured measured_by(const FrameConstraint& constraint) {
+  return {constraint.keyframe, Pose(constraint.keyframe_from_camera.cast<double>()),
+          constraint.information.cast<double>(), constraint.gradient.cast<double>()};
+}
+
 bool is_small(const Vector6d& twist) {
   return twist.head<3>().norm() <= most_rotation_rad &&
          twist.tail<3>().norm() <= most_translation_m;
 }
 
+/// Whether a change of the relative pose of an edge, along the axes of `from`, is within what its
+/// registration left open.
+bool is_expected(const Vector6d& change, const PoseEdge& edge) {
+  constexpr double most_sigmas = 4;
+  return change.dot(edge.covariance.ldlt().solve(change)) <= most_sigmas * most_sigmas;
+}
+
 /// The problem at the present poses.
 class PathFit {
  public:
-  PathFit(MapContent& content, int recording, const LoopOptions& options, std::size_t held);
+  PathFit(MapContent& content, int recording, const LoopOptions& options,
+          const MotionUncertainty& motion, std::size_t held);
 
   /// Corrects all poses once. False if they are not determined.
   bool step();
@@ -83,27 +102,42 @@ class PathFit {
  private:
   const Keyframe& at(int id) const { return content_.keyframes[id]; }
   bool is_keyframe(const RegisteredFrame& frame) const {
-    const Keyframe& keyframe = at(frame.keyframe);
-    return keyframe.recording == frame.recording && keyframe.frame_index == frame.index;
+    return is_of_keyframe(frame, content_.keyframes);
   }
+  bool is_fitted(const RegisteredFrame& frame) const {
+    return frame.recording == recording_ || static_cast<std::size_t>(frame.keyframe) >= held_;
+  }
+  int& pose_number(const RegisteredFrame& frame) {
+    return pose_numbers_[static_cast<std::size_t>(&frame - content_.frames.data())];
+  }
+  void find_motion();
+  void leave_out_far_constraints();
   RelativeTerm term_of(const Measured& measured, const Pose& pose) const;
   Vector6d error_of(const Measured& measured, const Pose& pose) const;
   std::vector<RelativeTerm> terms_of(const RegisteredFrame& frame, const Pose& pose) const;
   Matrix6d weighted_information(const PoseEdge& edge) const;
   void add_edges(CorrectionSystem& system) const;
-  void add_frames(CorrectionSystem& system) const;
-  void correct_frame(RegisteredFrame& frame, const Eigen::VectorXd& of_keyframes) const;
+  void add_frames(CorrectionSystem& system);
+  void add_motion(CorrectionSystem& system) const;
+  std::optional<Vector6d> correction_of(const RegisteredFrame& frame,
+                                        const Eigen::VectorXd& corrections);
 
   MapContent& content_;
   int recording_;
   const LoopOptions& options_;
+  const MotionUncertainty& motion_;
   std::size_t held_;
-  std::vector<bool> is_held_;  ///< for each keyframe, whether it keeps its pose
+  std::vector<bool> is_held_;  ///< for each pose in the system, whether it stays where it is
   std::set<int> constrained_;  ///< recordings whose frames have constraints
+  std::set<const FrameConstraint*> left_out_;
+  std::vector<MotionTerm> motion_terms_;  ///< at the present poses
+  /// For each frame, its pose in the system; −1 if it is eliminated, or not in it.
+  std::vector<int> pose_numbers_;
 };
 
-PathFit::PathFit(MapContent& content, int recording, const LoopOptions& options, std::size_t held)
-    : content_(content), recording_(recording), options_(options), held_(held) {
+PathFit::PathFit(MapContent& content, int recording, const LoopOptions& options,
+                 const MotionUncertainty& motion, std::size_t held)
+    : content_(content), recording_(recording), options_(options), motion_(motion), held_(held) {
   std::set<int> begun;
   for (const Keyframe& keyframe : content_.keyframes.all()) {
     const bool is_first = begun.insert(keyframe.map).second;
@@ -112,6 +146,42 @@ PathFit::PathFit(MapContent& content, int recording, const LoopOptions& options,
   for (const RegisteredFrame& frame : content_.frames) {
     if (!frame.constraints.empty()) constrained_.insert(frame.recording);
   }
+  leave_out_far_constraints();
+}
+
+/// Leaves constraints out by the poses before the fit: along directions that nothing determined,
+/// the motion may move poses farther.
+void PathFit::leave_out_far_constraints() {
+  for (const RegisteredFrame& frame : content_.frames) {
+    if (!is_fitted(frame)) continue;
+    const Pose pose = pose_of(frame, content_.keyframes);
+    for (const FrameConstraint& constraint : frame.constraints) {
+      if (!is_small(error_of(measured_by(constraint), pose))) left_out_.insert(&constraint);
+    }
+  }
+}
+
+/// Finds the terms of the motion at the present poses, and numbers the poses of their frames.
+void PathFit::find_motion() {
+  std::set<int> recordings;
+  for (const RegisteredFrame& frame : content_.frames) {
+    if (is_fitted(frame)) recordings.insert(frame.recording);
+  }
+  motion_terms_.clear();
+  for (const int recording : recordings) {
+    std::ranges::move(motion_terms(content_, recording, motion_),
+                      std::back_inserter(motion_terms_));
+  }
+  pose_numbers_.assign(content_.frames.size(), -1);
+  int poses = content_.keyframes.size();
+  for (const MotionTerm& term : motion_terms_) {
+    for (const std::size_t index : term.frames) {
+      const RegisteredFrame& frame = content_.frames[index];
+      int& number = pose_number(frame);
+      if (number < 0) number = is_keyframe(frame) ? frame.keyframe : poses++;
+    }
+  }
+  is_held_.resize(static_cast<std::size_t>(poses), false);
 }
 
 /// The term of a pose that was measured relative to a keyframe. Information and gradient are along
@@ -137,11 +207,9 @@ Vector6d PathFit::error_of(const Measured& measured, const Pose& pose) const {
 std::vector<RelativeTerm> PathFit::terms_of(const RegisteredFrame& frame, const Pose& pose) const {
   std::vector<RelativeTerm> terms;
   for (const FrameConstraint& constraint : frame.constraints) {
-    if (at(constraint.keyframe).map != at(frame.keyframe).map) continue;
-    const Measured measured{
-        constraint.keyframe, Pose(constraint.keyframe_from_camera.cast<double>()),
-        constraint.information.cast<double>(), constraint.gradient.cast<double>()};
-    if (is_small(error_of(measured, pose))) terms.push_back(term_of(measured, pose));
+    const bool is_of_another_map = at(constraint.keyframe).map != at(frame.keyframe).map;
+    if (is_of_another_map || left_out_.contains(&constraint)) continue;
+    terms.push_back(term_of(measured_by(constraint), pose));
   }
   if (is_keyframe(frame)) return terms;
   Vector6d sigmas;
@@ -179,38 +247,55 @@ void PathFit::add_edges(CorrectionSystem& system) const {
   }
 }
 
-void PathFit::add_frames(CorrectionSystem& system) const {
+void PathFit::add_frames(CorrectionSystem& system) {
   for (const RegisteredFrame& frame : content_.frames) {
-    const bool is_held = static_cast<std::size_t>(frame.keyframe) < held_;
-    if (is_held && frame.recording != recording_) continue;  // tells nothing new
+    if (!is_fitted(frame)) continue;  // tells nothing new
     const std::vector<RelativeTerm> terms = terms_of(frame, pose_of(frame, content_.keyframes));
-    if (is_keyframe(frame)) {
-      for (const RelativeTerm& term : terms) system.add(frame.keyframe, term);
+    const int pose = is_keyframe(frame) ? frame.keyframe : pose_number(frame);
+    if (pose >= 0) {
+      for (const RelativeTerm& term : terms) system.add(pose, term);
     } else if (const FrameEquations equations(terms); equations.are_regular()) {
       system.add_frame(terms, equations);
     }
   }
 }
 
-void PathFit::correct_frame(RegisteredFrame& frame, const Eigen::VectorXd& of_keyframes) const {
-  if (frame.recording != recording_ || is_keyframe(frame)) return;
-  const Pose pose = pose_of(frame, content_.keyframes);
-  const std::vector<RelativeTerm> terms = terms_of(frame, pose);
+void PathFit::add_motion(CorrectionSystem& system) const {
+  for (const MotionTerm& term : motion_terms_) {
+    std::array<int, 3> poses = {};
+    std::ranges::transform(term.frames, poses.begin(),
+                           [&](std::size_t frame) { return pose_numbers_[frame]; });
+    system.add_motion(poses, term);
+  }
+}
+
+/// The correction of a frame that is not a keyframe. Empty if nothing determines it.
+std::optional<Vector6d> PathFit::correction_of(const RegisteredFrame& frame,
+                                               const Eigen::VectorXd& corrections) {
+  if (const int pose = pose_number(frame); pose >= 0) return corrections.segment<6>(6 * pose);
+  const std::vector<RelativeTerm> terms = terms_of(frame, pose_of(frame, content_.keyframes));
   const FrameEquations equations(terms);
-  if (!equations.are_regular()) return;
-  const Pose world_from_keyframe =
-      moved_by(of_keyframes.segment<6>(6 * frame.keyframe), at(frame.keyframe).world_from_camera);
-  frame.keyframe_from_camera = world_from_keyframe.inverse() *
-                               moved_by(frame_correction(terms, equations, of_keyframes), pose);
+  if (!equations.are_regular()) return std::nullopt;
+  return frame_correction(terms, equations, corrections);
 }
 
 bool PathFit::step() {
+  find_motion();
   CorrectionSystem system(is_held_);
   add_edges(system);
   add_frames(system);
+  add_motion(system);
   const auto corrections = system.solve();
   if (!corrections) return false;
-  for (RegisteredFrame& frame : content_.frames) correct_frame(frame, *corrections);
+  for (RegisteredFrame& frame : content_.frames) {
+    if (frame.recording != recording_ || is_keyframe(frame)) continue;
+    const auto correction = correction_of(frame, *corrections);
+    if (!correction) continue;
+    const Pose world_from_keyframe =
+        moved_by(corrections->segment<6>(6 * frame.keyframe), at(frame.keyframe).world_from_camera);
+    frame.keyframe_from_camera =
+        world_from_keyframe.inverse() * moved_by(*correction, pose_of(frame, content_.keyframes));
+  }
   for (int id = 0; id < content_.keyframes.size(); ++id) {
     if (is_held_[static_cast<std::size_t>(id)]) continue;
     content_.keyframes.set_pose(
@@ -221,9 +306,10 @@ bool PathFit::step() {
 
 }  // namespace
 
-void fit_path(MapContent& content, int recording, const LoopOptions& options, std::size_t held) {
+void fit_path(MapContent& content, int recording, const LoopOptions& options,
+              const MotionUncertainty& motion, std::size_t held) {
   constexpr int steps = 2;  // the problem is nearly linear
-  PathFit fit(content, recording, options, held);
+  PathFit fit(content, recording, options, motion, held);
   for (int i = 0; i < steps; ++i) {
     if (!fit.step()) break;
   }
@@ -233,7 +319,8 @@ void fit_path(MapContent& content, int recording, const LoopOptions& options, st
     const auto later = static_cast<std::size_t>(std::max(edge.from, edge.to));
     if (edge.may_be_wrong || later < held) continue;
     const Pose found = from.world_from_camera.inverse() * to.world_from_camera;
-    if (is_small(twist_between(edge.from_from_to, found))) edge.from_from_to = found;
+    const Vector6d change = twist_between(edge.from_from_to, found);
+    if (is_small(change) || is_expected(change, edge)) edge.from_from_to = found;
   }
 }
 

@@ -3,8 +3,8 @@
 
 #include "tofmap/mapping/path_smoothing.hpp"
 
+#include "recorded_paths.hpp"
 #include "registration_choice.hpp"
-#include "tofmap/mapping/motion_uncertainty.hpp"
 
 #include <algorithm>
 #include <span>
@@ -24,10 +24,6 @@ using Joint = Eigen::Matrix<double, 12, 12>;
 
 /// Standard deviation, in metres and radians, to which the poses of keyframes are held.
 constexpr double held_sigma = 1e-4;
-
-/// A camera that has gone for this many frame periods without a registered frame may have changed
-/// its motion.
-constexpr double longest_gap_periods = 3.5;
 
 /// Frames are smoothed together with this many before and after them, and so many at once, since
 /// estimates take 2.5 KB a frame.
@@ -130,15 +126,6 @@ std::vector<Estimate> smoothed(std::span<const Step> steps, MotionUncertainty mo
   return estimates;
 }
 
-/// Whether the camera can have kept its motion from the end of a path to a frame.
-bool goes_on(std::span<const Step> path, const RegisteredFrame& frame) {
-  const double step_s = frame.timestamp_s - path.back().frame->timestamp_s;
-  if (step_s <= 0) return false;
-  if (path.size() < 2) return true;
-  const RegisteredFrame& before_last = *path[path.size() - 2].frame;
-  return step_s <= longest_gap_periods * (path.back().frame->timestamp_s - before_last.timestamp_s);
-}
-
 /// The covariance of what two measurements, of which each may be missing, tell on average.
 Covariance mean_of(const Step* one, const Step* other) {
   if (one == nullptr || other == nullptr) return (one ? one : other)->by_surfaces;
@@ -165,24 +152,20 @@ void distrust_lone_certainty(std::span<Step> path) {
   }
 }
 
-/// The paths of a recording: frames of one map that follow each other without a gap.
-std::vector<std::vector<Step>> paths_of(MapContent& content, int recording) {
-  std::vector<std::vector<Step>> paths;
-  int map = -1;
-  for (RegisteredFrame& frame : content.frames) {
-    if (frame.recording != recording) continue;
-    const Keyframe& keyframe = content.keyframes[frame.keyframe];
-    if (keyframe.map != map || !goes_on(paths.back(), frame)) paths.emplace_back();
-    map = keyframe.map;
-    Step& step = paths.back().emplace_back();
+std::vector<Step> steps_of(MapContent& content, std::span<const std::size_t> path) {
+  std::vector<Step> steps;
+  for (const std::size_t index : path) {
+    RegisteredFrame& frame = content.frames[index];
+    Step& step = steps.emplace_back();
     step.frame = &frame;
     step.world_from_camera = pose_of(frame, content.keyframes);
-    step.is_held = keyframe.recording == recording && keyframe.frame_index == frame.index;
+    step.is_held = is_of_keyframe(frame, content.keyframes);
     step.by_surfaces = step.is_held
                            ? Covariance(held_sigma * held_sigma * Covariance::Identity())
-                           : rotated(frame.covariance, keyframe.world_from_camera.linear());
+                           : rotated(frame.covariance,
+                                     content.keyframes[frame.keyframe].world_from_camera.linear());
   }
-  return paths;
+  return steps;
 }
 
 void correct(const Step& step, const Estimate& estimate, const KeyframeGraph& keyframes) {
@@ -196,10 +179,9 @@ void correct(const Step& step, const Estimate& estimate, const KeyframeGraph& ke
 
 }  // namespace
 
-void smooth_path(MapContent& content, int recording, double rotation_sigma_rad,
-                 double translation_sigma_m) {
-  const MotionUncertainty motion(rotation_sigma_rad, translation_sigma_m);
-  for (std::vector<Step>& path : paths_of(content, recording)) {
+void smooth_path(MapContent& content, int recording, const MotionUncertainty& motion) {
+  for (const std::vector<std::size_t>& indices : recorded_paths(content, recording)) {
+    std::vector<Step> path = steps_of(content, indices);
     distrust_lone_certainty(path);
     for (std::size_t begin = 0; begin < path.size(); begin += frames_at_once) {
       const std::size_t end = std::min(begin + frames_at_once, path.size());

@@ -73,9 +73,10 @@ void RoomMapper::finish() {
   review_join_of_newest(true);
   join_afterwards();
   if (unfitted_loops_ > 0) fit();
-  fit_path(content_, recording(), loop_options_, held_keyframes());
-  smooth_path(content_, recording(), odometry_options_.prior_rotation_sigma_rad,
-              odometry_options_.prior_translation_sigma_m);
+  const MotionUncertainty motion(odometry_options_.prior_rotation_sigma_rad,
+                                 odometry_options_.prior_translation_sigma_m);
+  fit_path(content_, recording(), loop_options_, motion, held_keyframes());
+  smooth_path(content_, recording(), motion);
   // From here on, clouds are gone through in order.
   content_.keyframes.keep_clouds_compact();
   if (use_ == MapUse::localise) {

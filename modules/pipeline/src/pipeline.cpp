@@ -337,7 +337,12 @@ RoomMap MapRun::finish() {
       map.trajectory = std::move(one.trajectory);
       map.keyframes = std::move(one.keyframes);
       map.surface = std::move(one.surface);
-      map.least_certain = least_certain_of(content, number);
+      const auto certainties = certainties_of(content, number);
+      map.least_certain = least_certain(certainties);
+      map.uncertain =
+          static_cast<int>(std::ranges::count_if(certainties, [](const PoseCertainty& frame) {
+            return frame.error.position_m > most_position_sigma_m;
+          }));
       std::ranges::copy_if(content.changes, std::back_inserter(map.changes),
                            [&](const MapChange& change) { return change.map == number; });
     } else {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -129,11 +130,14 @@ Trajectory keyframe_trajectory_of(const MapContent& content, int map);
 /// Current poses of all keyframes of a map.
 Trajectory all_keyframes_of(const MapContent& content, int map);
 
-/// The frame of the last recording in a map whose position is least certain: that of its keyframe
-/// is as certain as the covariances of the edges of odometry and of the loops that are used say
-/// (expected_errors()), and that relative to the keyframe as when it was registered. The map must
-/// have such a frame.
-PoseCertainty least_certain_of(const MapContent& content, int map);
+/// How certain the frames of the last recording in a map are, in the order of trajectory_of(): the
+/// pose of a keyframe is as certain as the covariances of the edges of odometry and of the loops
+/// that are used say (expected_errors()), and the position of a frame relative to it as when the
+/// frame was registered.
+std::vector<PoseCertainty> certainties_of(const MapContent& content, int map);
+
+/// The frame whose position is least certain. There must be one.
+PoseCertainty least_certain(std::span<const PoseCertainty> frames);
 
 /// The covariances of the errors of the poses of trajectory_of() in the world of the map, if its
 /// keyframes of earlier recordings are exact: rotation vector in radians, then translation in

@@ -39,8 +39,9 @@ std::size_t recognising_keyframes(const std::vector<const PoseEdge*>& recognitio
 /// Pointers to edges, valid as long as these stay where they are.
 std::vector<const PoseEdge*> pointers_to(std::span<const PoseEdge> edges);
 
-/// The join of `map` that recognitions agree on: the relative pose is that of the first one.
-/// `keyframes` are in the order of their ids, from 0.
+/// The join of `map` that recognitions agree on: the relative pose is that of the recognition that
+/// puts the keyframes of all of them nearest to where they were recognised. `keyframes` are in the
+/// order of their ids, from 0.
 MapJoin join_by(const std::vector<const PoseEdge*>& recognitions, int map,
                 std::span<const Keyframe> keyframes);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <tofmap/mapping/map_content.hpp>
+#include <tofmap/mapping/motion_uncertainty.hpp>
 
 namespace tofmap {
 
@@ -16,10 +17,9 @@ namespace tofmap {
 /// direction is probably an edge that was taken for another.
 ///
 /// RegisteredFrame::covariance must be what the surfaces alone tell; it becomes that of the
-/// smoothed pose. The sigmas are the largest standard deviations of MotionUncertainty. A
-/// fixed-interval smoother (Rauch, Tung and Striebel, AIAA Journal 1965) for constant velocity,
-/// linear about the poses as they are.
-void smooth_path(MapContent& content, int recording, double rotation_sigma_rad,
-                 double translation_sigma_m);
+/// smoothed pose. `motion` learns how steady the motion is, in each path anew. A fixed-interval
+/// smoother (Rauch, Tung and Striebel, AIAA Journal 1965) for constant velocity, linear about the
+/// poses as they are.
+void smooth_path(MapContent& content, int recording, const MotionUncertainty& motion);
 
 }  // namespace tofmap

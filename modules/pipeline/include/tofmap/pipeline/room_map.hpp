@@ -104,7 +104,8 @@ struct RoomMap {
   int joins = 0;                           ///< of maps within the recording (RoomMapper::joins())
   int blind_joins = 0;                     ///< RoomMapper::blind_joins()
   int joins_taken_back = 0;                ///< RoomMapper::joins_taken_back()
-  PoseCertainty least_certain;             ///< least_certain_of(); zero without keyframes
+  PoseCertainty least_certain;             ///< of all frames; zero without keyframes
+  int uncertain = 0;                       ///< frames less certain than most_position_sigma_m
   int registered_slowly = 0;               ///< number of frames that converged_slowly()
   /// Number of frames that were found in the map of earlier recordings (MapRun::go_on_with()).
   /// Empty if there were none.
