@@ -175,6 +175,8 @@ int run_map(const MapArguments& arguments) {
     refuse_to_resume_device(arguments.recording.sequence.string());
   } else if (arguments.onto.empty()) {
     refuse_to_replace_grown_map(arguments.out);
+  } else {
+    refuse_to_replace(map_file_in(arguments.onto), arguments.out);
   }
 
   MapInput input(arguments.recording.sequence, options);

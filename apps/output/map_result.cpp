@@ -45,11 +45,13 @@ void refuse_another_place(const RoomMap& map, bool has_start) {
 }
 
 /// Whether an extended map is worse than the map before, and no loop has shown that this was wrong.
+/// Loops of a recording with warnings show nothing: its ranges may be wrong.
 bool is_to_be_taken_back(const FinishedMap& finished, const MapEvidence& evidence,
                          const MapFile& file, const MapOutputChoices& choices) {
   const auto before = file.verdict_before();
+  const bool is_explained = finished.map.has_moved_map && evidence.warnings == 0;
   return before && verdict_on_extension(evidence) > *before && !finished.map.interrupted &&
-         !finished.map.has_moved_map && !choices.even_if_worse;
+         !is_explained && !choices.even_if_worse;
 }
 
 /// Writes the map and the trajectories, which are kept even if a later step fails.

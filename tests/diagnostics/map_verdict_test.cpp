@@ -91,6 +91,9 @@ TEST(Verdict, OnAnExtensionOverlooksAFewUncertainFrames) {
   EXPECT_EQ(verdict_on_extension(evidence), Verdict::good);
   evidence.uncertain += 1;
   EXPECT_EQ(verdict_on_extension(evidence), Verdict::check) << "frames depend on an uncertain one";
+  evidence.uncertain = 1;
+  evidence.position_sigma_m = 0.3;
+  EXPECT_EQ(verdict_on_extension(evidence), Verdict::check) << "it may be past the end of a wall";
 }
 
 TEST(Verdict, OnAnExtensionOverlooksFramesThatWereRegisteredSlowly) {

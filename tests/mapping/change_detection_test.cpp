@@ -3,6 +3,7 @@
 
 #include "tofmap/mapping/change_detection.hpp"
 
+#include "seen_surface.hpp"
 #include "support/scenery.hpp"
 
 #include <algorithm>
@@ -73,6 +74,32 @@ TEST_F(FurnitureOnTheMove, IsSeenToBeGone) {
   EXPECT_GT(change.before.size(), 200);
   EXPECT_GT(share_on(box(0), change.before), 0.95);
   EXPECT_LT(share_on(box(0), surface_of(content, change.map)), 0.001) << "the map shows what is";
+}
+
+TEST_F(FurnitureOnTheMove, IsInTheSurfaceOfTheRecordingThatSawIt) {
+  const MapContent content = mapped(box(0), std::nullopt);
+  const SeenSurface before = surface_seen(content, 0, 0, 1);
+  const SeenSurface after = surface_seen(content, 0, 1, 2);
+  EXPECT_TRUE(std::ranges::all_of(before.keyframes,
+                                  [](const Keyframe& one) { return one.recording == 0; }));
+  EXPECT_TRUE(
+      std::ranges::all_of(after.keyframes, [](const Keyframe& one) { return one.recording == 1; }));
+  EXPECT_GT(share_on(box(0), before.points), 0.01);
+  EXPECT_LT(share_on(box(0), after.points), 0.001);
+  EXPECT_GT(after.points.size(), 1000);
+}
+
+TEST_F(FurnitureOnTheMove, IsSureWhereSeveralKeyframesShowIt) {
+  const SeenSurface seen = surface_seen(mapped(box(0), std::nullopt), 0, 0, 1);
+  ASSERT_EQ(seen.certainty.size(), seen.points.size());
+  MapCloud sure;
+  for (std::size_t i = 0; i < seen.points.size(); ++i) {
+    if (seen.certainty[i] == Certainty::sure) sure.push_back(seen.points[i]);
+  }
+  // The camera turns past the box, whose front most keyframes show.
+  EXPECT_GT(sure.size(), seen.points.size() / 3);
+  EXPECT_LT(sure.size(), seen.points.size()) << "the edges of the view are in one keyframe alone";
+  EXPECT_GT(share_on(box(0), sure), share_on(box(0), seen.points));
 }
 
 TEST_F(FurnitureOnTheMove, IsSeenToBeNew) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -65,6 +66,21 @@ class MergedRoom : public testing::Test {
     }
     return worst_m;
   }
+
+  /// The largest distance of a frame from where one of its constraints has found it. Infinite if
+  /// there are none.
+  static double worst_constraint_error_m(const MapContent& content) {
+    double worst_m = -1;
+    for (const RegisteredFrame& frame : content.frames) {
+      const Pose pose = pose_of(frame, content.keyframes);
+      for (const FrameConstraint& constraint : frame.constraints) {
+        const Pose found = content.keyframes[constraint.keyframe].world_from_camera *
+                           Pose(constraint.keyframe_from_camera.cast<double>());
+        worst_m = std::max(worst_m, (found.translation() - pose.translation()).norm());
+      }
+    }
+    return worst_m < 0 ? std::numeric_limits<double>::infinity() : worst_m;
+  }
 };
 
 TEST_F(MergedRoom, IsTheSameInAnyOrder) {
@@ -75,6 +91,7 @@ TEST_F(MergedRoom, IsTheSameInAnyOrder) {
     EXPECT_THAT(merged.is_joined, ElementsAre(true, true, true));
     EXPECT_EQ(merged.content.frames.size(), 3 * frames);
     EXPECT_LT(worst_error_m(merged.content, begins[order.front()]), 0.01);
+    EXPECT_LT(worst_constraint_error_m(merged.content), 0.03) << "they go with their keyframes";
     std::vector<std::string> dates;
     for (const MapRecording& recording : merged.content.recordings) {
       dates.push_back(recording.added);

@@ -282,6 +282,28 @@ TEST_F(StoredMap, IsRefusedIfItIsNone) {
   EXPECT_THROW(MapStore::create(file()), InputError);
 }
 
+TEST_F(StoredMap, IsRefusedIfItLacksATable) {
+  make();
+  const std::filesystem::path whole = folder_.path() / "whole.db";
+  std::filesystem::copy_file(file(), whole);
+  for (const std::string table : {"tracking", "entries", "registrations", "frames"}) {
+    execute("DROP TABLE " + table);
+    EXPECT_THAT(complaint(), HasSubstr("has no table '" + table + "'; map the"));
+    execute("CREATE VIEW " + table + " AS SELECT * FROM keyframes");
+    EXPECT_THAT(complaint(), HasSubstr("has no table")) << "a view is none";
+    std::filesystem::remove(file());
+    std::filesystem::copy_file(whole, file());
+  }
+}
+
+TEST_F(StoredMap, IsRefusedIfATriggerWouldChangeWhatIsWritten) {
+  make();
+  execute("CREATE VIEW walls AS SELECT * FROM submaps; CREATE INDEX times ON frames (timestamp_s)");
+  EXPECT_EQ(complaint(), "") << "views and indices of its owner change nothing";
+  execute("CREATE TRIGGER thief AFTER INSERT ON recordings BEGIN DELETE FROM frames; END");
+  EXPECT_THAT(complaint(), HasSubstr("has a trigger, 'thief'"));
+}
+
 TEST_F(StoredMap, IsRefusedIfItIsOfALaterVersion) {
   make();
   execute("PRAGMA user_version = 99");

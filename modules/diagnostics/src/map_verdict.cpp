@@ -136,7 +136,9 @@ Judgement judge(const MapEvidence& evidence) {
 
 Verdict verdict_on_extension(MapEvidence evidence) {
   evidence.registered_slowly = 0;
-  if (percent_of_frames(evidence, evidence.uncertain) <= 100 - nearly_all_percent) {
+  constexpr double most_overlooked_sigma_m = 0.2;
+  const bool are_few = percent_of_frames(evidence, evidence.uncertain) <= 100 - nearly_all_percent;
+  if (are_few && evidence.position_sigma_m <= most_overlooked_sigma_m) {
     evidence.position_sigma_m = 0;
   }
   return judge(evidence).verdict;

@@ -196,9 +196,7 @@ std::vector<Matrix6d> covariances_of(const MapContent& content, int map) {
       // An error of the keyframe moves the frame with it, and its rotation swings the frame around.
       const Eigen::Vector3d arm_m =
           keyframe.world_from_camera.linear() * frame.keyframe_from_camera.translation();
-      Matrix6d moved = Matrix6d::Identity();
-      moved.bottomLeftCorner<3, 3>() << 0, arm_m.z(), -arm_m.y(), -arm_m.z(), 0, arm_m.x(),
-          arm_m.y(), -arm_m.x(), 0;
+      const Matrix6d moved = twist_at_offset(arm_m);
       covariance += moved * of_keyframes[index - held] * moved.transpose();
     }
     covariances.push_back(covariance);

@@ -7,6 +7,7 @@
 #include "registration_choice.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <utility>
@@ -18,7 +19,7 @@ using Twist = MotionUncertainty::Twist;
 using Covariance = MotionUncertainty::Covariance;
 
 /// The motion through an uncertain frame is known from this many frames before and after it.
-constexpr std::size_t frames_beside = 5;
+constexpr std::size_t frames_around = 5;
 
 /// For each keyframe, what surfaces tell of its pose at its most certain edge of odometry: a
 /// covariance along the axes of the world. Zero for the first one of a map.
@@ -98,9 +99,9 @@ std::vector<MotionTerm> PathMotion::terms() const {
   std::vector<MotionTerm> terms;
   for (std::size_t i = 2; i < path_.size(); ++i) {
     const auto begin =
-        is_uncertain_.begin() + static_cast<std::ptrdiff_t>(i - 2 - std::min(i - 2, frames_beside));
+        is_uncertain_.begin() + static_cast<std::ptrdiff_t>(i - 2 - std::min(i - 2, frames_around));
     const auto end = is_uncertain_.begin() +
-                     static_cast<std::ptrdiff_t>(std::min(i + 1 + frames_beside, path_.size()));
+                     static_cast<std::ptrdiff_t>(std::min(i + 1 + frames_around, path_.size()));
     if (std::find(begin, end, true) != end) terms.push_back(all_[i - 2]);
   }
   return terms;

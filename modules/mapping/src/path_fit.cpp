@@ -6,17 +6,16 @@
 #include "correction_system.hpp"
 #include "motion_terms.hpp"
 #include "recorded_paths.hpp"
+#include "relative_measurement.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
-
-#include <Eigen/Eigenvalues>
 
 #include <tofmap/registration/pose_graph.hpp>
 #include <tofmap/registration/robust_kernel.hpp>
@@ -27,10 +26,6 @@ namespace {
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-/// Largest errors of constraints.
-constexpr double most_translation_m = 0.1;
-constexpr double most_rotation_rad = 0.05;
-
 /// How far a frame may be from where it is relative to its keyframe, as standard deviations. It
 /// holds frames that have no constraints.
 constexpr double frame_rotation_sigma_rad = 0.03;
@@ -39,49 +34,6 @@ constexpr double frame_translation_sigma_m = 0.1;
 /// By what the standard deviations of odometry are multiplied: its edges are from registrations
 /// that are among the constraints already.
 constexpr double odometry_sigmas = 5;
-
-/// What a registration tells along the directions that it constrains: with positive information,
-/// and a minimum in reach. The rest is noise.
-struct Reliable {
-  Matrix6d information;
-  Vector6d gradient;
-};
-
-Reliable reliable(const Matrix6d& information, const Vector6d& gradient) {
-  constexpr double lever_m = 3;  // rotations count by the motion of points at this range
-  Vector6d scale;
-  scale << Eigen::Vector3d::Constant(1 / lever_m), Eigen::Vector3d::Ones();
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(
-      Matrix6d(scale.asDiagonal() * information * scale.asDiagonal()));
-  const Matrix6d directions = scale.cwiseInverse().asDiagonal() * solver.eigenvectors();
-  const Vector6d slopes = solver.eigenvectors().transpose() * scale.asDiagonal() * gradient;
-  Vector6d kept = Vector6d::Zero();
-  for (int i = 0; i < kept.size(); ++i) {
-    const double curvature = solver.eigenvalues()[i];
-    if (std::abs(slopes[i]) < curvature * most_translation_m) kept[i] = 1;
-  }
-  return {
-      directions * solver.eigenvalues().cwiseProduct(kept).asDiagonal() * directions.transpose(),
-      directions * slopes.cwiseProduct(kept)};
-}
-
-/// What was measured of a pose relative to a keyframe, along the axes of the keyframe.
-struct Measured {
-  int keyframe = 0;  ///< id
-  Pose keyframe_from_pose;
-  Matrix6d information;
-  Vector6d gradient = Vector6d::Zero();
-};
-
-Measured measured_by(const FrameConstraint& constraint) {
-  return {constraint.keyframe, Pose(constraint.keyframe_from_camera.cast<double>()),
-          constraint.information.cast<double>(), constraint.gradient.cast<double>()};
-}
-
-bool is_small(const Vector6d& twist) {
-  return twist.head<3>().norm() <= most_rotation_rad &&
-         twist.tail<3>().norm() <= most_translation_m;
-}
 
 /// Whether a change of the relative pose of an edge, along the axes of `from`, is within what its
 /// registration left open.
@@ -99,6 +51,9 @@ class PathFit {
   /// Corrects all poses once. False if they are not determined.
   bool step();
 
+  /// Sets the relative poses of edges of odometry to those of the present poses.
+  void correct_edges();
+
  private:
   const Keyframe& at(int id) const { return content_.keyframes[id]; }
   bool is_keyframe(const RegisteredFrame& frame) const {
@@ -107,13 +62,17 @@ class PathFit {
   bool is_fitted(const RegisteredFrame& frame) const {
     return frame.recording == recording_ || static_cast<std::size_t>(frame.keyframe) >= held_;
   }
+  /// Whether the registration that an edge of odometry is from is among the constraints.
+  bool is_counted(const PoseEdge& edge) const {
+    return constrained_.contains({edge.to, edge.from}) ||
+           constrained_.contains({edge.from, edge.to});
+  }
   int& pose_number(const RegisteredFrame& frame) {
     return pose_numbers_[static_cast<std::size_t>(&frame - content_.frames.data())];
   }
   void find_motion();
   void leave_out_far_constraints();
-  RelativeTerm term_of(const Measured& measured, const Pose& pose) const;
-  Vector6d error_of(const Measured& measured, const Pose& pose) const;
+  const Pose& pose_of_keyframe(int id) const { return at(id).world_from_camera; }
   std::vector<RelativeTerm> terms_of(const RegisteredFrame& frame, const Pose& pose) const;
   Matrix6d weighted_information(const PoseEdge& edge) const;
   void add_edges(CorrectionSystem& system) const;
@@ -128,7 +87,8 @@ class PathFit {
   const MotionUncertainty& motion_;
   std::size_t held_;
   std::vector<bool> is_held_;  ///< for each pose in the system, whether it stays where it is
-  std::set<int> constrained_;  ///< recordings whose frames have constraints
+  /// Keyframes with those that their frames have constraints with.
+  std::set<std::pair<int, int>> constrained_;
   std::set<const FrameConstraint*> left_out_;
   std::vector<MotionTerm> motion_terms_;  ///< at the present poses
   /// For each frame, its pose in the system; −1 if it is eliminated, or not in it.
@@ -143,10 +103,15 @@ PathFit::PathFit(MapContent& content, int recording, const LoopOptions& options,
     const bool is_first = begun.insert(keyframe.map).second;
     is_held_.push_back(is_first || static_cast<std::size_t>(keyframe.id) < held);
   }
-  for (const RegisteredFrame& frame : content_.frames) {
-    if (!frame.constraints.empty()) constrained_.insert(frame.recording);
-  }
   leave_out_far_constraints();
+  for (const RegisteredFrame& frame : content_.frames) {
+    if (!is_keyframe(frame)) continue;
+    for (const FrameConstraint& constraint : frame.constraints) {
+      if (!left_out_.contains(&constraint)) {
+        constrained_.insert({frame.keyframe, constraint.keyframe});
+      }
+    }
+  }
 }
 
 /// Leaves constraints out by the poses before the fit: along directions that nothing determined,
@@ -156,7 +121,8 @@ void PathFit::leave_out_far_constraints() {
     if (!is_fitted(frame)) continue;
     const Pose pose = pose_of(frame, content_.keyframes);
     for (const FrameConstraint& constraint : frame.constraints) {
-      if (!is_small(error_of(measured_by(constraint), pose))) left_out_.insert(&constraint);
+      if (!is_small(error_of(measured_by(constraint), pose_of_keyframe(constraint.keyframe), pose)))
+        left_out_.insert(&constraint);
     }
   }
 }
@@ -184,32 +150,13 @@ void PathFit::find_motion() {
   is_held_.resize(static_cast<std::size_t>(poses), false);
 }
 
-/// The term of a pose that was measured relative to a keyframe. Information and gradient are along
-/// its axes.
-RelativeTerm PathFit::term_of(const Measured& measured, const Pose& pose) const {
-  const Pose& world_from_keyframe = at(measured.keyframe).world_from_camera;
-  const Eigen::Matrix3d axes = world_from_keyframe.linear();
-  const auto [information, gradient] =
-      reliable(rotated(measured.information, axes), rotated_twist(measured.gradient, axes));
-  return {
-      .keyframe = measured.keyframe,
-      .information = information,
-      .gradient = gradient + information * error_of(measured, pose),
-      .twist_by_keyframe = twist_at_offset(pose.translation() - world_from_keyframe.translation())};
-}
-
-/// The twist from where a keyframe puts a pose to where it is.
-Vector6d PathFit::error_of(const Measured& measured, const Pose& pose) const {
-  return twist_between(at(measured.keyframe).world_from_camera * measured.keyframe_from_pose, pose);
-}
-
 /// The terms of a frame at a pose.
 std::vector<RelativeTerm> PathFit::terms_of(const RegisteredFrame& frame, const Pose& pose) const {
   std::vector<RelativeTerm> terms;
   for (const FrameConstraint& constraint : frame.constraints) {
     const bool is_of_another_map = at(constraint.keyframe).map != at(frame.keyframe).map;
     if (is_of_another_map || left_out_.contains(&constraint)) continue;
-    terms.push_back(term_of(measured_by(constraint), pose));
+    terms.push_back(term_of(measured_by(constraint), pose_of_keyframe(constraint.keyframe), pose));
   }
   if (is_keyframe(frame)) return terms;
   Vector6d sigmas;
@@ -217,7 +164,7 @@ std::vector<RelativeTerm> PathFit::terms_of(const RegisteredFrame& frame, const 
       Eigen::Vector3d::Constant(frame_translation_sigma_m);
   terms.push_back(term_of(
       {frame.keyframe, frame.keyframe_from_camera, sigmas.cwiseAbs2().cwiseInverse().asDiagonal()},
-      pose));
+      pose_of_keyframe(frame.keyframe), pose));
   return terms;
 }
 
@@ -225,16 +172,15 @@ std::vector<RelativeTerm> PathFit::terms_of(const RegisteredFrame& frame, const 
 Matrix6d PathFit::weighted_information(const PoseEdge& edge) const {
   const Matrix6d information = edge.covariance.inverse();
   if (edge.may_be_wrong) {
-    const Vector6d error = rotated_twist(
-        error_of({edge.from, edge.from_from_to, information}, at(edge.to).world_from_camera),
-        at(edge.from).world_from_camera.linear().transpose());
+    const Vector6d error =
+        rotated_twist(error_of({edge.from, edge.from_from_to, information},
+                               pose_of_keyframe(edge.from), pose_of_keyframe(edge.to)),
+                      pose_of_keyframe(edge.from).linear().transpose());
     return geman_mcclure_weight_of_squares(error.dot(information * error),
                                            options_.kernel_width * options_.kernel_width) *
            information;
   }
-  const bool is_counted = constrained_.contains(at(edge.from).recording) &&
-                          constrained_.contains(at(edge.to).recording);
-  return is_counted ? information / (odometry_sigmas * odometry_sigmas) : information;
+  return is_counted(edge) ? information / (odometry_sigmas * odometry_sigmas) : information;
 }
 
 void PathFit::add_edges(CorrectionSystem& system) const {
@@ -243,7 +189,7 @@ void PathFit::add_edges(CorrectionSystem& system) const {
     const bool is_used = !edge.may_be_wrong || (loop++)->is_used;
     if (!is_used || at(edge.from).map != at(edge.to).map) continue;
     system.add(edge.to, term_of({edge.from, edge.from_from_to, weighted_information(edge)},
-                                at(edge.to).world_from_camera));
+                                pose_of_keyframe(edge.from), pose_of_keyframe(edge.to)));
   }
 }
 
@@ -304,6 +250,16 @@ bool PathFit::step() {
   return true;
 }
 
+void PathFit::correct_edges() {
+  for (PoseEdge& edge : content_.edges) {
+    const auto later = static_cast<std::size_t>(std::max(edge.from, edge.to));
+    if (edge.may_be_wrong || later < held_ || !is_counted(edge)) continue;
+    const Pose found = pose_of_keyframe(edge.from).inverse() * pose_of_keyframe(edge.to);
+    const Vector6d change = twist_between(edge.from_from_to, found);
+    if (is_small(change) || is_expected(change, edge)) edge.from_from_to = found;
+  }
+}
+
 }  // namespace
 
 void fit_path(MapContent& content, int recording, const LoopOptions& options,
@@ -313,15 +269,7 @@ void fit_path(MapContent& content, int recording, const LoopOptions& options,
   for (int i = 0; i < steps; ++i) {
     if (!fit.step()) break;
   }
-  for (PoseEdge& edge : content.edges) {
-    const Keyframe& from = content.keyframes[edge.from];
-    const Keyframe& to = content.keyframes[edge.to];
-    const auto later = static_cast<std::size_t>(std::max(edge.from, edge.to));
-    if (edge.may_be_wrong || later < held) continue;
-    const Pose found = from.world_from_camera.inverse() * to.world_from_camera;
-    const Vector6d change = twist_between(edge.from_from_to, found);
-    if (is_small(change) || is_expected(change, edge)) edge.from_from_to = found;
-  }
+  fit.correct_edges();
 }
 
 }  // namespace tofmap

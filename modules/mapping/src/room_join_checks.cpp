@@ -220,7 +220,8 @@ void RoomMapper::connect_own_keyframes() {
   }
 }
 
-/// Drops the edges, and with them the loops, between keyframes of different maps.
+/// Drops the edges, and with them the loops, between keyframes of different maps, and the
+/// constraints of frames with keyframes of another map.
 void RoomMapper::drop_edges_between_maps() {
   const auto is_between = [&](const PoseEdge& edge) { return connects_maps(edge); };
   const auto fitted = static_cast<std::ptrdiff_t>(content_.loops.size()) - unfitted_loops_;
@@ -237,6 +238,12 @@ void RoomMapper::drop_edges_between_maps() {
   }
   content_.loops = std::move(kept);
   std::erase_if(content_.edges, is_between);
+  for (RegisteredFrame& frame : content_.frames) {
+    const int map = content_.keyframes[frame.keyframe].map;
+    std::erase_if(frame.constraints, [&](const FrameConstraint& constraint) {
+      return content_.keyframes[constraint.keyframe].map != map;
+    });
+  }
 }
 
 /// Moves a map so that its first keyframe is the origin of its world.

@@ -10,6 +10,8 @@
 #include <array>
 #include <cstdint>
 #include <fstream>
+#include <set>
+#include <string>
 
 #include <sqlite3.h>
 
@@ -22,8 +24,7 @@ namespace {
 constexpr int wait_for_lock_ms = 2000;
 
 constexpr const char* no_map = "is not a map of tofmap; give map.db, or the folder that holds it";
-constexpr const char* damaged_file =
-    "is damaged; map the recordings again, or use a copy of the file";
+const std::string damaged_file = std::string("is damaged; ") + damage_remedy;
 
 /// Whether a database was left by a process that was to write it: changes may then be in a second
 /// file, the write-ahead log, and reading merges them. Byte 18 of the file says so.
@@ -56,6 +57,40 @@ void check_version(SQLite::Database& database) {
     throw InputError("is a map of version " + std::to_string(version) +
                      ", and this program reads versions up to " +
                      std::to_string(map_format_version) + "; install a newer version of tofmap");
+  }
+}
+
+/// Names of the tables of a database.
+std::set<std::string> tables_of(SQLite::Database& database) {
+  std::set<std::string> names;
+  SQLite::Statement rows(database, "SELECT name FROM sqlite_master WHERE type = 'table'");
+  while (rows.executeStep()) names.insert(rows.getColumn(0).getString());
+  return names;
+}
+
+/// Names of the tables that statements make.
+std::set<std::string> tables_made_by(const std::string& statements) {
+  // The tables that others refer to need not be there.
+  SQLite::Database database(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  database.exec(statements);
+  return tables_of(database);
+}
+
+/// Throws InputError if a table of this version is missing, or if a trigger would change what is
+/// written.
+void check_schema(SQLite::Database& database) {
+  std::set<std::string> missing = tables_made_by(map_schema());
+  for (const std::string& later : tables_made_by(map_schema_since(format_version(database)))) {
+    missing.erase(later);
+  }
+  for (const std::string& present : tables_of(database)) missing.erase(present);
+  if (!missing.empty()) {
+    throw InputError("has no table '" + *missing.begin() + "'; " + damage_remedy);
+  }
+  SQLite::Statement triggers(database, "SELECT name FROM sqlite_master WHERE type = 'trigger'");
+  if (triggers.executeStep()) {
+    throw InputError("has a trigger, '" + triggers.getColumn(0).getString() +
+                     "', which would change what is written; drop it");
   }
 }
 
@@ -193,6 +228,7 @@ SQLite::Database open_database(const fs::path& file, bool is_locked) {
       file.string(), may_write ? SQLite::OPEN_READWRITE : SQLite::OPEN_READONLY, wait_for_lock_ms);
   if (may_write) database.exec("PRAGMA locking_mode = EXCLUSIVE");
   check_version(database);
+  check_schema(database);
   check_integrity(database);
   check_checksum(database);
   if (is_locked) lock(database);

@@ -12,6 +12,9 @@
 
 namespace tofmap {
 
+/// What to do about a map that is damaged.
+inline constexpr const char* damage_remedy = "map the recordings again, or use a copy of the file";
+
 /// What an error of SQLite means for a map file, with a remedy.
 std::string told(const SQLite::Exception& error);
 

@@ -74,18 +74,22 @@ MapStore MapStore::open(const fs::path& file, Access access) {
 bool MapStore::is_in_use(const fs::path& file) { return tofmap::is_in_use(file); }
 
 MapContent MapStore::content() const {
-  return naming_file(file_->path, [&] {
-    // Clouds and surfaces keep the file open as long as they may have to be read.
-    MapContent content =
-        read_content(file_->database,
-                     {.cloud = [file = file_](int keyframe) { return file->read_cloud(keyframe); },
-                      .surface =
-                          [file = file_](int submap, const SurfaceMapOptions& options) {
-                            return file->read_surface(submap, options);
-                          }});
-    file_->written = written(content);
-    return content;
+  // Clouds and surfaces keep the file open as long as they may have to be read.
+  const PartReaders readers{
+      .cloud = [file = file_](int keyframe) { return file->read_cloud(keyframe); },
+      .surface =
+          [file = file_](int submap, const SurfaceMapOptions& options) {
+            return file->read_surface(submap, options);
+          }};
+  MapContent content = naming_file(file_->path, [&] {
+    try {
+      return read_content(file_->database, readers);
+    } catch (const InputError& error) {
+      throw InputError(std::string(error.what()) + "; " + damage_remedy);
+    }
   });
+  file_->written = written(content);
+  return content;
 }
 
 std::optional<std::string> MapStore::entry(const std::string& name) const {

@@ -18,14 +18,14 @@ namespace tofmap {
 struct FrameConstraint {
   int keyframe = 0;                                                        ///< id
   Eigen::Isometry3f keyframe_from_camera = Eigen::Isometry3f::Identity();  ///< as it was found
-  /// Of the error of that pose, a rotation vector in radians, then a translation in metres, along
-  /// the axes of the keyframe. May have negative eigenvalues, where it is noise.
+  /// Information about the error of that pose: a rotation vector in radians, then a translation in
+  /// metres, along the axes of the keyframe. It may have negative eigenvalues, where it is noise.
   Eigen::Matrix<float, 6, 6> information = Eigen::Matrix<float, 6, 6>::Zero();
   Eigen::Matrix<float, 6, 1> gradient = Eigen::Matrix<float, 6, 1>::Zero();
 };
 
-/// The constraints of a frame that was registered with keyframes. Those without equations have
-/// none.
+/// The constraints of a frame that was registered with keyframes, for each keyframe with which the
+/// registration has equations.
 std::vector<FrameConstraint> constraints_of(const RegistrationResult& registration,
                                             std::span<const Keyframe* const> keyframes);
 

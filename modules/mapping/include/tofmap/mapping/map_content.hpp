@@ -43,12 +43,14 @@ struct RegisteredFrame {
   Pose keyframe_from_camera = Pose::Identity();
   int index = 0;      ///< of the frame in its recording
   int recording = 0;  ///< index in MapContent::recordings
-  /// Of the error of the pose relative to all keyframes that it was registered with: rotation
-  /// vector in radians, then translation in metres, along the axes of `keyframe`. Zero for the
-  /// frame of the keyframe itself. By the surfaces alone until smooth_path() adds the motion.
+  /// This is the covariance of the error of the pose relative to all keyframes that it was
+  /// registered with: rotation vector in radians, then translation in metres, along the axes of
+  /// `keyframe`. It is zero for the frame of the keyframe itself, and by the surfaces alone until
+  /// smooth_path() adds the motion.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  /// With each keyframe that it was registered with. Empty if a version of tofmap that knows only
-  /// version 1 of the format has mapped it, and if the poses of these keyframes were mended since.
+  /// What the registrations with keyframes tell, one for each of them. Those with keyframes beyond
+  /// a slip or in another map are removed, and so are all of a frame that was registered again. The
+  /// first frame of a map has none, nor have frames of maps in version 1 of the format.
   std::vector<FrameConstraint> constraints = {};
 };
 

@@ -100,7 +100,8 @@ struct TrackingResult {
   /// If the status is `tracked` and there is a keyframe. RoomMapper::add_frame() removes it as
   /// well.
   std::optional<SinceKeyframe> since_keyframe;
-  /// If the status is `tracked`. RoomMapper::add_frame() removes them as well.
+  /// What the surfaces tell of the pose relative to each keyframe, if the status is `tracked`.
+  /// RoomMapper::add_frame() moves them to the frame of the map.
   std::vector<FrameConstraint> constraints;
   /// Whether frame and keyframes see through each other where they should not. It is tested only if
   /// the pose is unlikely.
